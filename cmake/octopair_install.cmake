@@ -1,0 +1,23 @@
+# The installed tree: headers, the library with its CMake package, the program with its manual and completion.
+
+if(NOT PROJECT_IS_TOP_LEVEL)
+    return()
+endif()
+include(CMakePackageConfigHelpers)
+
+install(DIRECTORY include/octopair DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(FILES ${PROJECT_BINARY_DIR}/include/octopair/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/octopair)
+install(TARGETS octopair EXPORT octopair_targets)
+install(EXPORT octopair_targets NAMESPACE octopair:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+configure_package_config_file(cmake/octopair-config.cmake.in ${PROJECT_BINARY_DIR}/octopair-config.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/octopair-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/octopair-config.cmake ${PROJECT_BINARY_DIR}/octopair-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(OCTOPAIR_BUILD_PROGRAM)
+    install(TARGETS octopair_program)
+    install(FILES docs/octopair.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES src/cli/octopair.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+            RENAME octopair)
+endif()

@@ -1,0 +1,25 @@
+# What every target of this project is compiled with.
+#
+# -ffp-contract=off: a fused multiply-add on one machine and not on another would let the same scene give other bytes.
+
+set_property(GLOBAL PROPERTY USE_FOLDERS ON)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+function(octopair_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                             -Wold-style-cast -Wcast-align -Woverloaded-virtual -Wconversion
+                                             -Wno-sign-conversion)
+    # Old-style casts are banned for pointers; T(value) is the house's way to convert numbers.
+    if(OCTOPAIR_WARNINGS_AS_ERRORS)
+        target_compile_options(${target} PRIVATE -Werror)
+    endif()
+    if(OCTOPAIR_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${OCTOPAIR_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+        target_link_options(${target} PUBLIC -fsanitize=${OCTOPAIR_SANITIZE})
+    endif()
+endfunction()

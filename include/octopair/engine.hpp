@@ -1,0 +1,92 @@
+// Engines: places where octopair looks for the pairs of overlapping boxes.
+//
+// Result    every pair of objects that counts (objects.hpp), once; the same bytes from every engine, for any number of
+//           threads, on any instruction set.
+// Errors    octopair::Error (error.hpp); the input is never modified; a failed call leaves the engine usable and the
+//           PairList empty.
+// Threads   an engine may be used from any thread; its calls run one after another; different engines are independent.
+// Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "octopair/objects.hpp"
+
+namespace octopair {
+
+/// `octal`: the order of the linear octree, the cheapest. `ascending`: by a, then b. Both are deterministic.
+enum class Order : std::uint8_t { ascending, octal };
+
+/// Receives how much of a call is done, 0 to 1, never falling; from one thread at a time, which may not be the caller's.
+using ProgressSink = std::function<void(double)>;
+
+struct Options {
+    Order order = Order::ascending;
+    double margin = 0;                         ///< gap up to which a pair counts, on every axis; finite, >= 0
+    std::optional<std::uint64_t> limit = {};   ///< the first so many pairs of the order
+    std::uint64_t buffer_bytes = 1ull << 30;   ///< bound on pairs held while streaming; at least 1 MiB is used
+    ProgressSink progress = {};                ///< may be empty; what it throws ends the call and reaches the caller
+};
+
+/// Wall-clock seconds of the steps; a step that was passed over more than once (streaming) is summed.
+struct StepSeconds {
+    double encode = 0, sort = 0, merge = 0, scan = 0;
+};
+
+/// What a call did, beside its pairs.
+struct Summary {
+    std::uint64_t pairs = 0;
+    bool truncated = false;     ///< `limit` was reached and at least one more pair exists
+    double seconds = 0;         ///< wall clock
+    std::uint64_t entries = 0;  ///< of the linear octree; at most 8 an object
+    StepSeconds steps = {};
+};
+
+/// Receives batches in order, on the calling thread; a span is valid during the call only. What it throws ends the
+/// search and reaches the caller.
+using PairSink = std::function<void(std::span<const Pair>)>;
+
+class Engine {
+public:
+    Engine() = default;
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+    virtual ~Engine() = default;
+
+    /// Throws Error{cancelled} within 200 ms of a stop request, Error{bad_input} with the object's index for a box that
+    /// is not one.
+    Summary find_pairs(const Objects& objects, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
+    Summary find_pairs_between(const Objects& first, const Objects& second, PairList& pairs,
+                               const Options& options = {}, std::stop_token stop = {});
+    /// Hands the pairs to `sink` in order; holds at most `Options::buffer_bytes` of them at a time.
+    Summary stream_pairs(const Objects& objects, const PairSink& sink, const Options& options = {},
+                         std::stop_token stop = {});
+    Summary stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
+                                 const Options& options = {}, std::stop_token stop = {});
+    /// The number of pairs (at most `Options::limit`, if given); stores none of them.
+    std::uint64_t count_pairs(const Objects& objects, const Options& options = {}, std::stop_token stop = {});
+    std::uint64_t count_pairs_between(const Objects& first, const Objects& second, const Options& options = {},
+                                      std::stop_token stop = {});
+
+    struct Request;  ///< objects, the second set of a join, options: what every call above becomes (internal)
+    struct Output;   ///< a list, a sink, or neither to count (internal)
+    struct Control;  ///< stop token and progress (internal)
+
+private:
+    virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
+};
+
+/// Threads of this process. 0: one per core.
+std::unique_ptr<Engine> make_local_engine(unsigned threads = 0);
+
+/// The short form: one call on an engine of its own. Keep an Engine where calls repeat: it keeps its memory.
+std::vector<Pair> find_pairs(std::span<const Box3f> boxes, const Options& options = {});
+std::vector<Pair> find_pairs(std::span<const Box3d> boxes, const Options& options = {});
+
+}  // namespace octopair

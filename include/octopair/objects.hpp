@@ -1,0 +1,63 @@
+// Objects in, pairs out: the plain data of every call.
+//
+// Units     lengths are the caller's own; `margin` and `padding` are in the same unit. Objects are positions in a span.
+// Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b), each
+//           operation in float64; without margin and padding: when the closed boxes overlap, touching included.
+// Ownership boxes and padding are borrowed and never modified; a PairList owns its pairs.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace octopair {
+
+/// A closed axis-aligned box: a row of an (n, 6) array. min[i] <= max[i], all finite.
+template <typename Real>
+struct Box {
+    Real min[3];
+    Real max[3];
+};
+using Box3f = Box<float>;
+using Box3d = Box<double>;
+
+/// The objects of a call, borrowed: the arrays must outlive it. At most 2^32 - 1 objects (in a join, both sets together).
+struct Objects {
+    std::variant<std::span<const Box3f>, std::span<const Box3d>> boxes;
+    std::span<const double> padding = {};  ///< empty, or one clearance per object; finite, >= 0
+
+    std::uint64_t size() const noexcept {
+        return std::visit([](auto span) -> std::uint64_t { return span.size(); }, boxes);
+    }
+};
+
+/// Two objects by their positions in the input; a < b (in a join: a of the first set, b of the second).
+struct Pair {
+    std::uint32_t a, b;
+    auto operator<=>(const Pair&) const = default;
+};
+
+/// Pairs in order, owned, in one or more chunks. Reuse it from call to call: it keeps its memory.
+/// Not thread-safe; chunks() is valid until the list is next written to or destroyed.
+class PairList {
+public:
+    PairList();
+    PairList(PairList&&) noexcept;
+    PairList& operator=(PairList&&) noexcept;
+    ~PairList();
+
+    std::uint64_t size() const;
+    std::span<const std::span<const Pair>> chunks() const;
+    std::vector<Pair> to_vector() const;  ///< a copy
+
+    struct Storage;  ///< what engines write to; its type is internal
+    Storage& storage() { return *storage_; }
+
+private:
+    std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,8 @@
+// octopair: every colliding pair among millions of moving 3D objects. This header brings the whole library.
+#pragma once
+
+#include "octopair/engine.hpp"
+#include "octopair/error.hpp"
+#include "octopair/objects.hpp"
+#include "octopair/octal_code.hpp"
+#include "octopair/version.hpp"

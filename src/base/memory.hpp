@@ -1,0 +1,53 @@
+// Buffers: arrays of plain data that are not initialised, and keep their memory when they are made smaller.
+//
+// Large ones are asked to lie on huge pages, which gave 4 to 24% in measurements of the sort.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+namespace octopair {
+
+/// `bytes` of memory aligned to 64 bytes (2 MiB for large ones). Throws std::bad_alloc.
+void* allocate_pages(std::size_t bytes);
+void free_pages(void* memory) noexcept;
+
+template <typename T>
+class Buffer {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+public:
+    Buffer() = default;
+    explicit Buffer(std::size_t size) { resize_discard(size); }
+
+    /// Makes the size `size`; what it held is lost where it grows beyond its capacity.
+    void resize_discard(std::size_t size) {
+        if (size > capacity_) {
+            memory_.reset();
+            capacity_ = 0;
+            memory_.reset(static_cast<T*>(allocate_pages(size * sizeof(T))));
+            capacity_ = size;
+        }
+        size_ = size;
+    }
+
+    std::size_t size() const { return size_; }
+    T* data() { return memory_.get(); }
+    const T* data() const { return memory_.get(); }
+    std::span<T> span() { return {data(), size_}; }
+    std::span<const T> span() const { return {data(), size_}; }
+    T& operator[](std::size_t i) { return data()[i]; }
+    const T& operator[](std::size_t i) const { return data()[i]; }
+
+private:
+    struct Free {
+        void operator()(T* memory) const noexcept { free_pages(memory); }
+    };
+    std::unique_ptr<T, Free> memory_;
+    std::size_t size_ = 0;
+    std::size_t capacity_ = 0;
+};
+
+}  // namespace octopair

@@ -1,0 +1,52 @@
+#include "engine/pair_list.hpp"
+
+#include <algorithm>
+
+namespace octopair {
+
+PairList::PairList() : storage_(std::make_unique<Storage>()) {}
+PairList::PairList(PairList&&) noexcept = default;
+PairList& PairList::operator=(PairList&&) noexcept = default;
+PairList::~PairList() = default;
+
+std::uint64_t PairList::size() const { return storage_->size; }
+
+std::span<const std::span<const Pair>> PairList::chunks() const { return storage_->chunks; }
+
+std::vector<Pair> PairList::to_vector() const {
+    std::vector<Pair> copy;
+    copy.reserve(size());
+    for (const auto chunk : chunks()) copy.insert(copy.end(), chunk.begin(), chunk.end());
+    return copy;
+}
+
+void PairList::Storage::reset() {
+    chunks.clear();
+    size = 0;
+    taken_ = 0;
+}
+
+std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
+    constexpr std::size_t block_pairs = (std::size_t(1) << 20) / sizeof(Pair);
+    const std::lock_guard lock(mutex_);
+    const auto fits = [&](const Buffer<Pair>& block) { return block.size() >= pairs; };
+    auto found = std::find_if(blocks_.begin() + std::ptrdiff_t(taken_), blocks_.end(), fits);
+    if (found == blocks_.end()) {
+        blocks_.emplace_back(std::max(pairs, block_pairs));
+        found = blocks_.end() - 1;
+    }
+    std::swap(*found, blocks_[taken_]);
+    return blocks_[taken_++].span();
+}
+
+void PairList::Storage::append(std::span<const Pair> pairs) {
+    if (pairs.empty()) return;
+    size += pairs.size();
+    if (!chunks.empty() && chunks.back().data() + chunks.back().size() == pairs.data()) {
+        chunks.back() = {chunks.back().data(), chunks.back().size() + pairs.size()};
+    } else {
+        chunks.push_back(pairs);
+    }
+}
+
+}  // namespace octopair

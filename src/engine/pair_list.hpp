@@ -1,0 +1,33 @@
+// The memory behind a PairList: blocks that writers fill side by side, and the chunks that make up the list.
+//
+// A block belongs to one writer at a time; `chunks` are runs within blocks, in the order of the list. reset() forgets the
+// chunks and keeps the blocks, so that a reused list does not page-fault again.
+#pragma once
+
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "octopair/objects.hpp"
+
+namespace octopair {
+
+struct PairList::Storage {
+    std::vector<std::span<const Pair>> chunks;
+    std::uint64_t size = 0;
+
+    /// Empty, with all blocks free.
+    void reset();
+    /// A free block of at least `pairs` pairs, until the next reset. Thread-safe.
+    std::span<Pair> take_block(std::size_t pairs);
+    /// Makes `pairs` the next chunk. Adjoining chunks grow together.
+    void append(std::span<const Pair> pairs);
+
+private:
+    std::mutex mutex_;
+    std::vector<Buffer<Pair>> blocks_;
+    std::size_t taken_ = 0;  // blocks_[0, taken_) are in writers' hands
+};
+
+}  // namespace octopair

@@ -1,0 +1,31 @@
+// What every public call becomes: one Request, one Output, one Control, handed to Engine::run.
+//
+// The public calls check the options and the sizes before run is called; the boxes and the padding values themselves are
+// checked by the engine on its first pass over them, so that a good input is read once less.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "octopair/engine.hpp"
+
+namespace octopair {
+
+struct Engine::Request {
+    const Objects& first;
+    const Objects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
+    const Options& options;
+};
+
+/// Where pairs go: exactly one of the two is set; neither: they are counted only.
+struct Engine::Output {
+    PairList* list = nullptr;
+    const PairSink* sink = nullptr;
+};
+
+struct Engine::Control {
+    std::stop_token stop;
+    const ProgressSink& progress;
+};
+
+}  // namespace octopair
