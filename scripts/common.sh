@@ -1,0 +1,35 @@
+# What the scripts share; sourced by them, from bash with set -euo pipefail. Everything said goes to standard error.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+say() { echo "$(basename "$0"): $*" >&2; }
+fail() {
+    say "$*"
+    exit 1
+}
+
+# The packages of a component, one a line.
+packages_of() {
+    local list="$root/scripts/packages/$1.txt"
+    [ -f "$list" ] || fail "no component '$1'; there are: $(cd "$root/scripts/packages" && ls ./*.txt | sed 's|./||; s|.txt||' | xargs)"
+    sed 's/#.*//' "$list" | awk 'NF { print $1 }'
+}
+
+# Runs a command as root: as it is, or through sudo.
+as_root() {
+    if [ "$(id -u)" = 0 ]; then
+        "$@"
+    elif command -v sudo > /dev/null; then
+        sudo "$@"
+    else
+        fail "needs root or sudo for: $*"
+    fi
+}
+
+# Fetches the package lists, once a run of the scripts; a stale list names packages that the mirror no longer has.
+update_package_lists() {
+    [ -z "${OCTOPAIR_LISTS_UPDATED:-}" ] || return 0
+    say "fetching the package lists (apt-get update)"
+    as_root apt-get update -qq >&2
+    export OCTOPAIR_LISTS_UPDATED=1
+}
