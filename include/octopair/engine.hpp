@@ -23,15 +23,16 @@ namespace octopair {
 /// `octal`: the order of the linear octree, the cheapest. `ascending`: by a, then b. Both are deterministic.
 enum class Order : std::uint8_t { ascending, octal };
 
-/// Receives how much of a call is done, 0 to 1, never falling; from one thread at a time, which may not be the caller's.
+/// Receives how much of a call is done, 0 to 1, never falling; from one thread at a time, which may not be the
+/// caller's.
 using ProgressSink = std::function<void(double)>;
 
 struct Options {
     Order order = Order::ascending;
-    double margin = 0;                         ///< gap up to which a pair counts, on every axis; finite, >= 0
-    std::optional<std::uint64_t> limit = {};   ///< the first so many pairs of the order
-    std::uint64_t buffer_bytes = 1ull << 30;   ///< bound on pairs held while streaming; at least 1 MiB is used
-    ProgressSink progress = {};                ///< may be empty; what it throws ends the call and reaches the caller
+    double margin = 0;                        ///< gap up to which a pair counts, on every axis; finite, >= 0
+    std::optional<std::uint64_t> limit = {};  ///< the first so many pairs of the order
+    std::uint64_t buffer_bytes = 1ull << 30;  ///< bound on pairs held while streaming; at least 1 MiB is used
+    ProgressSink progress = {};               ///< may be empty; what it throws ends the call and reaches the caller
 };
 
 /// Wall-clock seconds of the steps; a step that was passed over more than once (streaming) is summed.
@@ -79,6 +80,7 @@ public:
     struct Control;  ///< stop token and progress (internal)
 
 private:
+    Summary call(const Request& request, const Output& output, std::stop_token stop);
     virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
 };
 

@@ -1,7 +1,8 @@
 // Errors: the one exception type that octopair throws.
 //
-// Every failure of a public call is an `Error` whose code says what kind it is and whose message says, in one line, what
-// was wrong and where (file, object, value). std::bad_alloc becomes Error{resource_limit} at the edge of the library.
+// Every failure of a public call is an `Error` whose code says what kind it is and whose message says, in one line,
+// what was wrong and where (file, object, value). std::bad_alloc becomes Error{resource_limit} at the edge of the
+// library.
 #pragma once
 
 #include <cstdint>

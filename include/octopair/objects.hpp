@@ -1,7 +1,8 @@
 // Objects in, pairs out: the plain data of every call.
 //
 // Units     lengths are the caller's own; `margin` and `padding` are in the same unit. Objects are positions in a span.
-// Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b), each
+// Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b),
+// each
 //           operation in float64; without margin and padding: when the closed boxes overlap, touching included.
 // Ownership boxes and padding are borrowed and never modified; a PairList owns its pairs.
 #pragma once
@@ -24,7 +25,8 @@ struct Box {
 using Box3f = Box<float>;
 using Box3d = Box<double>;
 
-/// The objects of a call, borrowed: the arrays must outlive it. At most 2^32 - 1 objects (in a join, both sets together).
+/// The objects of a call, borrowed: the arrays must outlive it. At most 2^32 - 1 objects (in a join, both sets
+/// together).
 struct Objects {
     std::variant<std::span<const Box3f>, std::span<const Box3d>> boxes;
     std::span<const double> padding = {};  ///< empty, or one clearance per object; finite, >= 0

@@ -1,8 +1,8 @@
 // Octal codes: paths of octant digits from the root of an octree (the paper's octnode codes).
 //
-// A code of level L is L digits 0..7, most significant first; the root has level 0. Held as a key of 3 * 21 bits, digits
-// left-aligned and zero below the level, beside the level; so comparing (key, level) is the pre-order of the octree: an
-// octant comes right before everything below it.
+// A code of level L is L digits 0..7, most significant first; the root has level 0. Held as a key of 3 * 21 bits,
+// digits left-aligned and zero below the level, beside the level; so comparing (key, level) is the pre-order of the
+// octree: an octant comes right before everything below it.
 //
 // Two written forms, both with the paper's digits 1..8 (our digit + 1; a 0 stands for "no octant at this level"):
 //   text     "{3,1,4}": the path; "{}" is the root

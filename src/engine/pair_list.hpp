@@ -1,7 +1,7 @@
 // The memory behind a PairList: blocks that writers fill side by side, and the chunks that make up the list.
 //
-// A block belongs to one writer at a time; `chunks` are runs within blocks, in the order of the list. reset() forgets the
-// chunks and keeps the blocks, so that a reused list does not page-fault again.
+// A block belongs to one writer at a time; `chunks` are runs within blocks, in the order of the list. reset() forgets
+// the chunks and keeps the blocks, so that a reused list does not page-fault again.
 #pragma once
 
 #include <mutex>

@@ -1,7 +1,7 @@
 // What every public call becomes: one Request, one Output, one Control, handed to Engine::run.
 //
-// The public calls check the options and the sizes before run is called; the boxes and the padding values themselves are
-// checked by the engine on its first pass over them, so that a good input is read once less.
+// The public calls check the options and the sizes before run is called; the boxes and the padding values themselves
+// are checked by the engine on its first pass over them, so that a good input is read once less.
 #pragma once
 
 #include <optional>

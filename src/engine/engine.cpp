@@ -1,0 +1,102 @@
+#include <cmath>
+#include <limits>
+#include <new>
+#include <string>
+
+#include "engine/pair_list.hpp"
+#include "engine/request.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
+
+void check_set(const Objects& set, const char* name) {
+    if (!set.padding.empty() && set.padding.size() != set.size()) {
+        throw Error(ErrorCode::bad_input, std::string(name) + ": " + std::to_string(set.padding.size()) +
+                                              " paddings for " + std::to_string(set.size()) + " objects");
+    }
+}
+
+void check(const Engine::Request& request) {
+    const double margin = request.options.margin;
+    if (!(margin >= 0 && std::isfinite(margin))) {
+        throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin) + ", not a finite number >= 0");
+    }
+    check_set(request.first, request.second != nullptr ? "first set" : "objects");
+    if (request.second != nullptr) check_set(*request.second, "second set");
+    const std::uint64_t size = request.first.size() + (request.second != nullptr ? request.second->size() : 0);
+    if (size > most_objects) {
+        throw Error(ErrorCode::resource_limit,
+                    std::to_string(size) + " objects; at most " + std::to_string(most_objects) + " fit into one call");
+    }
+}
+
+}  // namespace
+
+/// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
+/// after.
+Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
+    if (output.list != nullptr) output.list->storage().reset();
+    check(request);
+    try {
+        return run(request, output, {stop, request.options.progress});
+    } catch (const std::bad_alloc&) {
+        if (output.list != nullptr) output.list->storage().reset();
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    } catch (...) {
+        if (output.list != nullptr) output.list->storage().reset();
+        throw;
+    }
+}
+
+Summary Engine::find_pairs(const Objects& objects, PairList& pairs, const Options& options, std::stop_token stop) {
+    return call({objects, nullptr, options}, {.list = &pairs}, stop);
+}
+
+Summary Engine::find_pairs_between(const Objects& first, const Objects& second, PairList& pairs, const Options& options,
+                                   std::stop_token stop) {
+    return call({first, &second, options}, {.list = &pairs}, stop);
+}
+
+Summary Engine::stream_pairs(const Objects& objects, const PairSink& sink, const Options& options,
+                             std::stop_token stop) {
+    return call({objects, nullptr, options}, {.sink = &sink}, stop);
+}
+
+Summary Engine::stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
+                                     const Options& options, std::stop_token stop) {
+    return call({first, &second, options}, {.sink = &sink}, stop);
+}
+
+std::uint64_t Engine::count_pairs(const Objects& objects, const Options& options, std::stop_token stop) {
+    return call({objects, nullptr, options}, {}, stop).pairs;
+}
+
+std::uint64_t Engine::count_pairs_between(const Objects& first, const Objects& second, const Options& options,
+                                          std::stop_token stop) {
+    return call({first, &second, options}, {}, stop).pairs;
+}
+
+namespace {
+
+template <typename Real>
+std::vector<Pair> find_pairs_once(std::span<const Box<Real>> boxes, const Options& options) {
+    PairList pairs;
+    (void)make_local_engine()->find_pairs(Objects{boxes, {}}, pairs, options);
+    return pairs.to_vector();
+}
+
+}  // namespace
+
+std::vector<Pair> find_pairs(std::span<const Box3f> boxes, const Options& options) {
+    return find_pairs_once(boxes, options);
+}
+
+std::vector<Pair> find_pairs(std::span<const Box3d> boxes, const Options& options) {
+    return find_pairs_once(boxes, options);
+}
+
+}  // namespace octopair

@@ -1,0 +1,105 @@
+// Executors of the local engine: the threads of a team, and what becomes of the pairs that shares write.
+//
+// Each keeps the promise of executor.hpp: pairs in the order of the shares, whatever thread ran them.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "engine/pair_list.hpp"
+#include "octree/executor.hpp"
+
+namespace octopair {
+
+/// A writer that wants the pairs themselves.
+class FullWriter : public PairWriter {
+public:
+    bool counting() const final { return false; }
+    void write_count(std::uint64_t) final;
+};
+
+/// Steps without pairs.
+class TeamExecutor : public Executor {
+public:
+    explicit TeamExecutor(Team& team) : team_(team) {}
+    unsigned width() const override { return team_.threads(); }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void sort(std::span<SortItem> items) override { team_.sort(items); }
+
+protected:
+    Team& team() { return team_; }
+
+private:
+    Team& team_;
+};
+
+/// Counts pairs, all together.
+class CountExecutor final : public TeamExecutor {
+public:
+    using TeamExecutor::TeamExecutor;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    std::uint64_t pairs() const { return pairs_; }
+
+private:
+    std::atomic<std::uint64_t> pairs_ = 0;
+};
+
+/// Counts the pairs of each object as their `a`.
+class CountByObjectExecutor final : public TeamExecutor {
+public:
+    CountByObjectExecutor(Team& team, std::span<std::uint32_t> counts) : TeamExecutor(team), counts_(counts) {}
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+
+private:
+    std::span<std::uint32_t> counts_;
+};
+
+/// Objects [begin, end).
+struct ObjectRange {
+    std::uint64_t begin = 0;
+    std::uint64_t end = ~std::uint64_t(0);
+};
+
+/// Appends the pairs whose `a` is in `range` to a list.
+class ListExecutor final : public TeamExecutor {
+public:
+    /// More than `most` pairs end the scan by an OverBudget.
+    ListExecutor(Team& team, PairList::Storage& list, std::uint64_t most, ObjectRange range = {});
+    struct OverBudget {};
+
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+
+private:
+    class Writer;
+    struct Worker {
+        std::span<Pair> block;  // free part of the block in this worker's hands
+    };
+
+    PairList::Storage& list_;
+    std::uint64_t most_;
+    ObjectRange range_;
+    std::atomic<std::uint64_t> written_ = 0;
+    std::vector<Worker> workers_;
+};
+
+/// Hands pairs to a function on the calling thread, as they come, holding at most `buffer_pairs`.
+class StreamExecutor final : public TeamExecutor {
+public:
+    using Deliver = std::function<void(std::span<const Pair>)>;
+    /// `abandon` is asked to stop when the calling thread or a share fails, so that the other shares end soon.
+    StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer_pairs, std::stop_source abandon);
+
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+
+private:
+    Deliver deliver_;
+    std::uint64_t buffer_pairs_;
+    std::stop_source abandon_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,222 @@
+#include "geometry/box_source.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr const char* axis_names = "xyz";
+
+std::string number_text(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+}
+
+/// The largest float32 <= value, and no lower than the lowest finite one.
+float round_down(double value) {
+    if (value <= -double(FLT_MAX)) return -FLT_MAX;
+    if (value >= double(FLT_MAX)) return FLT_MAX;
+    const float nearest = float(value);
+    return double(nearest) > value ? std::nextafter(nearest, -FLT_MAX) : nearest;
+}
+
+float round_up(double value) { return -round_down(-value); }
+
+template <typename Real>
+bool is_box(const Box<Real>& box) {
+    bool good = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Also false for NaN; |finite| <= max is false for the infinities.
+        good &= box.min[axis] <= box.max[axis];
+        good &= std::abs(box.min[axis]) <= std::numeric_limits<Real>::max();
+        good &= std::abs(box.max[axis]) <= std::numeric_limits<Real>::max();
+    }
+    return good;
+}
+
+bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
+
+bool holds_float32(const Objects& set) { return std::holds_alternative<std::span<const Box3f>>(set.boxes); }
+
+Box3d wide_box(const Objects& set, std::size_t index) {
+    return std::visit(
+        [&](auto boxes) {
+            Box3d wide;
+            for (int axis = 0; axis < 3; ++axis) {
+                wide.min[axis] = double(boxes[index].min[axis]);
+                wide.max[axis] = double(boxes[index].max[axis]);
+            }
+            return wide;
+        },
+        set.boxes);
+}
+
+}  // namespace
+
+BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
+    : first_(&first),
+      second_(second),
+      first_size_(first.size()),
+      second_size_(second != nullptr ? second->size() : 0),
+      margin_(margin) {
+    const auto plain = [](const Objects& set) { return holds_float32(set) && set.padding.empty(); };
+    exact_ = margin == 0 && plain(first) && (second == nullptr || plain(*second));
+    if (!exact_) choose_origin();
+}
+
+void BoxSource::choose_origin() {
+    // The median of a strided sample: near the bulk, whatever a few far objects do.
+    constexpr std::size_t samples = 255;
+    const std::size_t count = std::min(samples, size());
+    if (count == 0) return;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::array<double, samples> lows{};
+        std::size_t used = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            double padding = 0;
+            const double low = box(std::uint32_t(i * size() / count), padding).min[axis];
+            if (std::abs(low) <= DBL_MAX) lows[used++] = low;
+        }
+        if (used == 0) continue;
+        std::nth_element(lows.begin(), lows.begin() + std::ptrdiff_t(used / 2), lows.begin() + std::ptrdiff_t(used));
+        origin_[std::size_t(axis)] = lows[used / 2];
+    }
+}
+
+Box3d BoxSource::box(std::uint32_t object, double& padding) const {
+    const bool in_first = object < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t index = in_first ? object : object - first_size_;
+    padding = set.padding.empty() ? 0 : set.padding[index];
+    return wide_box(set, index);
+}
+
+bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
+    double padding_a = 0;
+    double padding_b = 0;
+    const Box3d box_a = box(a, padding_a);
+    const Box3d box_b = box(b, padding_b);
+    const double reach = margin_ + (padding_a + padding_b);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::max(box_a.min[axis] - box_b.max[axis], box_b.min[axis] - box_a.max[axis]) <= reach)) return false;
+    }
+    return true;
+}
+
+bool BoxSource::certain(const Entry& a, const Entry& b) const {
+    // A bound of an entry is off by at most 2^-23 of itself (rounding to float32) plus 2^-47 of the numbers it was made
+    // from (the widening's own error bound in rounded()); four times that separates real overlaps from made ones.
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = std::abs(origin_[std::size_t(axis)]);
+        const double size = std::max({std::abs(double(a.min[axis])), std::abs(double(a.max[axis])),
+                                      std::abs(double(b.min[axis])), std::abs(double(b.max[axis]))});
+        const double slack = size * 0x1p-20 + origin * 0x1p-44 + double(FLT_MIN);
+        const double depth =
+            std::min(double(a.max[axis]) - double(b.min[axis]), double(b.max[axis]) - double(a.min[axis]));
+        // The widening may exceed the entry's own coordinates, but then so does the box's own extent: it is in `size`.
+        if (!(depth > slack) || size >= double(FLT_MAX)) return false;
+    }
+    return true;
+}
+
+Entry BoxSource::rounded(const Box3d& box, double widening) const {
+    Entry entry{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = origin_[std::size_t(axis)];
+        // Without widening, subtraction and rounding are monotone and lose no pair. With it, the rule's own roundings
+        // and these must be covered: each is below 2^-52 of a number no larger than this sum.
+        const double size = std::abs(box.min[axis]) + std::abs(box.max[axis]) + std::abs(origin) + widening;
+        const double extra = widening > 0 ? widening + size * 0x1p-48 : 0;
+        entry.min[axis] = round_down((box.min[axis] - origin) - extra);
+        entry.max[axis] = round_up((box.max[axis] - origin) + extra);
+    }
+    return entry;
+}
+
+template <typename Real>
+bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
+                         std::span<Entry> out) const {
+    bool good = true;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const Box<Real>& box = boxes[begin + i];
+        good &= is_box(box);
+        if (exact_) {
+            for (int axis = 0; axis < 3; ++axis) {
+                out[i].min[axis] = float(box.min[axis]);
+                out[i].max[axis] = float(box.max[axis]);
+            }
+            continue;
+        }
+        const double own = padding.empty() ? 0 : padding[begin + i];
+        good &= is_padding(own);
+        Box3d wide;
+        std::copy_n(box.min, 3, wide.min);
+        std::copy_n(box.max, 3, wide.max);
+        out[i] = rounded(wide, margin_ / 2 + own);
+    }
+    return good;
+}
+
+bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
+    if (join() && begin < first_size_ && begin + out.size() > first_size_) {
+        const std::size_t of_first = first_size_ - begin;
+        const bool good = load(begin, out.first(of_first));
+        return load(first_size_, out.subspan(of_first)) && good;
+    }
+    const bool in_first = begin < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t offset = in_first ? 0 : first_size_;
+    const bool good =
+        std::visit([&](auto boxes) { return load_set(boxes, set.padding, begin - offset, out); }, set.boxes);
+    const std::uint32_t mask = !join() ? 0 : in_first ? first_set : second_set;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i].object = std::uint32_t(begin + i);
+        out[i].mask = mask;
+    }
+    return good;
+}
+
+std::optional<std::string> BoxSource::fault(const Objects& set, std::size_t index) const {
+    const Box3d box = wide_box(set, index);
+    const std::string which =
+        std::string(&set == first_ ? "" : "of the second set ") + "object " + std::to_string(index);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, axis_names[axis]);
+        for (const auto& [value, end] : {std::pair{box.min[axis], "min "}, std::pair{box.max[axis], "max "}}) {
+            if (!std::isfinite(value))
+                return which + ": " + end + name + " is " + number_text(value) + ", not a finite number";
+        }
+        if (box.min[axis] > box.max[axis]) {
+            return which + ": min " + name + " " + number_text(box.min[axis]) + " is above max " + name + " " +
+                   number_text(box.max[axis]);
+        }
+    }
+    if (!set.padding.empty() && !is_padding(set.padding[index])) {
+        return which + ": padding is " + number_text(set.padding[index]) + ", not a finite number >= 0";
+    }
+    return std::nullopt;
+}
+
+void BoxSource::refuse(std::size_t begin) const {
+    for (std::size_t i = begin; i < size(); ++i) {
+        const bool in_first = i < first_size_;
+        const auto found = fault(in_first ? *first_ : *second_, in_first ? i : i - first_size_);
+        if (found) throw Error(ErrorCode::bad_input, *found);
+    }
+    throw Error(ErrorCode::bad_input, "an object changed while it was read");
+}
+
+bool EntrySpan::load(std::size_t begin, std::span<Entry> out) const {
+    std::copy_n(entries_.begin() + std::ptrdiff_t(begin), out.size(), out.begin());
+    return true;
+}
+
+}  // namespace octopair

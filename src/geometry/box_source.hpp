@@ -1,0 +1,79 @@
+// BoxSource: the caller's boxes as entries, checked and rounded outward; and the final word on a pair.
+//
+// Float32 boxes without margin and padding pass through unchanged (`exact()`): overlap of entries is the answer. All
+// others are moved to an origin near the bulk, widened by margin / 2 + padding and rounded outward to float32. Each of
+// these operations is monotone, or bounded by an error that is added, so a pair that counts is never lost; a hit whose
+// boxes overlap by less than the rounding could make is settled by counts(), on the caller's own numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "geometry/entry.hpp"
+#include "octopair/objects.hpp"
+
+namespace octopair {
+
+/// Where entries come from: the caller's boxes, or the entries of a crowded octant.
+class EntrySource {
+public:
+    virtual ~EntrySource() = default;
+    virtual std::size_t size() const = 0;
+    /// Writes entries [begin, begin + out.size()); false if one of them is not a valid box.
+    virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
+};
+
+class BoxSource final : public EntrySource {
+public:
+    /// `second` may be null (pairs within `first`). Borrows both.
+    BoxSource(const Objects& first, const Objects* second, double margin);
+
+    std::size_t size() const override { return first_size_ + second_size_; }
+    bool load(std::size_t begin, std::span<Entry> out) const override;
+
+    bool join() const { return second_ != nullptr; }
+    /// Objects of the second set of a join have indices from here on; otherwise 0.
+    std::uint32_t second_begin() const { return join() ? std::uint32_t(first_size_) : 0; }
+    /// True if overlapping entries are a pair, without a further test.
+    bool exact() const { return exact_; }
+    /// True if the hit is deep enough that rounding cannot have made it.
+    bool certain(const Entry& a, const Entry& b) const;
+    /// The rule of objects.hpp, in float64, on the caller's numbers.
+    bool counts(std::uint32_t a, std::uint32_t b) const;
+
+    /// Throws Error{bad_input} that names the first object from `begin` on which is not a box, and its value.
+    [[noreturn]] void refuse(std::size_t begin) const;
+
+private:
+    template <typename Real>
+    bool load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
+                  std::span<Entry> out) const;
+    Entry rounded(const Box3d& box, double widening) const;
+    std::optional<std::string> fault(const Objects& set, std::size_t index) const;
+    void choose_origin();
+    Box3d box(std::uint32_t object, double& padding) const;
+
+    const Objects* first_;
+    const Objects* second_;
+    std::size_t first_size_;
+    std::size_t second_size_;
+    double margin_;
+    bool exact_;
+    std::array<double, 3> origin_ = {0, 0, 0};
+};
+
+/// Entries already made, such as those of a crowded octant. Borrows them.
+class EntrySpan final : public EntrySource {
+public:
+    explicit EntrySpan(std::span<const Entry> entries) : entries_(entries) {}
+    std::size_t size() const override { return entries_.size(); }
+    bool load(std::size_t begin, std::span<Entry> out) const override;
+
+private:
+    std::span<const Entry> entries_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,39 @@
+// Entry: a box as the octree carries it, and the rule that reports each pair once.
+//
+// `min` and `max` are the caller's box in float32, moved to a near origin, widened by margin and padding and rounded
+// outward, so boxes of a pair that counts always overlap here (box_source.hpp).
+//
+// `mask` makes the scan report a pair where, and only where, it should: two entries of one octant are a pair only if
+// (a.mask & b.mask) == 0.
+//   bits 0..2  the box begins before the octant on x, y, z. The low corner of two boxes' intersection lies in the
+//   octant
+//              exactly if on each axis at least one of them begins there, so each pair is reported by one octant only
+//              (the entry classes of Tsitsigkos et al., arXiv 2307.09256).
+//   bit 3, 4   the object belongs to the first, the second set of a join: pairs within a set do not count.
+#pragma once
+
+#include <cstdint>
+
+namespace octopair {
+
+struct alignas(32) Entry {
+    float min[3];
+    float max[3];
+    std::uint32_t object;
+    std::uint32_t mask;
+};
+static_assert(sizeof(Entry) == 32);
+
+inline constexpr std::uint32_t begins_before = 7;  ///< the three class bits
+inline constexpr std::uint32_t first_set = 8;
+inline constexpr std::uint32_t second_set = 16;
+
+/// True if the closed boxes overlap: the specification of what the sweep kernels compute.
+inline bool overlap(const Entry& a, const Entry& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
+    }
+    return true;
+}
+
+}  // namespace octopair

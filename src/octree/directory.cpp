@@ -1,0 +1,152 @@
+#include "octree/directory.hpp"
+
+#include <algorithm>
+
+namespace octopair {
+
+namespace {
+
+// Found by measurement on the scenes of docs/scenes.md; they change the shape of the tree, never the set of pairs.
+constexpr double always_split = 2048;  // objects: more would not stay in the cache while they are swept
+constexpr double never_split = 128;    // objects
+constexpr double crowded_window = 40;  // objects that a sweep tests for each object
+constexpr double ghost_growth = 1.45;  // entries below a node for each object that begins in it
+constexpr double handed_growth = 2.0;  // entries and boxes handed down, after a split against before
+constexpr std::uint64_t table_cells = 1 << 16;
+
+/// The octant `digit` of `node`, as a leaf.
+Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {
+    Node octant{node.lo, node.level + 1, parent, 0, Node::no_children};
+    const std::uint32_t side = cells_per_axis >> octant.level;
+    for (unsigned axis = 0; axis < 3; ++axis) octant.lo[axis] += (digit >> axis & 1u) * side;
+    return octant;
+}
+
+}  // namespace
+
+/// What a subtree is grown from; lists are positions in `sample`.
+struct Directory::Growth {
+    std::span<const CellBox> sample;
+    double weight;
+
+    bool crowded(const Node& node, const std::vector<std::uint32_t>& inside) const;
+    std::vector<std::uint32_t> touching(const Node& node, const std::vector<std::uint32_t>& boxes) const;
+    std::size_t beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const;
+};
+
+bool Directory::Growth::crowded(const Node& node, const std::vector<std::uint32_t>& inside) const {
+    const double objects = double(inside.size()) * weight;
+    if (objects <= never_split) return false;
+    if (objects > always_split) return true;
+    double window = objects;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        std::uint32_t first = cells_per_axis;
+        std::uint32_t last = 0;
+        std::uint64_t extents = 0;
+        const std::uint32_t end = node.lo[axis] + ((cells_per_axis >> node.level) - 1);
+        for (const std::uint32_t i : inside) {
+            const std::uint32_t lo = std::max(sample[i].lo[axis], node.lo[axis]);
+            first = std::min(first, lo);
+            last = std::max(last, lo);
+            extents += std::min(sample[i].hi[axis], end) - lo + 1;
+        }
+        const double extent = double(extents) / double(inside.size());
+        window = std::min(window, objects * extent / (double(last - first) + extent));
+    }
+    return window > crowded_window;
+}
+
+std::vector<std::uint32_t> Directory::Growth::touching(const Node& node,
+                                                       const std::vector<std::uint32_t>& boxes) const {
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t i : boxes) {
+        if (node.touches(sample[i])) found.push_back(i);
+    }
+    return found;
+}
+
+std::size_t Directory::Growth::beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const {
+    return std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](std::uint32_t i) {
+        const Cell& lo = sample[i].lo;
+        return lo[0] >= node.lo[0] && lo[1] >= node.lo[1] && lo[2] >= node.lo[2];
+    }));
+}
+
+Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double weight) {
+    Growth growth{sample, weight};
+    std::vector<std::uint32_t> all(sample.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    const Node root{.lo = {0, 0, 0}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
+    grow(growth, root, all, {});
+    make_table(frame);
+}
+
+/// Appends `start` and its subtree. `sample`: what touches the octant and is not too large for its level; `handed`:
+/// what touches it and is kept above.
+NodeIndex Directory::grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
+                          const std::vector<std::uint32_t>& handed) {
+    const NodeIndex index = NodeIndex(nodes_.size());
+    nodes_.push_back(start);
+    std::vector<std::uint32_t> kept = handed;
+    std::vector<std::uint32_t> inside;
+    for (const std::uint32_t i : sample) {
+        (natural_level(growth.sample[i]) > start.level ? inside : kept).push_back(i);
+    }
+    std::array<std::vector<std::uint32_t>, 8> inside_child, handed_child;
+    bool split = start.level < deepest && growth.crowded(start, inside);
+    if (split) {
+        std::size_t entries = 0;
+        std::size_t copies = 0;
+        for (unsigned digit = 0; digit < 8; ++digit) {
+            const Node octant = child_octant(start, index, digit);
+            inside_child[digit] = growth.touching(octant, inside);
+            handed_child[digit] = growth.touching(octant, kept);
+            entries += inside_child[digit].size();
+            copies += handed_child[digit].size();
+        }
+        split = double(entries) <= ghost_growth * double(growth.beginning_in(start, inside)) &&
+                double(entries + copies) <= handed_growth * double(inside.size() + kept.size());
+    }
+    if (split) {
+        const std::uint32_t row = std::uint32_t(children_.size());
+        nodes_[index].children = row;
+        children_.emplace_back();
+        for (unsigned digit = 0; digit < 8; ++digit) {
+            const Node octant = child_octant(start, index, digit);
+            const NodeIndex child = grow(growth, octant, inside_child[digit], handed_child[digit]);
+            children_[row][digit] = child;
+        }
+    }
+    nodes_[index].next = NodeIndex(nodes_.size());
+    return index;
+}
+
+void Directory::make_table(const Frame& frame) {
+    unsigned depth = 0;
+    for (const Node& node : nodes_) depth = std::max(depth, node.level);
+    const auto rows = [&](unsigned level, unsigned axis) { return (frame.last_cell(axis) >> (deepest - level)) + 1; };
+    unsigned level = 0;
+    while (level < depth &&
+           std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= table_cells) {
+        ++level;
+    }
+    std::vector<NodeIndex> table;
+    for (std::uint32_t z = 0; z < rows(level, 2); ++z) {
+        for (std::uint32_t y = 0; y < rows(level, 1); ++y) {
+            for (std::uint32_t x = 0; x < rows(level, 0); ++x) {
+                const unsigned shift = deepest - level;
+                const Cell cell = {x << shift, y << shift, z << shift};
+                NodeIndex node = 0;
+                while (nodes_[node].level < level && !nodes_[node].leaf()) {
+                    node = child(nodes_[node], digit_at(cell, nodes_[node].level));
+                }
+                table.push_back(node);
+            }
+        }
+    }
+    table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};
+    table_shift_ = deepest - level;
+    table_ = std::move(table);
+}
+
+}  // namespace octopair

@@ -1,0 +1,88 @@
+// Directory: the octants of a linear octree in pre-order, grown from a sample of the scene.
+//
+// Invariants
+//   nodes()[0] is the root; a node's subtree is nodes [i, node.next), its children (all eight or none) in digit order.
+//   The leaves tile the whole frame, so every cell lies in exactly one leaf.
+//   The tree is a function of the sample alone, which is a function of the objects' global indices: never of threads.
+//
+// A node is split while its octant is crowded: while it holds too many objects, or a sweep along its best axis would
+// test too many; but not where splitting would multiply entries (boxes as large as the octant), nor where the boxes
+// handed down from above would be copied into the children without being thinned.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/frame.hpp"
+
+namespace octopair {
+
+/// A position in Directory::nodes().
+using NodeIndex = std::uint32_t;
+
+struct Node {
+    Cell lo;                 ///< its first cell on each axis
+    unsigned level;          ///< its side is 2^(21 - level) cells
+    NodeIndex parent;        ///< the root is its own
+    NodeIndex next;          ///< the first node after its subtree
+    std::uint32_t children;  ///< row of the child table; no_children for a leaf
+
+    static constexpr std::uint32_t no_children = ~std::uint32_t(0);
+    bool leaf() const { return children == no_children; }
+    OctalCode code() const { return OctalCode::from_cell(lo, level); }
+
+    bool touches(const CellBox& box) const {
+        bool touched = true;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const std::uint32_t last = lo[axis] + ((cells_per_axis >> level) - 1);
+            touched &= box.lo[axis] <= last && box.hi[axis] >= lo[axis];
+        }
+        return touched;
+    }
+};
+
+class Directory {
+public:
+    /// `weight`: how many objects one box of the sample stands for.
+    Directory(const Frame& frame, std::span<const CellBox> sample, double weight);
+
+    std::span<const Node> nodes() const { return nodes_; }
+    NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
+
+    /// The deepest node of at most `level` that holds the cell.
+    NodeIndex find(const Cell& cell, unsigned level) const {
+        NodeIndex found = table_[table_row(cell)];
+        while (nodes_[found].level > level) found = nodes_[found].parent;
+        while (nodes_[found].level < level && !nodes_[found].leaf())
+            found = child(nodes_[found], digit_at(cell, nodes_[found].level));
+        return found;
+    }
+    /// The leaf that holds the cell.
+    NodeIndex leaf(const Cell& cell) const { return find(cell, deepest); }
+
+    /// Of the octant one level below `level`.
+    static unsigned digit_at(const Cell& cell, unsigned level) {
+        const unsigned bit = deepest - 1 - level;
+        return (cell[0] >> bit & 1u) | (cell[1] >> bit & 1u) << 1 | (cell[2] >> bit & 1u) << 2;
+    }
+
+private:
+    struct Growth;
+    NodeIndex grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
+                   const std::vector<std::uint32_t>& handed);
+    void make_table(const Frame& frame);
+    std::size_t table_row(const Cell& cell) const {
+        return (std::size_t(cell[2] >> table_shift_) * table_size_[1] + (cell[1] >> table_shift_)) * table_size_[0] +
+               (cell[0] >> table_shift_);
+    }
+
+    std::vector<Node> nodes_;
+    std::vector<std::array<NodeIndex, 8>> children_;
+    std::vector<NodeIndex> table_;  // node of at most the table's level at each of its cells, row-major
+    Cell table_size_ = {1, 1, 1};
+    unsigned table_shift_ = deepest;
+};
+
+}  // namespace octopair

@@ -1,0 +1,57 @@
+// Executor: how the steps of the algorithm are shared out. The steps themselves know no threads.
+//
+// Shares are numbered; an executor may run them in any order and side by side, and hands each a place to put its pairs
+// such that pairs end up in the order of the shares.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "octopair/objects.hpp"
+#include "parallel/team.hpp"
+
+namespace octopair {
+
+/// Where one share's pairs go, in order. One thread at a time.
+class PairWriter {
+public:
+    virtual ~PairWriter() = default;
+    /// The rows may be counted only: then write_count is called in place of write.
+    virtual bool counting() const = 0;
+    virtual void write(std::span<const Pair> pairs) = 0;
+    virtual void write_count(std::uint64_t pairs) = 0;
+};
+
+class Executor {
+public:
+    virtual ~Executor() = default;
+    /// How many shares can run side by side.
+    virtual unsigned width() const = 0;
+    /// Calls body(i) for each i below `count`.
+    virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
+    /// The same, with pairs: those of share i come before those of share i + 1.
+    virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) = 0;
+    virtual void sort(std::span<SortItem> items) = 0;
+};
+
+/// Runs all shares on the calling thread, pairs to one writer: how a share runs steps within itself.
+class SerialExecutor final : public Executor {
+public:
+    explicit SerialExecutor(PairWriter& writer) : writer_(writer) {}
+    unsigned width() const override { return 1; }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+        for (std::size_t i = 0; i < count; ++i) body(i);
+    }
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
+        for (std::size_t i = 0; i < count; ++i) body(i, writer_);
+    }
+    void sort(std::span<SortItem> items) override { std::sort(items.begin(), items.end()); }
+
+private:
+    PairWriter& writer_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,90 @@
+#include "octree/frame.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <vector>
+
+namespace octopair {
+
+namespace {
+
+/// How far the bulk of the objects reaches on one axis, and how long a typical one is.
+struct AxisFit {
+    double begin = 0, end = 0, typical = 0;
+    double extent() const { return end - begin; }
+};
+
+double quantile(std::vector<double>& values, std::size_t rank) {
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+    return values[rank];
+}
+
+/// Between the 1/64 quantiles plus a quarter on each side, but no further than the sample itself reaches.
+AxisFit fit_axis(std::span<const Entry> sample, unsigned axis) {
+    std::vector<double> lows, highs, extents;
+    for (const Entry& entry : sample) {
+        const double low = double(entry.min[axis]);
+        const double high = double(entry.max[axis]);
+        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
+        lows.push_back(low);
+        highs.push_back(high);
+        extents.push_back(high - low);
+    }
+    if (lows.empty()) return {};
+    const std::size_t cut = lows.size() / 64;
+    const double first = quantile(lows, cut);
+    const double last = quantile(highs, highs.size() - 1 - cut);
+    const double quarter = std::max(0.0, last - first) / 4;
+    AxisFit fit;
+    fit.begin = std::max(*std::min_element(lows.begin(), lows.end()), first - quarter);
+    fit.end = std::max(fit.begin, std::min(*std::max_element(highs.begin(), highs.end()), last + quarter));
+    fit.typical = std::max(0.0, quantile(extents, extents.size() / 2));
+    return fit;
+}
+
+/// About the distance between neighbours: a power of two near the cube root of volume / objects.
+double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
+    int exponent = -int(std::bit_width(objects));
+    int dimensions = 0;
+    for (const AxisFit& axis : axes) {
+        if (axis.extent() <= 0) continue;
+        int own = 0;
+        (void)std::frexp(axis.extent(), &own);
+        exponent += own;
+        ++dimensions;
+    }
+    return dimensions == 0 ? 1.0 : std::ldexp(1.0, exponent / dimensions);
+}
+
+}  // namespace
+
+Frame Frame::fit(std::span<const Entry> sample, std::uint64_t objects) {
+    std::array<AxisFit, 3> axes;
+    for (unsigned axis = 0; axis < 3; ++axis) axes[axis] = fit_axis(sample, axis);
+    const double neighbour = spacing(axes, objects);
+
+    // An octant has the shape of one object with the free space around it.
+    std::array<double, 3> shape{};
+    double most_octants = 0;
+    Frame frame;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        shape[axis] = neighbour + axes[axis].typical;
+        const double octants = axes[axis].extent() / shape[axis];
+        if (octants > most_octants) {
+            most_octants = octants;
+            frame.long_axis_ = axis;
+        }
+    }
+    shape[frame.long_axis_] *= 4;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double length = shape[axis] * most_octants;
+        const double scale = length > 0 ? double(cells_per_axis) / length : 1.0;
+        frame.origin_[axis] = float(axes[axis].begin);
+        frame.scale_[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
+        frame.last_[axis] = float(frame.cell(float(axes[axis].end), axis));
+    }
+    return frame;
+}
+
+}  // namespace octopair

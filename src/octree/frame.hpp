@@ -1,0 +1,73 @@
+// Frame: the octree's space, and the one monotone map from coordinates to its cells.
+//
+// Each axis has 2^21 cells (the deepest level of an octal code). cell() never falls as the coordinate grows, and is
+// used for everything: which octant a box begins in, which octants it touches, and which octant reports a pair. So
+// rounding at octant borders can neither lose nor duplicate a pair, and what lies outside the frame is clamped into its
+// border cells.
+//
+// fit() chooses the frame from a sample: bounds of the bulk (a far-out object does not stretch them), octants longer on
+// axes on which objects are longer, and four times longer on the axis that separates the objects best, along which
+// octants are swept. It uses no library function whose last bit could differ between machines.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+
+#include "geometry/entry.hpp"
+#include "octopair/octal_code.hpp"
+
+namespace octopair {
+
+using Cell = std::array<std::uint32_t, 3>;
+
+inline constexpr unsigned deepest = OctalCode::max_level;
+inline constexpr std::uint32_t cells_per_axis = std::uint32_t(1) << deepest;
+
+/// The cells that a box touches on each axis, both ends included.
+struct CellBox {
+    Cell lo, hi;
+};
+
+/// The deepest level at which the box touches at most two octants on each axis, so at most eight.
+inline unsigned natural_level(const CellBox& box) {
+    const std::uint32_t extent = (box.hi[0] - box.lo[0]) | (box.hi[1] - box.lo[1]) | (box.hi[2] - box.lo[2]);
+    return deepest - unsigned(std::bit_width(extent));
+}
+
+class Frame {
+public:
+    Frame() = default;
+    /// `objects`: how many the sample stands for. The sample may be empty.
+    static Frame fit(std::span<const Entry> sample, std::uint64_t objects);
+
+    std::uint32_t cell(float coordinate, unsigned axis) const {
+        // Clamped before the conversion: infinity (of an overflowing difference) is a border cell like any far value.
+        const float scaled = (coordinate - origin_[axis]) * scale_[axis];
+        const float below = scaled > 0.0f ? scaled : 0.0f;
+        return std::uint32_t(below < last_[axis] ? below : last_[axis]);
+    }
+
+    CellBox cells(const Entry& entry) const {
+        CellBox box;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            box.lo[axis] = cell(entry.min[axis], axis);
+            box.hi[axis] = cell(entry.max[axis], axis);
+        }
+        return box;
+    }
+
+    /// The axis that octants are long on and are swept along first.
+    unsigned long_axis() const { return long_axis_; }
+    /// The last cell of an axis that a box can touch.
+    std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(last_[axis]); }
+
+private:
+    std::array<float, 3> origin_ = {0, 0, 0};
+    std::array<float, 3> scale_ = {1, 1, 1};
+    std::array<float, 3> last_ = {float(cells_per_axis - 1), float(cells_per_axis - 1), float(cells_per_axis - 1)};
+    unsigned long_axis_ = 0;
+};
+
+}  // namespace octopair

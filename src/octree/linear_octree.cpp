@@ -1,0 +1,197 @@
+#include "octree/linear_octree.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t sample_stride = 16;  // one object of so many is sampled
+constexpr std::size_t batch_size = 512;    // objects loaded at a time: their entries stay in the first cache
+constexpr NodeIndex crossing = ~NodeIndex(0);
+
+/// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
+std::size_t jitter(std::size_t i) { return std::size_t((std::uint64_t(i) * 0x9E3779B97F4A7C15ull) >> 60); }
+static_assert(sample_stride == 16);
+
+bool within(const Node& node, const CellBox& box) {
+    const std::uint32_t last = (cells_per_axis >> node.level) - 1;
+    return ((box.hi[0] - node.lo[0] <= last) & (box.hi[1] - node.lo[1] <= last) & (box.hi[2] - node.lo[2] <= last)) !=
+           0;
+}
+
+/// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the
+/// frame's low border (the box then begins before the octant that this frame was made within).
+std::uint32_t mask_in(const Node& node, std::uint32_t brought, std::uint32_t begins) {
+    std::uint32_t border = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) border |= std::uint32_t(node.lo[axis] == 0) << axis;
+    return (brought & ~begins_before) | begins | (brought & border);
+}
+
+/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants: at its natural
+/// level the corners of the box reach them all; where several corners lie in one coarser leaf, the lowest counts.
+template <typename Place>
+void for_each_octant(const Directory& directory, const CellBox& box, Place&& place) {
+    const unsigned level = natural_level(box);
+    const unsigned shift = deepest - level;
+    unsigned crossed = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        crossed |= unsigned(box.lo[axis] >> shift != box.hi[axis] >> shift) << axis;
+    }
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        if ((corner & ~crossed) != 0) continue;
+        Cell cell = box.lo;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            if (corner >> axis & 1u) cell[axis] = box.hi[axis];
+        }
+        const NodeIndex node = directory.find(cell, level);
+        const Cell& first = directory.nodes()[node].lo;
+        unsigned begins = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) begins |= unsigned(box.lo[axis] < first[axis]) << axis;
+        if ((corner & ~begins) == 0) place(node, begins);
+    }
+}
+
+double seconds_since(std::chrono::steady_clock::time_point& last) {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last).count();
+    last = now;
+    return seconds;
+}
+
+void check(const std::stop_token& stop) {
+    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+}
+
+}  // namespace
+
+/// A share of the objects.
+struct LinearOctree::Block {
+    std::size_t begin = 0, end = 0;
+    bool valid = true;
+    std::vector<std::uint32_t> crossers;   // positions of the boxes that do not lie within their home octant
+    std::vector<std::uint64_t> inside_at;  // per node: first the number of entries, after merge the next one's place
+    std::vector<std::uint64_t> crossing_at;
+};
+
+void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
+    auto clock = std::chrono::steady_clock::now();
+    const std::vector<Entry> sampled = sample(source);
+    frame_ = Frame::fit(sampled, source.size());
+    std::vector<CellBox> cells(sampled.size());
+    std::transform(sampled.begin(), sampled.end(), cells.begin(),
+                   [&](const Entry& entry) { return frame_.cells(entry); });
+    directory_ = Directory(frame_, cells, double(source.size()) / double(std::max<std::size_t>(1, cells.size())));
+    check(stop);
+
+    homes_.resize_discard(source.size());
+    const std::size_t enough = std::max<std::size_t>(1, source.size() / (8 * batch_size));
+    std::vector<Block> blocks(std::min<std::size_t>(executor.width() == 1 ? 1 : executor.width() * 4, enough));
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        blocks[i].begin = source.size() * i / blocks.size();
+        blocks[i].end = source.size() * (i + 1) / blocks.size();
+    }
+    executor.for_each(blocks.size(), [&](std::size_t i) { encode(source, blocks[i], stop); });
+    seconds_.encode = seconds_since(clock);
+    const auto invalid = std::find_if(blocks.begin(), blocks.end(), [](const Block& block) { return !block.valid; });
+    if (invalid != blocks.end()) throw Invalid{invalid->begin};
+
+    merge(blocks);
+    seconds_.merge = seconds_since(clock);
+    entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
+    executor.for_each(blocks.size(), [&](std::size_t i) { sort(source, blocks[i], stop); });
+    seconds_.sort = seconds_since(clock);
+}
+
+std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
+    const std::size_t size = source.size();
+    std::vector<Entry> sampled((size + sample_stride - 1) / sample_stride);
+    for (std::size_t i = 0; i < sampled.size(); ++i) {
+        const std::size_t position = std::min(size - 1, i * sample_stride + jitter(i));
+        (void)source.load(position, {&sampled[i], 1});  // what is invalid is found by encode, with its position
+    }
+    return sampled;
+}
+
+void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_token stop) {
+    const std::size_t node_count = nodes().size();
+    block.inside_at.assign(node_count + 1, 0);  // the last one counts the boxes that cross, which are not inside any
+    block.crossing_at.assign(node_count, 0);
+    block.crossers.resize(block.end - block.begin);
+    std::size_t crossers = 0;
+    std::array<Entry, batch_size> batch;
+    for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
+        if ((begin / batch_size) % 256 == 0) check(stop);
+        const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
+        if (!source.load(begin, entries)) {
+            block.valid = false;
+            return;
+        }
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const CellBox cells = frame_.cells(entries[i]);
+            const NodeIndex home = directory_.leaf(cells.lo);
+            // No branch on whether a box crosses: mispredicting it cost more than everything else here.
+            const bool inside = within(nodes()[home], cells);
+            const NodeIndex slot = inside ? home : NodeIndex(node_count);
+            homes_[begin + i] = slot;
+            ++block.inside_at[slot];
+            block.crossers[crossers] = std::uint32_t(begin + i);
+            crossers += inside ? 0 : 1;
+        }
+    }
+    block.crossers.resize(crossers);
+    block.crossers.shrink_to_fit();
+    Entry entry;
+    for (const std::uint32_t position : block.crossers) {
+        (void)source.load(position, {&entry, 1});
+        for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned) { ++block.crossing_at[node]; });
+    }
+}
+
+void LinearOctree::merge(std::span<Block> blocks) {
+    begins_.resize(nodes().size() + 1);
+    std::uint64_t at = 0;
+    const auto place = [&](std::uint64_t& count) { at += std::exchange(count, at); };
+    for (std::size_t node = 0; node < nodes().size(); ++node) {
+        begins_[node] = at;
+        for (Block& block : blocks) place(block.inside_at[node]);
+        for (Block& block : blocks) place(block.crossing_at[node]);
+    }
+    begins_.back() = at;
+    // Beyond the entries each block has one to write those to that are not inside an octant.
+    for (Block& block : blocks) block.inside_at.back() = at++;
+}
+
+void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token stop) {
+    const std::size_t outside = nodes().size();
+    std::array<Entry, batch_size> batch;
+    for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
+        if ((begin / batch_size) % 256 == 0) check(stop);
+        const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
+        (void)source.load(begin, entries);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const NodeIndex slot = homes_[begin + i];
+            std::uint64_t& at = block.inside_at[slot];
+            entries_[std::size_t(at)] = entries[i];
+            if ((entries[i].mask & begins_before) != 0 && slot != outside) {
+                entries_[std::size_t(at)].mask = mask_in(nodes()[slot], entries[i].mask, 0);
+            }
+            at += slot != outside ? 1 : 0;
+        }
+    }
+    Entry entry;
+    for (const std::uint32_t position : block.crossers) {
+        (void)source.load(position, {&entry, 1});
+        const std::uint32_t brought = entry.mask;
+        for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned begins) {
+            entry.mask = mask_in(nodes()[node], brought, begins);
+            entries_[std::size_t(block.crossing_at[node]++)] = entry;
+        });
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,71 @@
+// LinearOctree: the entries of all objects, sorted by octal code, with the directory of where each octant's begin.
+//
+// Invariants
+//   Every octant that a box touches has an entry of it, in a leaf or, where the box is too large for at most eight
+//   smaller octants, in the octant above (its natural level): what is stored there occupies all below.
+//   entries(node) lists first the boxes that lie within the octant, then those that cross its border, each ascending by
+//   object; class bits are set as entry.hpp says.
+//   All of it is a function of the source alone; blocks of objects are only the shares of work.
+//
+// Steps (each over ranges, so that threads, processes and ranks can share them out)
+//   encode  sample -> frame and directory; each object -> its home octant, and counts per octant
+//   merge   counts of all blocks -> where each block's entries of each octant go
+//   sort    entries to their places: an MSD radix sort by octal code
+//
+// Source: Lucchesi, Egbert, Harris 2014, sections 3.2 and 3.3.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "geometry/box_source.hpp"
+#include "octree/directory.hpp"
+#include "octree/executor.hpp"
+#include "octree/frame.hpp"
+
+namespace octopair {
+
+struct BuildSeconds {
+    double encode = 0, sort = 0, merge = 0;
+};
+
+class LinearOctree {
+public:
+    /// Replaces what it held, in the same memory. Throws Error{cancelled}; where an object is not a box, throws Invalid
+    /// with the first position to look at.
+    void build(const EntrySource& source, Executor& executor, std::stop_token stop);
+
+    struct Invalid {
+        std::size_t begin;
+    };
+
+    const Frame& frame() const { return frame_; }
+    std::span<const Node> nodes() const { return directory_.nodes(); }
+    const Directory& directory() const { return directory_; }
+    std::span<const Entry> entries(NodeIndex node) const {
+        return entries_.span().subspan(begins_[node], begins_[node + 1] - begins_[node]);
+    }
+    /// Entries of the nodes [begin, end).
+    std::uint64_t entry_count(NodeIndex begin, NodeIndex end) const { return begins_[end] - begins_[begin]; }
+    std::uint64_t entry_count() const { return begins_.back(); }
+    const BuildSeconds& seconds() const { return seconds_; }
+
+private:
+    struct Block;
+    std::vector<Entry> sample(const EntrySource& source) const;
+    void encode(const EntrySource& source, Block& block, std::stop_token stop);
+    void merge(std::span<Block> blocks);
+    void sort(const EntrySource& source, Block& block, std::stop_token stop);
+
+    Frame frame_;
+    Directory directory_{Frame{}, {}, 0};
+    std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
+    Buffer<Entry> entries_;
+    Buffer<NodeIndex> homes_;  // of each object, while building
+    BuildSeconds seconds_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,54 @@
+// PairMaker: turns the hits of sweeps into pairs of the caller's objects, for one share of the work.
+//
+// A hit becomes a pair unless the orientation that its search asks for fails (recursive_sweep.hpp), or its boxes
+// overlap so barely that rounding could have made it and the caller's own numbers say no.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+
+#include "geometry/box_source.hpp"
+#include "octree/executor.hpp"
+#include "octree/sweep.hpp"
+
+namespace octopair {
+
+/// Per axis: +1 keeps hits whose row comes before its column in (min, object), -1 those whose column does, 0 all.
+using Orientation = std::array<std::int8_t, 3>;
+
+inline Orientation reversed(Orientation orientation) {
+    for (auto& sign : orientation) sign = std::int8_t(-sign);
+    return orientation;
+}
+
+/// What every share of a scan needs to know.
+struct ScanContext {
+    const BoxSource& source;
+    std::stop_token stop;
+};
+
+class PairMaker {
+public:
+    PairMaker(const ScanContext& context, PairWriter& writer) : context_(context), writer_(writer) {}
+
+    /// Runs a sweep of the rows [row_begin, row_end) to its end. Throws Error{cancelled}.
+    void sweep(const SweepSet& rows, const SweepSet& columns, SweepKind kind, const Orientation& orientation);
+    /// Hands what it still holds to the writer; to be called once at the end.
+    void flush();
+
+private:
+    void drain(const SweepSet& rows, const SweepSet& columns, std::span<const HitMask> hits,
+               const Orientation& orientation);
+    void add(const Entry& row, const Entry& column, const Orientation& orientation);
+    void add(std::uint32_t row, std::uint32_t column);
+
+    const ScanContext& context_;
+    PairWriter& writer_;
+    std::array<HitMask, 1024> hits_;
+    std::array<Pair, 2048> pairs_;
+    std::size_t held_ = 0;
+};
+
+}  // namespace octopair

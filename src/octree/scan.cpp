@@ -1,0 +1,227 @@
+#include "octree/scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "octopair/error.hpp"
+#include "octree/recursive_sweep.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t large_node = 1 << 15;     // entries: shared out among threads on its own
+constexpr std::size_t share_entries = 1 << 13;  // entries of a share at most, so that stops are seen soon
+constexpr std::size_t shares_per_thread = 64;
+constexpr std::size_t hot_node = 4096;     // entries: swept at once where the first axis does
+constexpr std::uint64_t good_window = 48;  // tests a box
+constexpr double worth_splitting = 0.75;   // of the entries may be left in the largest octant of an own octree
+
+using Handed = std::vector<Entry>;
+
+/// The boxes handed down to the nodes on one path, level by level; each with its class bits in that node.
+class HandedDown {
+public:
+    explicit HandedDown(const LinearOctree& octree) : octree_(octree) {}
+
+    /// Those that touch `node`, kept by the octants above. Nodes must come in pre-order, from any first one.
+    const Handed& at(NodeIndex node) {
+        const unsigned level = octree_.nodes()[node].level;
+        if (lists_.size() <= level) lists_.resize(level + 1);
+        if (owners_.size() <= level) owners_.resize(level + 1, none);
+        if (owners_[level] == node) return lists_[level];
+        if (level == 0) {
+            lists_[0].clear();
+        } else {
+            const NodeIndex parent = octree_.nodes()[node].parent;
+            (void)at(parent);
+            lists_[level].clear();
+            hand(lists_[level - 1], parent, node);
+            hand(octree_.entries(parent), parent, node);
+        }
+        owners_[level] = node;
+        return lists_[level];
+    }
+
+private:
+    static constexpr NodeIndex none = ~NodeIndex(0);
+
+    void hand(std::span<const Entry> from, NodeIndex parent, NodeIndex to) {
+        const Node& node = octree_.nodes()[to];
+        const Node& above = octree_.nodes()[parent];
+        Handed& list = lists_[node.level];
+        for (const Entry& entry : from) {
+            const CellBox box = octree_.frame().cells(entry);
+            if (!node.touches(box)) continue;
+            Entry handed = entry;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                // Beginning before the octant above, it begins before the lower half of it as well; the upper half's
+                // own first cell decides.
+                const std::uint32_t bit = 1u << axis;
+                if (node.lo[axis] != above.lo[axis])
+                    handed.mask = (handed.mask & ~bit) | (box.lo[axis] < node.lo[axis] ? bit : 0);
+            }
+            list.push_back(handed);
+        }
+    }
+
+    const LinearOctree& octree_;
+    std::vector<Handed> lists_;
+    std::vector<NodeIndex> owners_;
+};
+
+/// Scans single nodes, keeping its memory from node to node. One thread at a time.
+class NodeScan {
+public:
+    NodeScan(const ScanContext& context, Executor& executor) : context_(context), executor_(executor) {}
+
+    void scan(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
+        if (context_.source.join()) {
+            scan_join(own, handed);
+        } else {
+            within(own, axis);
+            between({handed}, {own}, axis);
+        }
+    }
+
+private:
+    void within(std::span<const Entry> own, unsigned axis) {
+        if (own.size() < 2) return;
+        const EntryList list{own};
+        if (own.size() <= hot_node && order_.windows(list, list, axis) <= good_window * own.size()) {
+            rows_.assign(own, order_.sort(list, axis, executor_), axis);
+            executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
+                PairMaker maker(context_, writer);
+                maker.sweep(rows_, rows_, SweepKind::self, {});
+                maker.flush();
+            });
+            return;
+        }
+        crowded({list, list, true, {}}, own);
+    }
+
+    void between(const EntryList& first, const EntryList& second, unsigned axis) {
+        if (first.size() == 0 || second.size() == 0) return;
+        const std::size_t size = first.size() + second.size();
+        if (size <= hot_node &&
+            order_.windows(first, second, axis) + order_.windows(second, first, axis) <= good_window * size) {
+            rows_.assign(first.entries, order_.sort(first, axis, executor_), axis);
+            columns_.assign(second.entries, order_.sort(second, axis, executor_), axis);
+            executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
+                PairMaker maker(context_, writer);
+                maker.sweep(rows_, columns_, SweepKind::cross, {});
+                maker.sweep(columns_, rows_, SweepKind::cross_strict, {});
+                maker.flush();
+            });
+            return;
+        }
+        crowded({first, second, false, {}}, {});
+    }
+
+    /// Pairs between the sets of a join only: the sets are never swept against themselves.
+    void scan_join(std::span<const Entry> own, std::span<const Entry> handed) {
+        const auto of_set = [](std::span<const Entry> entries, std::uint32_t set) {
+            std::vector<std::uint32_t> positions;
+            for (std::uint32_t i = 0; i < entries.size(); ++i) {
+                if (entries[i].mask & set) positions.push_back(i);
+            }
+            return positions;
+        };
+        const auto own_first = of_set(own, first_set);
+        const auto own_second = of_set(own, second_set);
+        const auto handed_first = of_set(handed, first_set);
+        const auto handed_second = of_set(handed, second_set);
+        if (!own_first.empty() && !own_second.empty()) {
+            crowded({{own, own_first, false}, {own, own_second, false}, false, {}}, own);
+        }
+        for (const auto& [above, below] :
+             {std::pair{&handed_first, &own_second}, std::pair{&handed_second, &own_first}}) {
+            if (above->empty() || below->empty()) continue;
+            crowded({{handed, *above, false}, {own, *below, false}, false, {}}, {});
+        }
+    }
+
+    /// `whole`: the octant's entries where the join is of all of them; empty: it cannot be split.
+    void crowded(const Join& join, std::span<const Entry> whole) {
+        const SweepChoice choice = choose_sweep(join, order_);
+        if (choice.good) return tiled_sweep(context_, join, choice.axis, executor_);
+        if (!whole.empty() && split_afresh(whole)) return;
+        recursive_sweep(context_, join, executor_);
+    }
+
+    bool split_afresh(std::span<const Entry> own) {
+        LinearOctree octree;
+        octree.build(EntrySpan(own), executor_, context_.stop);
+        std::size_t largest = 0;
+        for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
+            largest = std::max(largest, octree.entries(node).size());
+        }
+        if (double(largest) > worth_splitting * double(own.size())) return false;
+        octopair::scan(octree, context_, executor_, {});
+        return true;
+    }
+
+    const ScanContext& context_;
+    Executor& executor_;
+    SweepOrder order_;
+    SweepSet rows_;
+    SweepSet columns_;
+};
+
+/// Runs of nodes in pre-order that make up one share each; a large node is a share alone.
+struct Share {
+    NodeIndex begin = 0, end = 0;
+    bool large = false;
+};
+
+std::vector<Share> shares_of(const LinearOctree& octree, unsigned width) {
+    const std::uint64_t even = octree.entry_count() / (std::uint64_t(width) * shares_per_thread) + 1;
+    const std::uint64_t most = std::min<std::uint64_t>(even, share_entries);
+    std::vector<Share> shares;
+    std::uint64_t held = 0;
+    for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
+        const std::size_t size = octree.entries(node).size();
+        const bool large = size > large_node;
+        if (shares.empty() || large || shares.back().large || held + size > most) {
+            shares.push_back({node, node, large});
+            held = 0;
+        }
+        shares.back().end = node + 1;
+        held += size;
+    }
+    return shares;
+}
+
+}  // namespace
+
+void scan(const LinearOctree& octree, const ScanContext& context, Executor& executor,
+          const std::function<void(std::uint64_t)>& progress) {
+    const std::vector<Share> shares = shares_of(octree, executor.width());
+    const auto scan_share = [&](const Share& share, Executor& within) {
+        HandedDown handed(octree);
+        NodeScan nodes(context, within);
+        for (NodeIndex node = share.begin; node < share.end; ++node) {
+            const Handed& above = handed.at(node);
+            const auto own = octree.entries(node);
+            if (!own.empty()) nodes.scan(own, above, octree.frame().long_axis());
+        }
+        if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        if (progress) progress(octree.entry_count(share.begin, share.end));
+    };
+    for (std::size_t i = 0; i < shares.size();) {
+        if (shares[i].large) {
+            scan_share(shares[i++], executor);
+            continue;
+        }
+        std::size_t end = i;
+        while (end < shares.size() && !shares[end].large) ++end;
+        executor.for_each_writing(end - i, [&](std::size_t k, PairWriter& writer) {
+            SerialExecutor serial(writer);
+            scan_share(shares[i + k], serial);
+        });
+        i = end;
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,86 @@
+// Sweep: finds the overlapping boxes of sorted sets by passing along one axis.
+//
+// A SweepSet holds boxes in the order (low bound on the axis, object), as a structure of arrays padded with boxes that
+// no box reaches. A sweep tests each row against the columns that begin within it on the axis:
+//   self   row i against the columns i + 1, i + 2, ... of the same set
+//   cross  row against the columns of another set that do not begin before it (`strict`: that begin after it); crossing
+//          both ways, once strictly, finds each pair of two sets once
+// Hits come out as bit masks over runs of columns, in row order, columns ascending; the bits are the same whatever the
+// width of the registers.
+//
+// Three layers: row_hits_scalar is the specification; sweep_rows is its SIMD version, chosen for the processor at run
+// time (sweep_kernel.cpp); the drivers are in scan.cpp. Source: the sweep and prune of the paper's section 2.3.1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "geometry/entry.hpp"
+#include "parallel/team.hpp"
+
+namespace octopair {
+
+class SweepSet {
+public:
+    static constexpr std::size_t padding = 32;  // columns that may be read beyond the end
+
+    /// Takes the entries at `order[i].position`, in that order; `axis` is the one that `order` was made for.
+    void assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis);
+
+    std::size_t size() const { return size_; }
+    /// Bounds on the sweep's axis (0) and the two others (1, 2).
+    const float* low(unsigned axis) const { return numbers_.data() + axis * stride_; }
+    const float* high(unsigned axis) const { return numbers_.data() + (3 + axis) * stride_; }
+    const std::uint32_t* mask() const { return words_.data(); }
+    std::uint32_t object(std::size_t i) const { return words_[stride_ + i]; }
+    /// The box as it was put in.
+    Entry entry(std::size_t i) const;
+
+private:
+    Buffer<float> numbers_;
+    Buffer<std::uint32_t> words_;
+    std::size_t size_ = 0;
+    std::size_t stride_ = 0;
+    std::array<unsigned, 3> axes_ = {0, 1, 2};
+};
+
+/// Bit k: the row hits column `first + k`.
+struct HitMask {
+    std::uint32_t row;
+    std::uint32_t first;
+    std::uint32_t bits;
+};
+
+/// Where a sweep stands: the next row and column to test. Rows before `row` are done.
+struct SweepCursor {
+    std::size_t row = 0;
+    std::size_t row_end = 0;
+    std::size_t column = 0;
+    std::size_t first_column = 0;  // cross: the first column that does not begin before `row`
+    bool in_row = false;           // `column` is set for `row`
+};
+
+enum class SweepKind : std::uint8_t { self, cross, cross_strict };
+
+/// Fills `hits` from the cursor on; returns how many masks it wrote. It stops early when `hits` is full or after a
+/// bounded number of tests, with the cursor where it stopped; done when cursor.row == cursor.row_end.
+std::size_t sweep_rows(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
+                       std::span<HitMask> hits);
+
+/// The specification: the same contract, a column at a time.
+std::size_t sweep_rows_scalar(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
+                              std::span<HitMask> hits);
+
+/// The instruction set that sweep_rows uses here, such as "AVX2".
+std::string sweep_instruction_set();
+/// For tests: allows only the baseline instruction set (or again all).
+void restrict_sweep_to_baseline(bool baseline_only);
+
+/// Moves `cursor` to the columns of its row, if it is not there yet. Shared by all versions.
+void start_row(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor);
+
+}  // namespace octopair
