@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Checks the layout of all C++: format.sh CLANG_FORMAT ROOT. To put it right: format.sh CLANG_FORMAT ROOT -i
+set -euo pipefail
+clang_format=$1 root=$2 how=${3:---dry-run}
+cd "$root"
+folders=()
+for folder in include src bench tests examples; do [ ! -d $folder ] || folders+=("$folder"); done
+mapfile -t files < <(find "${folders[@]}" -name wrong_tree -prune -o -name '*.[ch]pp' -print | sort)
+"$clang_format" "$how" --Werror "${files[@]}"
+echo "${#files[@]} files are laid out by .clang-format"

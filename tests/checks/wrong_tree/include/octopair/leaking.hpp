@@ -1,0 +1,3 @@
+#include <hwy/highway.h>
+
+#include "base/memory.hpp"

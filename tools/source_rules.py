@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Checks the rules of HACKING.md that neither compiler, clang-format nor clang-tidy knows.
+
+    source_rules.py [ROOT]     ROOT: the project's directory, default the one this file lies in
+
+Prints what breaks a rule, one line each, and exits 1.
+"""
+import pathlib
+import re
+import sys
+
+FOLDERS = ["include", "src", "bench", "tests", "examples", "tools", "cmake", "scripts", "docs"]
+CODE = {".hpp", ".cpp"}
+TEXT = CODE | {".py", ".cmake", ".txt", ".md", ".sh", ".in", ""}
+LONGEST_FILE = 500
+SNAKE_CASE = re.compile(r"^[a-z][a-z0-9_]*$")
+
+# What, and the pattern of a line that breaks it.
+EVERYWHERE = [
+    ("unfinished work is not committed", re.compile(r"\b(TODO|FIXME|XXX)\b")),
+    ("a path of someone's machine", re.compile(r"(?<![\w.$}/-])/(home|root|work|Users)/\w")),
+]
+IN_CODE = [
+    ("code that is switched off", re.compile(r"^\s*#\s*if\s+0\b")),
+    ("a banner", re.compile(r"^\s*//\s*[-=*/#]{4,}")),
+    ("commented-out code", re.compile(r"^\s*//\s*(return\b.*|[\w:<>*&. ]+\(.*\)|[\w.:<>\[\]* ]+ = .*);\s*$")),
+]
+IN_LIBRARY = [
+    ("the library never prints", re.compile(r"\b(std::(cout|cerr|clog)|f?printf|fputs|puts|perror)\b\s*(<<|\()")),
+    ("the library never exits", re.compile(r"\b(std::)?(exit|_exit|quick_exit|abort|terminate)\s*\(")),
+]
+
+
+def files(root):
+    for folder in FOLDERS:
+        for path in sorted((root / folder).rglob("*")):
+            parts = path.relative_to(root).parts
+            if path.is_file() and path.suffix in TEXT and "__pycache__" not in parts and "wrong_tree" not in parts:
+                yield path, parts
+
+
+def has_head(path, lines):
+    """A source file may leave it to its header."""
+    headers = [path.with_suffix(".hpp"), *path.parents[2].glob(f"include/octopair/{path.stem}.hpp")]
+    return bool(lines) and (lines[0].startswith("// ") or (path.suffix == ".cpp" and any(h.exists() for h in headers)))
+
+
+def complaints_of(path, parts):
+    """(line number, what) of a file; 0 for the file as a whole."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    is_code = path.suffix in CODE
+    if is_code:
+        if len(lines) > LONGEST_FILE:
+            yield 0, f"{len(lines)} lines; at most {LONGEST_FILE}"
+        if not SNAKE_CASE.match(path.stem):
+            yield 0, "file names are snake_case"
+        if not has_head(path, lines):
+            yield 0, "the head does not say what the file holds"
+        if path.suffix == ".hpp" and "#pragma once" not in lines and not path.name.endswith("-inl.hpp"):
+            yield 0, "no #pragma once"
+    rules = list(EVERYWHERE) if path.name != "source_rules.py" else []
+    if is_code:
+        rules += IN_CODE
+        if parts[0] == "include" or (parts[0] == "src" and parts[1] != "cli"):
+            rules += IN_LIBRARY
+    for number, line in enumerate(lines, 1):
+        for what, pattern in rules:
+            if pattern.search(line):
+                yield number, f"{what}: {line.strip()[:80]}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
+    count = wrong = 0
+    for path, parts in files(root):
+        count += 1
+        for line, what in complaints_of(path, parts):
+            wrong += 1
+            print(f"{path.relative_to(root)}:{line}: {what}")
+    if not wrong:
+        print(f"{count} files keep the rules")
+    return 1 if wrong or count == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
