@@ -11,7 +11,7 @@ constexpr double always_split = 2048;  // objects: more would not stay in the ca
 constexpr double never_split = 128;    // objects
 constexpr double crowded_window = 40;  // objects that a sweep tests for each object
 constexpr double ghost_growth = 1.45;  // entries below a node for each object that begins in it
-constexpr double handed_growth = 2.0;  // entries and boxes handed down, after a split against before
+constexpr double handed_growth = 1.5;  // entries and boxes handed down, after a split against before
 constexpr std::uint64_t table_cells = 1 << 16;
 
 /// The octant `digit` of `node`, as a leaf.

@@ -155,13 +155,33 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
     return made;
 }
 
+/// choose_sweep among some axes.
+SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, std::span<const unsigned> axes) {
+    const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
+    SweepChoice choice;
+    std::uint64_t least = ~std::uint64_t(0);
+    for (const unsigned axis : axes) {
+        std::uint64_t tests = order.windows(join.rows, join.columns, axis);
+        if (!join.self) tests += order.windows(join.columns, join.rows, axis);
+        if (tests < least) {
+            least = tests;
+            choice.axis = axis;
+        }
+    }
+    choice.good = size <= small_set || least <= cheap_window * size ||
+                  least / tests_per_pair <= estimated_hits(join.rows, join.columns);
+    return choice;
+}
+
 class Recursion {
 public:
     Recursion(const ScanContext& context, Executor& executor) : context_(context), executor_(executor) {}
 
     void run(const OwnedJoin& join) {
         if (context_.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
-        const SweepChoice choice = join.settled == 3 ? SweepChoice{0, true} : choose_sweep(join.join(), order_);
+        // On settled axes all boxes overlap: no sweep along them thins anything.
+        const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
+        const SweepChoice choice = open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, open);
         if (choice.good) return tiled_sweep(context_, join.join(), choice.axis, executor_);
         std::vector<OwnedJoin> parts = step(join);
         // Large parts one after another, each shared out; runs of small ones as shares of one part each.
@@ -190,21 +210,35 @@ private:
 
 }  // namespace
 
-SweepChoice choose_sweep(const Join& join, SweepOrder& order) {
-    const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
-    SweepChoice choice;
-    std::uint64_t least = ~std::uint64_t(0);
+std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list) {
+    std::array<double, 3> reach{};
     for (unsigned axis = 0; axis < 3; ++axis) {
-        std::uint64_t tests = order.windows(join.rows, join.columns, axis);
-        if (!join.self) tests += order.windows(join.columns, join.rows, axis);
-        if (tests < least) {
-            least = tests;
-            choice.axis = axis;
+        float first = FLT_MAX;
+        float last = -FLT_MAX;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            first = std::min(first, list[i].min[axis]);
+            last = std::max(last, list[i].max[axis]);
         }
+        reach[axis] = double(last) - double(first);
     }
-    choice.good = size <= small_set || least <= cheap_window * size ||
-                  least / tests_per_pair <= estimated_hits(join.rows, join.columns);
-    return choice;
+    const auto shape_of = [&](const Entry& box) {
+        unsigned shape = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            shape |= unsigned((double(box.max[axis]) - double(box.min[axis])) * 4 > reach[axis]) << axis;
+        }
+        return shape;
+    };
+    std::array<std::size_t, 8> counts{};
+    for (std::size_t i = 0; i < list.size(); ++i) ++counts[shape_of(list[i])];
+    std::array<std::vector<std::uint32_t>, 8> shapes;
+    for (unsigned shape = 0; shape < 8; ++shape) shapes[shape].reserve(counts[shape]);
+    for (std::size_t i = 0; i < list.size(); ++i) shapes[shape_of(list[i])].push_back(list.position(i));
+    return shapes;
+}
+
+SweepChoice choose_sweep(const Join& join, SweepOrder& order) {
+    constexpr std::array<unsigned, 3> all = {0, 1, 2};
+    return choose_sweep_of(join, order, all);
 }
 
 void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor) {
@@ -251,17 +285,13 @@ void recursive_sweep(const ScanContext& context, const Join& join, Executor& exe
     whole.rows = positions(join.rows);
     whole.columns = join.self ? whole.rows : positions(join.columns);
     whole.axes = {costs[0].second, costs[1].second, costs[2].second};
-    whole.orientation = join.orientation;
     whole.orientation[whole.axes[0]] = 1;
     Recursion recursion(context, executor);
     recursion.run(whole);
     if (join.self) return;
-    OwnedJoin swapped = whole;
-    std::swap(swapped.rows, swapped.columns);
-    std::swap(swapped.row_entries, swapped.column_entries);
-    swapped.orientation = reversed(join.orientation);
-    swapped.orientation[whole.axes[0]] = 1;
-    recursion.run(swapped);
+    std::swap(whole.rows, whole.columns);
+    std::swap(whole.row_entries, whole.column_entries);
+    recursion.run(whole);
 }
 
 }  // namespace octopair

@@ -1,5 +1,8 @@
 // Sweeps of sets too large or too crowded for one: in tiles, and recursively.
 //
+// part_by_shape parts boxes by the axes on which they are long: two families of rods that defeat every sweep of the
+// whole are joined by one along the axis on which both are thin.
+//
 // A Join asks for the overlapping pairs within a set (self), or between rows and columns.
 //
 // tiled_sweep runs one sweep along an axis whose sets may be large: shares of 4,096 rows, each passing over tiles of
@@ -13,6 +16,9 @@
 // Edelsbrunner 2002, "Fast software for box intersections" (the hybrid algorithm), restated with total orders in place
 // of symbolic perturbation.
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include "octree/pair_maker.hpp"
 #include "octree/sweep_order.hpp"
@@ -36,6 +42,10 @@ SweepChoice choose_sweep(const Join& join, SweepOrder& order);
 
 void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor);
 
+/// The positions of a list by the axes (as bits) on which a box is longer than a quarter of the list's reach.
+std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list);
+
+/// `join` has no orientation yet.
 void recursive_sweep(const ScanContext& context, const Join& join, Executor& executor);
 
 }  // namespace octopair

@@ -98,7 +98,7 @@ private:
             });
             return;
         }
-        crowded({list, list, true, {}}, own);
+        crowded({list, list, true, {}});
     }
 
     void between(const EntryList& first, const EntryList& second, unsigned axis) {
@@ -116,7 +116,7 @@ private:
             });
             return;
         }
-        crowded({first, second, false, {}}, {});
+        crowded({first, second, false, {}});
     }
 
     /// Pairs between the sets of a join only: the sets are never swept against themselves.
@@ -133,24 +133,48 @@ private:
         const auto handed_first = of_set(handed, first_set);
         const auto handed_second = of_set(handed, second_set);
         if (!own_first.empty() && !own_second.empty()) {
-            crowded({{own, own_first, false}, {own, own_second, false}, false, {}}, own);
+            crowded({{own, own_first, false}, {own, own_second, false}, false, {}});
         }
         for (const auto& [above, below] :
              {std::pair{&handed_first, &own_second}, std::pair{&handed_second, &own_first}}) {
             if (above->empty() || below->empty()) continue;
-            crowded({{handed, *above, false}, {own, *below, false}, false, {}}, {});
+            crowded({{handed, *above, false}, {own, *below, false}, false, {}});
         }
     }
 
-    /// `whole`: the octant's entries where the join is of all of them; empty: it cannot be split.
-    void crowded(const Join& join, std::span<const Entry> whole) {
-        const SweepChoice choice = choose_sweep(join, order_);
-        if (choice.good) return tiled_sweep(context_, join, choice.axis, executor_);
-        if (!whole.empty() && split_afresh(whole)) return;
+    /// A join too costly for the quick way. Parts of one shape are joined on their own: boxes as long as the octant
+    /// keep any sweep and any split from thinning the others.
+    void crowded(const Join& join) {
+        if (swept(join)) return;
+        const auto rows = part_by_shape(join.rows);
+        const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns);
+        for (unsigned i = 0; i < rows.size(); ++i) {
+            const EntryList row_list{join.rows.entries, rows[i], false};
+            if (join.self) crowded_part({row_list, row_list, true, {}}, true);
+            for (unsigned k = join.self ? i + 1 : 0; k < rows.size(); ++k) {
+                const EntryList column_list{join.columns.entries, join.self ? rows[k] : columns[k], false};
+                crowded_part({row_list, column_list, false, {}}, i == k);
+            }
+        }
+    }
+
+    void crowded_part(const Join& join, bool same_shape) {
+        if (join.rows.size() == 0 || join.columns.size() == 0 || swept(join)) return;
+        if (same_shape && split_afresh(join)) return;
         recursive_sweep(context_, join, executor_);
     }
 
-    bool split_afresh(std::span<const Entry> own) {
+    bool swept(const Join& join) {
+        const SweepChoice choice = choose_sweep(join, order_);
+        if (choice.good) tiled_sweep(context_, join, choice.axis, executor_);
+        return choice.good;
+    }
+
+    /// Scans a linear octree of the join's own entries; false, with nothing done, where it would not thin them.
+    bool split_afresh(const Join& join) {
+        std::vector<Entry> own;
+        for (std::size_t i = 0; i < join.rows.size(); ++i) own.push_back(join.rows[i]);
+        for (std::size_t i = 0; !join.self && i < join.columns.size(); ++i) own.push_back(join.columns[i]);
         LinearOctree octree;
         octree.build(EntrySpan(own), executor_, context_.stop);
         std::size_t largest = 0;
@@ -158,6 +182,7 @@ private:
             largest = std::max(largest, octree.entries(node).size());
         }
         if (double(largest) > worth_splitting * double(own.size())) return false;
+        own = {};  // the octree has its copy
         octopair::scan(octree, context_, executor_, {});
         return true;
     }

@@ -8,9 +8,10 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_buckets = 4096;
-constexpr std::size_t few = 24;            // sets this small are sorted by comparison at once
-constexpr std::size_t in_cache = 1 << 14;  // up to here one thread's bucket sort is best
+constexpr std::size_t cached_buckets = 4096;  // for sets whose buckets should stay in the first cache
+constexpr std::size_t bucket_boxes = 4;       // in larger sets: fewer buckets would make windows look wide
+constexpr std::size_t few = 24;               // sets this small are sorted by comparison at once
+constexpr std::size_t in_cache = 1 << 14;     // up to here one thread's bucket sort is best
 constexpr std::size_t sampled_rows = 16;
 
 }  // namespace
@@ -22,7 +23,8 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
         first = std::min(first, list[i].min[axis]);
         last = std::max(last, list[i].min[axis]);
     }
-    const std::size_t count = std::min(most_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
+    const std::size_t least = std::min(cached_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
+    const std::size_t count = std::max(least, std::bit_floor(list.size() / bucket_boxes));
     Buckets buckets;
     buckets.begin = first;
     buckets.last = std::uint32_t(count - 1);
@@ -85,6 +87,7 @@ std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns) {
     for (std::size_t s = 0; s < samples; ++s) {
         const Entry& row = rows[s * rows.size() / samples];
         for (std::size_t i = 0; i < columns.size(); ++i) hits += overlap(row, columns[i]) ? 1 : 0;
+        if (s == 3 && hits <= 4) return 0;  // no more than the rows themselves: certainly few
     }
     return samples == 0 ? 0 : hits * rows.size() / samples;
 }
