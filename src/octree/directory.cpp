@@ -1,6 +1,7 @@
 #include "octree/directory.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace octopair {
 
@@ -30,7 +31,9 @@ struct Directory::Growth {
     double weight;
 
     bool crowded(const Node& node, const std::vector<std::uint32_t>& inside) const;
-    std::vector<std::uint32_t> touching(const Node& node, const std::vector<std::uint32_t>& boxes) const;
+    using Lists = std::array<std::vector<std::uint32_t>, 8>;
+    /// The boxes, all of which touch `node`, by the children that they touch; returns how many entries that makes.
+    std::size_t divide(const Node& node, const std::vector<std::uint32_t>& boxes, Lists& children) const;
     std::size_t beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const;
 };
 
@@ -56,13 +59,24 @@ bool Directory::Growth::crowded(const Node& node, const std::vector<std::uint32_
     return window > crowded_window;
 }
 
-std::vector<std::uint32_t> Directory::Growth::touching(const Node& node,
-                                                       const std::vector<std::uint32_t>& boxes) const {
-    std::vector<std::uint32_t> found;
+std::size_t Directory::Growth::divide(const Node& node, const std::vector<std::uint32_t>& boxes,
+                                      Lists& children) const {
+    // Per axis the children, as bits, of the lower and of the upper half.
+    constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
+    const std::uint32_t half = (cells_per_axis >> node.level) / 2;
+    std::size_t entries = 0;
     for (const std::uint32_t i : boxes) {
-        if (node.touches(sample[i])) found.push_back(i);
+        unsigned touched = 0xFF;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const std::uint32_t middle = node.lo[axis] + half;
+            const unsigned lower = sample[i].lo[axis] < middle ? halves[axis][0] : 0;
+            const unsigned upper = sample[i].hi[axis] >= middle ? halves[axis][1] : 0;
+            touched &= lower | upper;
+        }
+        entries += std::size_t(std::popcount(touched));
+        for (; touched != 0; touched &= touched - 1) children[unsigned(std::countr_zero(touched))].push_back(i);
     }
-    return found;
+    return entries;
 }
 
 std::size_t Directory::Growth::beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const {
@@ -92,18 +106,11 @@ NodeIndex Directory::grow(Growth& growth, const Node& start, std::vector<std::ui
     for (const std::uint32_t i : sample) {
         (natural_level(growth.sample[i]) > start.level ? inside : kept).push_back(i);
     }
-    std::array<std::vector<std::uint32_t>, 8> inside_child, handed_child;
+    Growth::Lists inside_child, handed_child;
     bool split = start.level < deepest && growth.crowded(start, inside);
     if (split) {
-        std::size_t entries = 0;
-        std::size_t copies = 0;
-        for (unsigned digit = 0; digit < 8; ++digit) {
-            const Node octant = child_octant(start, index, digit);
-            inside_child[digit] = growth.touching(octant, inside);
-            handed_child[digit] = growth.touching(octant, kept);
-            entries += inside_child[digit].size();
-            copies += handed_child[digit].size();
-        }
+        const std::size_t entries = growth.divide(start, inside, inside_child);
+        const std::size_t copies = growth.divide(start, kept, handed_child);
         split = double(entries) <= ghost_growth * double(growth.beginning_in(start, inside)) &&
                 double(entries + copies) <= handed_growth * double(inside.size() + kept.size());
     }

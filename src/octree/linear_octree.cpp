@@ -10,13 +10,16 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t sample_stride = 16;  // one object of so many is sampled
-constexpr std::size_t batch_size = 512;    // objects loaded at a time: their entries stay in the first cache
+constexpr std::size_t sample_stride = 16;      // one object of so many is sampled, but
+constexpr std::size_t most_samples = 1 << 21;  // no more than these
+constexpr std::size_t batch_size = 512;        // objects loaded at a time: their entries stay in the first cache
 constexpr NodeIndex crossing = ~NodeIndex(0);
 
 /// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
-std::size_t jitter(std::size_t i) { return std::size_t((std::uint64_t(i) * 0x9E3779B97F4A7C15ull) >> 60); }
-static_assert(sample_stride == 16);
+std::size_t jitter(std::size_t i, std::size_t stride) {
+    const std::uint64_t scattered = (std::uint64_t(i) * 0x9E3779B97F4A7C15ull) >> 32;
+    return std::size_t(scattered * stride >> 32);
+}
 
 bool within(const Node& node, const CellBox& box) {
     const std::uint32_t last = (cells_per_axis >> node.level) - 1;
@@ -109,9 +112,10 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
 
 std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
     const std::size_t size = source.size();
-    std::vector<Entry> sampled((size + sample_stride - 1) / sample_stride);
+    const std::size_t stride = std::max(sample_stride, size / most_samples);
+    std::vector<Entry> sampled((size + stride - 1) / stride);
     for (std::size_t i = 0; i < sampled.size(); ++i) {
-        const std::size_t position = std::min(size - 1, i * sample_stride + jitter(i));
+        const std::size_t position = std::min(size - 1, i * stride + jitter(i, stride));
         (void)source.load(position, {&sampled[i], 1});  // what is invalid is found by encode, with its position
     }
     return sampled;

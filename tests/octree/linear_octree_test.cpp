@@ -1,0 +1,178 @@
+// The linear octree's invariants, on every kind of scene: the tree tiles its space, each box has an entry wherever it
+// must, at most eight of them, and all of it is the same however the work is shared out.
+
+#include "octree/linear_octree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "samples/scenes.hpp"
+
+namespace octopair {
+namespace {
+
+class NoPairs final : public PairWriter {
+public:
+    bool counting() const override { return true; }
+    void write(std::span<const Pair>) override {}
+    void write_count(std::uint64_t) override {}
+};
+
+/// Pretends to be many threads, and runs the shares last to first.
+class BackwardExecutor final : public Executor {
+public:
+    explicit BackwardExecutor(unsigned width) : width_(width) {}
+    unsigned width() const override { return width_; }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+        for (std::size_t i = count; i-- > 0;) body(i);
+    }
+    void for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) override {}
+    void sort(std::span<SortItem> items) override { std::sort(items.begin(), items.end()); }
+
+private:
+    unsigned width_;
+};
+
+constexpr std::size_t scene_size = 30000;
+
+class Scene : public testing::TestWithParam<std::string> {
+protected:
+    Scene()
+        : boxes_(samples::make_scene(GetParam(), scene_size, 7)),
+          objects_{std::span<const Box3f>(boxes_), {}},
+          source_(objects_, nullptr, 0) {
+        NoPairs none;
+        SerialExecutor serial(none);
+        octree_.build(source_, serial, {});
+    }
+
+    std::vector<Box3f> boxes_;
+    Objects objects_;
+    BoxSource source_;
+    LinearOctree octree_;
+};
+
+TEST_P(Scene, DirectoryIsAPreOrderWhoseLeavesTileTheSpace) {
+    const auto nodes = octree_.nodes();
+    ASSERT_EQ(nodes[0].next, nodes.size());
+    long double volume = 0;
+    for (NodeIndex i = 0; i < nodes.size(); ++i) {
+        if (i > 0) {
+            ASSERT_LT(nodes[i - 1].code(), nodes[i].code());
+        }
+        if (nodes[i].leaf()) {
+            ASSERT_EQ(nodes[i].next, i + 1);
+            const long double side = 1.0L / (1u << nodes[i].level);
+            volume += side * side * side;
+            continue;
+        }
+        for (unsigned digit = 0; digit < 8; ++digit) {
+            const NodeIndex child = octree_.directory().child(nodes[i], digit);
+            ASSERT_EQ(nodes[child].code(), nodes[i].code().child(digit));
+            ASSERT_EQ(nodes[child].parent, i);
+        }
+    }
+    EXPECT_EQ(volume, 1.0L);
+}
+
+TEST_P(Scene, EveryBoxHasOneToEightEntriesWhichCoverIt) {
+    std::map<std::uint32_t, std::vector<NodeIndex>> octants_of;
+    for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
+        for (const Entry& entry : octree_.entries(node)) {
+            ASSERT_TRUE(octree_.nodes()[node].touches(octree_.frame().cells(entry)));
+            octants_of[entry.object].push_back(node);
+        }
+    }
+    ASSERT_EQ(octants_of.size(), boxes_.size());
+    for (const auto& [object, octants] : octants_of) {
+        ASSERT_LE(octants.size(), 8u);
+        Entry entry;
+        ASSERT_TRUE(source_.load(object, {&entry, 1}));
+        const CellBox cells = octree_.frame().cells(entry);
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            Cell cell = cells.lo;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                if (corner >> axis & 1u) cell[axis] = cells.hi[axis];
+            }
+            const OctalCode at = OctalCode::from_cell(cell, deepest);
+            std::size_t covering = 0;
+            for (const NodeIndex octant : octants) covering += octree_.nodes()[octant].code().contains(at) ? 1 : 0;
+            ASSERT_EQ(covering, 1u) << "object " << object << " corner " << corner;
+        }
+    }
+}
+
+TEST_P(Scene, ClassBitsSayOnWhichAxesABoxBeginsBeforeItsOctant) {
+    for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
+        const Cell& first = octree_.nodes()[node].lo;
+        for (const Entry& entry : octree_.entries(node)) {
+            const CellBox cells = octree_.frame().cells(entry);
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                ASSERT_EQ(entry.mask >> axis & 1u, unsigned(cells.lo[axis] < first[axis]));
+            }
+        }
+    }
+}
+
+TEST_P(Scene, SharingOutTheWorkChangesNothing) {
+    for (const unsigned width : {2u, 3u, 16u}) {
+        BackwardExecutor executor(width);
+        LinearOctree other;
+        other.build(source_, executor, {});
+        ASSERT_EQ(other.nodes().size(), octree_.nodes().size());
+        for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
+            const auto ours = octree_.entries(node);
+            const auto theirs = other.entries(node);
+            ASSERT_EQ(ours.size(), theirs.size());
+            for (std::size_t i = 0; i < ours.size(); ++i) {
+                ASSERT_EQ(ours[i].object, theirs[i].object);
+                ASSERT_EQ(ours[i].mask, theirs[i].mask);
+            }
+        }
+    }
+}
+
+std::vector<std::string> kinds() {
+    std::vector<std::string> names;
+    for (const std::string_view kind : samples::scene_kinds()) names.emplace_back(kind);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Scene, testing::ValuesIn(kinds()), [](const auto& instance) {
+    std::string name = instance.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+TEST(Frame, CellsNeverFallAsTheCoordinateGrows) {
+    std::vector<Entry> sample(100);
+    for (std::size_t i = 0; i < sample.size(); ++i) {
+        const float at = 1e7f + float(i);
+        sample[i] = {{at, at * 1e-20f, -at}, {at + 2, at * 1e-20f, 1 - at}, std::uint32_t(i), 0};
+    }
+    const Frame frame = Frame::fit(sample, 100);
+    const float values[] = {-3.4e38f, -1e30f, -1e7f,   -1,   -0.0f,      0.0f,  1e-45f,
+                            1e-13f,   1,      9999999, 1e7f, 1.00001e7f, 1e30f, 3.4e38f};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 1; i < std::size(values); ++i) {
+            EXPECT_LE(frame.cell(values[i - 1], axis), frame.cell(values[i], axis));
+        }
+        EXPECT_LT(frame.cell(3.4e38f, axis), cells_per_axis);
+    }
+}
+
+TEST(Frame, AFarOutBoxDoesNotStretchIt) {
+    std::vector<Entry> sample(1000);
+    for (std::size_t i = 0; i < sample.size(); ++i) {
+        const float at = float(i) / 1000;
+        sample[i] = {{at, at, at}, {at, at, at}, std::uint32_t(i), 0};
+    }
+    sample[500] = {{1e30f, 1e30f, 1e30f}, {1e30f, 1e30f, 1e30f}, 500, 0};
+    const Frame frame = Frame::fit(sample, 1000);
+    EXPECT_NE(frame.cell(0.25f, 1), frame.cell(0.2501f, 1));
+}
+
+}  // namespace
+}  // namespace octopair

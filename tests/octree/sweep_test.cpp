@@ -1,0 +1,132 @@
+// The sweep's SIMD kernel against its scalar specification, and both against testing all boxes.
+
+#include "octree/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace octopair {
+namespace {
+
+using Hits = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::uint32_t first_object) {
+    std::uniform_int_distribution<int> place(0, 12), length(0, 3), mask(0, 31);
+    std::vector<Entry> entries(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            entries[i].min[axis] = float(place(random));
+            entries[i].max[axis] = entries[i].min[axis] + float(length(random));
+        }
+        entries[i].object = first_object + std::uint32_t(i);
+        entries[i].mask = std::uint32_t(mask(random) & mask(random) & mask(random));
+    }
+    return entries;
+}
+
+SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
+    std::vector<SortItem> order(entries.size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = {entries[i].min[axis], entries[i].object, i};
+    std::sort(order.begin(), order.end());
+    SweepSet set;
+    set.assign(entries, order, axis);
+    return set;
+}
+
+using Kernel = std::size_t (*)(const SweepSet&, const SweepSet&, SweepKind, SweepCursor&, std::span<HitMask>);
+
+/// All hits, by way of a queue of `room` masks.
+Hits run(Kernel kernel, const SweepSet& rows, const SweepSet& columns, SweepKind kind, std::size_t room) {
+    Hits hits;
+    std::vector<HitMask> queue(room);
+    SweepCursor cursor;
+    cursor.row_end = rows.size();
+    while (cursor.row < cursor.row_end) {
+        const std::size_t count = kernel(rows, columns, kind, cursor, queue);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (unsigned bit = 0; bit < 32; ++bit) {
+                if (queue[i].bits >> bit & 1u) hits.emplace_back(queue[i].row, queue[i].first + bit);
+            }
+        }
+    }
+    return hits;
+}
+
+Hits brute(const SweepSet& rows, const SweepSet& columns, SweepKind kind) {
+    Hits hits;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+        for (std::uint32_t k = 0; k < columns.size(); ++k) {
+            const bool in_order = kind == SweepKind::self    ? k > i
+                                  : kind == SweepKind::cross ? columns.low(0)[k] >= rows.low(0)[i]
+                                                             : columns.low(0)[k] > rows.low(0)[i];
+            const Entry row = rows.entry(i);
+            const Entry column = columns.entry(k);
+            if (in_order && overlap(row, column) && (row.mask & column.mask) == 0) hits.emplace_back(i, k);
+        }
+    }
+    return hits;
+}
+
+TEST(Sweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
+    std::mt19937 random(1);
+    for (int round = 0; round < 300; ++round) {
+        const std::size_t sizes[] = {0, 1, 2, 7, 8, 9, 33, 100};
+        const auto first = random_entries(random, sizes[random() % 8], 0);
+        const auto second = random_entries(random, sizes[random() % 8], 1000);
+        const unsigned axis = unsigned(random() % 3);
+        const SweepSet rows = sorted_set(first, axis);
+        const SweepSet columns = sorted_set(second, axis);
+        for (const SweepKind kind : {SweepKind::self, SweepKind::cross, SweepKind::cross_strict}) {
+            const SweepSet& others = kind == SweepKind::self ? rows : columns;
+            const Hits expected = brute(rows, others, kind);
+            for (const std::size_t room : {1, 3, 1000}) {
+                ASSERT_EQ(run(sweep_rows_scalar, rows, others, kind, room), expected) << "round " << round;
+                ASSERT_EQ(run(sweep_rows, rows, others, kind, room), expected) << "round " << round;
+            }
+        }
+    }
+}
+
+TEST(Sweep, CrossingBothWaysFindsEachPairOnce) {
+    std::mt19937 random(2);
+    const SweepSet rows = sorted_set(random_entries(random, 60, 0), 0);
+    const SweepSet columns = sorted_set(random_entries(random, 80, 1000), 0);
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (const auto& [i, k] : run(sweep_rows, rows, columns, SweepKind::cross, 100)) found.insert({i, k});
+    for (const auto& [k, i] : run(sweep_rows, columns, rows, SweepKind::cross_strict, 100)) found.insert({i, k});
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+        for (std::uint32_t k = 0; k < columns.size(); ++k) {
+            const Entry row = rows.entry(i), column = columns.entry(k);
+            if (overlap(row, column) && (row.mask & column.mask) == 0) expected.insert({i, k});
+        }
+    }
+    EXPECT_EQ(found, expected);
+}
+
+TEST(Sweep, BaselineInstructionSetFindsTheSameHits) {
+    std::mt19937 random(3);
+    const SweepSet set = sorted_set(random_entries(random, 2000, 0), 1);
+    const Hits best = run(sweep_rows, set, set, SweepKind::self, 50);
+    restrict_sweep_to_baseline(true);
+    const std::string restricted = sweep_instruction_set();
+    const Hits baseline = run(sweep_rows, set, set, SweepKind::self, 50);
+    restrict_sweep_to_baseline(false);
+    EXPECT_EQ(best, baseline) << "against " << restricted;
+    EXPECT_GT(best.size(), 1000u);
+}
+
+TEST(Sweep, FarBoxesTouchTheLargestFiniteNumbersOnly) {
+    const float most = 3.40282347e38f;
+    std::vector<Entry> entries(2);
+    entries[0] = {{-most, -most, -most}, {most, most, most}, 0, 0};
+    entries[1] = {{most, most, most}, {most, most, most}, 1, 0};
+    const SweepSet set = sorted_set(entries, 0);
+    EXPECT_EQ(run(sweep_rows, set, set, SweepKind::self, 10), (Hits{{0, 1}}));
+}
+
+}  // namespace
+}  // namespace octopair
