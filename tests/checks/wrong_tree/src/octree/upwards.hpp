@@ -1,3 +1,3 @@
-#include "engine/request.hpp"
 #include <tbb/parallel_for.h>
+#include "engine/request.hpp"
 inline void speak() { std::cout << "a library that prints"; }
