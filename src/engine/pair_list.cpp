@@ -27,11 +27,14 @@ void PairList::Storage::reset() {
 }
 
 std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
-    constexpr std::size_t block_pairs = (std::size_t(1) << 20) / sizeof(Pair);
+    constexpr std::size_t block_pairs = (std::size_t(1) << 18) / sizeof(Pair);
     const std::lock_guard lock(mutex_);
-    const auto fits = [&](const Buffer<Pair>& block) { return block.size() >= pairs; };
-    auto found = std::find_if(blocks_.begin() + std::ptrdiff_t(taken_), blocks_.end(), fits);
+    const auto free = blocks_.begin() + std::ptrdiff_t(taken_);
+    auto found = std::find_if(free, blocks_.end(), [&](const auto& block) { return block.size() >= pairs; });
     if (found == blocks_.end()) {
+        // A large block that has become too small gives way, so that a list does not hoard all sizes it ever had.
+        const auto hoarded = [&](const auto& block) { return block.size() > block_pairs; };
+        blocks_.erase(std::remove_if(free, blocks_.end(), hoarded), blocks_.end());
         blocks_.emplace_back(std::max(pairs, block_pairs));
         found = blocks_.end() - 1;
     }
