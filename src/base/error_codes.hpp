@@ -1,0 +1,31 @@
+// The one table that says what an ErrorCode becomes outside C++: a name, and the exit status of the program.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+struct ErrorCodeRow {
+    ErrorCode code;
+    std::string_view name;
+    int exit_status;
+};
+
+/// In the order of the enumeration.
+inline constexpr std::array<ErrorCodeRow, 6> error_code_table = {{
+    {ErrorCode::usage, "usage", 2},
+    {ErrorCode::bad_input, "bad input", 3},
+    {ErrorCode::io_failed, "I/O failed", 4},
+    {ErrorCode::resource_limit, "resource limit", 5},
+    {ErrorCode::engine_failed, "engine failed", 6},
+    {ErrorCode::cancelled, "cancelled", 130},
+}};
+
+constexpr const ErrorCodeRow& error_code_row(ErrorCode code) { return error_code_table[std::size_t(code)]; }
+constexpr int exit_status(ErrorCode code) { return error_code_row(code).exit_status; }
+constexpr std::string_view error_name(ErrorCode code) { return error_code_row(code).name; }
+
+}  // namespace octopair

@@ -1,0 +1,157 @@
+// octopair detect: the options, and what is made of the result.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "cli/detection.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/report.hpp"
+#include "cli/subcommands.hpp"
+#include "io/atomic_file.hpp"
+#include "io/pair_writer.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr unsigned most_threads = 1024;
+
+/// An option of a few words, those of `later` known but not there yet.
+struct Words {
+    std::string_view option;
+    std::vector<std::string_view> present;
+    std::vector<std::string_view> later;
+};
+
+/// Throws Error{usage} unless `word` is one that is present.
+void check_word(const Words& words, const std::string& word) {
+    if (std::find(words.present.begin(), words.present.end(), word) != words.present.end()) return;
+    const bool known = std::find(words.later.begin(), words.later.end(), word) != words.later.end();
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: '{}' {}; this version has: {}", words.option, word,
+                            known ? "does not exist yet" : "is not known", fmt::join(words.present, ", ")));
+}
+
+void check_engine(const std::string& engine) {
+    const bool address = engine.find(':') != std::string::npos;
+    if (address) {
+        throw Error(ErrorCode::usage, "--engine: servers cannot be reached yet; this version has: local");
+    }
+    check_word({"--engine", {"local"}, {"processes", "mpi"}}, engine);
+}
+
+int run_detect(const DetectRequest& request) {
+    const Interrupt interrupt;
+    const DetectReport report = detect(request, interrupt.token());
+    if (request.count_only) {
+        io::StandardOutput out(interrupt.token());
+        out.write(std::to_string(report.pairs) + '\n');
+        out.commit();
+    }
+    if (!request.stats.empty()) {
+        io::AtomicFile stats(request.stats);
+        stats.write(stats_json(report));
+        stats.commit();
+    }
+    if (!request.quiet) fmt::print(stderr, "{}", summary_text(report));
+    return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
+}
+
+void add_what(CLI::App& command, DetectRequest& request) {
+    command.add_option("INPUT", request.inputs, "scene files: .npy, .csv or a mesh scene; several are one set")
+        ->required();
+    command.add_option("--against", request.against, "only pairs (a in INPUT, b in FILE)")->type_name("FILE");
+    command
+        .add_option_function<std::string>(
+            "--stage",
+            [](const std::string& word) {
+                check_word({"--stage", {"pairs"}, {"objects", "features"}}, word);
+            },
+            "how far down the pipeline: pairs (the only one yet)")
+        ->type_name("STAGE");
+    command
+        .add_option_function<std::string>(
+            "--objects",
+            [&request](const std::string& word) {
+                check_word({"--objects", {"node", "triangle"}, {}}, word);
+                request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
+            },
+            "what counts as one object of a mesh file: node (default) or triangle")
+        ->type_name("WHAT");
+    command
+        .add_option_function<std::string>(
+            "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
+            "pairs count up to a gap of M on every axis (default 0)")
+        ->type_name("M");
+    command.add_option("--padding", request.padding, "shape (n,): each object's own clearance")->type_name("FILE.npy");
+    command.add_flag_callback(
+        "--events", [] { throw Error(ErrorCode::usage, "--events does not exist yet"); },
+        "of a moving scene: only what began and ended (not yet)");
+}
+
+void add_result(CLI::App& command, DetectRequest& request) {
+    auto* output =
+        command.add_option("--output", request.output,
+                           "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)");
+    output->type_name("FILE");
+    command
+        .add_option_function<std::string>(
+            "--order",
+            [&request](const std::string& word) {
+                check_word({"--order", {"ascending", "octal"}, {}}, word);
+                request.order = word == "octal" ? Order::octal : Order::ascending;
+            },
+            "order of the pairs: ascending (default) or octal")
+        ->type_name("ORDER");
+    command.add_flag("--count-only", request.count_only, "print the number of pairs alone")->excludes(output);
+    command
+        .add_option_function<std::string>(
+            "--limit", [&request](const std::string& text) { request.limit = parse_count("--limit", text); },
+            "the first N pairs")
+        ->type_name("N");
+    command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
+    command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");
+    command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
+}
+
+void add_where(CLI::App& command, DetectRequest& request) {
+    command
+        .add_option_function<std::string>("--engine", check_engine, "where to look for pairs: local (the only one yet)")
+        ->type_name("ENGINE");
+    command
+        .add_option_function<std::string>(
+            "--threads",
+            [&request](const std::string& text) {
+                request.threads = unsigned(parse_count("--threads", text, most_threads));
+            },
+            "threads (default 0: one a core)")
+        ->type_name("N");
+    command
+        .add_option_function<std::string>(
+            "--workers",
+            [](const std::string& text) {
+                (void)parse_count("--workers", text);
+                throw Error(ErrorCode::usage, "--workers: the local engine has threads and no workers");
+            },
+            "worker processes of other engines (none yet)")
+        ->type_name("N");
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("detect", "find the colliding pairs of a scene");
+    const auto request = std::make_shared<DetectRequest>();
+    add_what(*command, *request);
+    add_result(*command, *request);
+    add_where(*command, *request);
+    command->callback([request, &action] {
+        if (!request->output.empty()) (void)io::pair_format(request->output);
+        action = [request] { return run_detect(*request); };
+    });
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,177 @@
+#include "cli/detection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <thread>
+
+#include "cli/input_set.hpp"
+#include "cli/progress_line.hpp"
+#include "io/npy.hpp"
+#include "io/pair_writer.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+class Detection {
+public:
+    Detection(const DetectRequest& request, std::stop_token stop)
+        : request_(request), stop_(std::move(stop)), progress_(!request.quiet) {}
+
+    DetectReport run() {
+        read();
+        const auto engine = make_local_engine(request_.threads);
+        if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
+        try {
+            request_.count_only ? count(*engine) : stream(*engine);
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::bad_input) refuse_faults();
+            throw;
+        }
+        report_.seconds.total = seconds_since(start_);
+        return report_;
+    }
+
+private:
+    void read() {
+        progress_.show("reading", 0);
+        first_ = read_input_set(request_.inputs, request_.mesh_objects, stop_);
+        if (join()) second_ = read_input_set({request_.against}, request_.mesh_objects, stop_);
+        agree_on_frames();
+        read_padding();
+        report_.objects = first_.scene.objects + second_.scene.objects;
+        const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+        report_.threads = request_.threads > 0 ? request_.threads : cores;
+        report_.counted_only = request_.count_only;
+        report_.seconds.read = seconds_since(start_);
+    }
+
+    void agree_on_frames() {
+        const io::LoadedScene &a = first_.scene, &b = second_.scene;
+        if (a.moving && b.moving && a.frames != b.frames) {
+            throw Error(ErrorCode::bad_input, fmt::format("{}: {} frames against the {} of {}", request_.against,
+                                                          b.frames, a.frames, request_.inputs.front()));
+        }
+        report_.moving = a.moving || b.moving;
+        report_.frames = a.moving ? a.frames : b.frames;
+    }
+
+    /// One clearance for each object of the first set; of a join also for the second's, after them.
+    void read_padding() {
+        if (request_.padding.empty()) return;
+        padding_ = io::read_padding(request_.padding, stop_);
+        const std::size_t firsts = first_.scene.objects, seconds = second_.scene.objects;
+        if (padding_.size() != firsts && padding_.size() != firsts + seconds) {
+            throw Error(ErrorCode::bad_input,
+                        fmt::format("{}: {} paddings for {} objects", request_.padding, padding_.size(), firsts));
+        }
+        first_.padding = padding_.span().first(firsts);
+        second_.padding = padding_.span().subspan(firsts);
+    }
+
+    void count(Engine& engine) {
+        const auto start = Clock::now();
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
+            Options options = options_for(frame);
+            // One more than asked tells whether there are more.
+            if (options.limit && *options.limit < std::numeric_limits<std::uint64_t>::max()) ++*options.limit;
+            const Objects first = first_.frame(frame), second = second_.frame(frame);
+            const std::uint64_t pairs = join() ? engine.count_pairs_between(first, second, options, stop_)
+                                               : engine.count_pairs(first, options, stop_);
+            add_pairs(pairs);
+        }
+        report_.seconds.detect = seconds_since(start);
+        progress_.clear();
+    }
+
+    void add_pairs(std::uint64_t pairs) {
+        const std::uint64_t wanted = request_.limit ? *request_.limit - report_.pairs : pairs;
+        report_.truncated |= pairs > wanted;
+        report_.pairs += std::min(pairs, wanted);
+    }
+
+    void stream(Engine& engine) {
+        const auto writer = make_writer();
+        const PairSink sink = [&](std::span<const Pair> pairs) { timed_write([&] { writer->write(pairs); }); };
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
+            timed_write([&] { writer->begin_frame(frame); });
+            const double written_before = report_.seconds.write;
+            const Objects first = first_.frame(frame), second = second_.frame(frame);
+            const Summary summary = join() ? engine.stream_pairs_between(first, second, sink, options_for(frame), stop_)
+                                           : engine.stream_pairs(first, sink, options_for(frame), stop_);
+            add(summary, report_.seconds.write - written_before);
+            progress_.clear();
+            timed_write([&] { writer->end_frame(); });
+        }
+        timed_write([&] { writer->finish(); });
+    }
+
+    template <typename Write>
+    void timed_write(const Write& write) {
+        const auto start = Clock::now();
+        write();
+        report_.seconds.write += seconds_since(start);
+    }
+
+    void add(const Summary& summary, double written) {
+        report_.pairs += summary.pairs;
+        report_.truncated |= summary.truncated;
+        report_.entries += summary.entries;
+        report_.steps.encode += summary.steps.encode;
+        report_.steps.sort += summary.steps.sort;
+        report_.steps.merge += summary.steps.merge;
+        report_.steps.scan += std::max(0.0, summary.steps.scan);
+        report_.seconds.detect += std::max(0.0, summary.seconds - written);
+    }
+
+    std::unique_ptr<io::PairWriter> make_writer() const {
+        const io::PairNames names{&first_.scene.names, join() ? &second_.scene.names : &first_.scene.names};
+        if (!request_.output.empty()) return io::make_file_writer(request_.output, report_.moving, names);
+        return io::make_csv_writer(std::make_unique<io::StandardOutput>(stop_), report_.moving);
+    }
+
+    Options options_for(std::uint64_t frame) {
+        Options options;
+        options.order = request_.order;
+        options.margin = request_.margin;
+        if (request_.limit) options.limit = *request_.limit - report_.pairs;
+        options.progress = [this, frame](double done) {
+            progress_.show("detecting", (double(frame) + done) / double(report_.frames));
+        };
+        return options;
+    }
+
+    /// Says again what the engine found wrong with a box, with the file.
+    void refuse_faults() const {
+        for (const InputSet* set : {&first_, &second_}) {
+            if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, *fault);
+        }
+    }
+
+    bool join() const { return !request_.against.empty(); }
+
+    const DetectRequest& request_;
+    std::stop_token stop_;
+    ProgressLine progress_;
+    Clock::time_point start_ = Clock::now();
+    InputSet first_, second_;
+    Buffer<double> padding_;
+    DetectReport report_;
+};
+
+}  // namespace
+
+DetectReport detect(const DetectRequest& request, const std::stop_token& stop) {
+    return Detection(request, stop).run();
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,52 @@
+// `octopair detect`, from files to files: what was asked, what came of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "io/scene_reader.hpp"
+#include "octopair/engine.hpp"
+
+namespace octopair::cli {
+
+struct DetectRequest {
+    std::vector<std::string> inputs;
+    std::string against;  ///< empty: pairs within the inputs
+    io::MeshObjects mesh_objects = io::MeshObjects::node;
+    std::string padding;  ///< a file, or empty
+    std::string output;   ///< a file, or empty for standard output
+    double margin = 0;
+    Order order = Order::ascending;
+    std::optional<std::uint64_t> limit;
+    bool count_only = false;
+    bool fail_on_collision = false;
+    unsigned threads = 0;
+    std::string stats;  ///< a file, or empty
+    bool quiet = false;
+};
+
+/// Wall-clock seconds; `detect` leaves out the time that writing took meanwhile.
+struct DetectSeconds {
+    double total = 0, read = 0, detect = 0, write = 0;
+};
+
+struct DetectReport {
+    std::uint64_t objects = 0;  ///< of both sets, in each frame
+    std::uint64_t frames = 1;
+    bool moving = false;
+    std::uint64_t pairs = 0;  ///< of all frames
+    bool truncated = false;
+    bool counted_only = false;  ///< then `entries` and `steps` are not known
+    std::uint64_t entries = 0;
+    StepSeconds steps;
+    DetectSeconds seconds;
+    unsigned threads = 1;
+};
+
+/// Does it all but the stats. Throws Error.
+DetectReport detect(const DetectRequest& request, const std::stop_token& stop);
+
+}  // namespace octopair::cli

@@ -1,0 +1,109 @@
+// octopair generate: seeded scenes as .npy files, written as they are made.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/subcommands.hpp"
+#include "io/atomic_file.hpp"
+#include "io/npy_header.hpp"
+#include "octopair/error.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+struct GenerateRequest {
+    samples::SceneSpec spec;
+    bool moving = false;  // --frames was given
+    std::string output;
+    bool quiet = false;
+};
+
+int run_generate(const GenerateRequest& request) {
+    const Interrupt interrupt;
+    const samples::SceneSpec& spec = request.spec;
+    ProgressLine progress(!request.quiet);
+    io::AtomicFile file(request.output);
+    using Shape = std::array<std::uint64_t, 3>;
+    const Shape shape = {spec.frames, spec.objects, 6};
+    file.write(io::make_npy_header(io::NpyType::float32, request.moving ? std::span(shape) : std::span(shape).last(2)));
+    std::uint64_t written = 0;
+    samples::generate_scene(spec, [&](std::span<const Box3f> boxes) {
+        if (interrupt.token().stop_requested()) throw Error(ErrorCode::cancelled, "interrupted");
+        file.write(std::as_bytes(boxes));
+        written += boxes.size();
+        progress.show("generating", double(written) / (double(spec.objects) * double(spec.frames)));
+    });
+    file.commit();
+    progress.clear();
+    if (!request.quiet) {
+        fmt::print(stderr, "{}: {} objects{}, {}, seed {}\n", request.output, grouped(spec.objects),
+                   request.moving ? fmt::format(" in each of {} frames", grouped(spec.frames)) : "", spec.kind,
+                   spec.seed);
+    }
+    return 0;
+}
+
+std::string kinds_text() {
+    std::string text = "Kinds:\n";
+    for (const std::string_view kind : samples::scene_kinds()) {
+        text += fmt::format("  {:<12}{}\n", kind, samples::scene_description(kind));
+    }
+    return text;
+}
+
+void add_numbers(CLI::App& command, GenerateRequest& request) {
+    constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
+    command
+        .add_option_function<std::string>(
+            "--objects",
+            [&request](const std::string& text) {
+                request.spec.objects = parse_count("--objects", text, most_objects);
+            },
+            "how many")
+        ->type_name("N")
+        ->required();
+    command
+        .add_option_function<std::string>(
+            "--seed", [&request](const std::string& text) { request.spec.seed = parse_count("--seed", text); },
+            "another seed, another scene (default 0)")
+        ->type_name("S");
+    command
+        .add_option_function<std::string>(
+            "--frames",
+            [&request](const std::string& text) {
+                request.spec.frames = parse_count("--frames", text, 1'000'000);
+                request.moving = true;
+            },
+            "a moving scene of F frames")
+        ->type_name("F");
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("generate", "make a seeded scene, the same bytes everywhere");
+    const auto request = std::make_shared<GenerateRequest>();
+    command->add_option("KIND", request->spec.kind, "what kind of scene, see below")->required();
+    add_numbers(*command, *request);
+    command->add_option("--output", request->output, "the file to write")->type_name("FILE.npy")->required();
+    command->add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
+    command->footer(kinds_text());
+    command->callback([request, &action] {
+        if (!request->output.ends_with(".npy")) {
+            throw Error(ErrorCode::usage,
+                        fmt::format("--output: the name of '{}' does not end in .npy", request->output));
+        }
+        action = [request] { return run_generate(*request); };
+    });
+}
+
+}  // namespace octopair::cli

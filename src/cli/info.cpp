@@ -1,0 +1,58 @@
+// octopair info: version, build, engines, instruction set.
+#include <fmt/format.h>
+#include <hwy/highway.h>
+
+#include <thread>
+
+#include "cli/subcommands.hpp"
+#include "io/output_stream.hpp"
+#include "octopair/version.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+#if defined(__clang__)
+constexpr const char* compiler = "clang " __clang_version__;
+#else
+constexpr const char* compiler = "g++ " __VERSION__;
+#endif
+
+#ifdef NDEBUG
+constexpr const char* checks = "without assertions";
+#else
+constexpr const char* checks = "with assertions";
+#endif
+
+#ifdef OCTOPAIR_WITH_MESHES
+constexpr const char* inputs = ".npy, .csv, mesh scenes (Assimp)";
+#else
+constexpr const char* inputs = ".npy, .csv";
+#endif
+
+/// The best one of those that the processor has and that Highway compiles for.
+const char* instruction_set() {
+    const int64_t targets = hwy::SupportedTargets();
+    return hwy::TargetName(targets & -targets);
+}
+
+int run_info() {
+    io::StandardOutput out({});
+    out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
+    out.write(fmt::format("build            {}, {}\n", compiler, checks));
+    out.write("engines          local\n");
+    out.write("stages           pairs\n");
+    out.write(fmt::format("inputs           {}\n", inputs));
+    out.write(fmt::format("instruction set  {}\n", instruction_set()));
+    out.write(fmt::format("cores            {}\n", std::thread::hardware_concurrency()));
+    out.commit();
+    return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+    app.add_subcommand("info", "version, build, engines, instruction set")->callback([&action] { action = run_info; });
+}
+
+}  // namespace octopair::cli

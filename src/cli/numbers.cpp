@@ -1,0 +1,41 @@
+#include "cli/numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+template <typename Number>
+bool parse_whole_text(const std::string& text, Number& number) {
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+std::uint64_t parse_count(std::string_view option, const std::string& text, std::uint64_t most) {
+    std::uint64_t number = 0;
+    if (parse_whole_text(text, number) && number <= most) return number;
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a whole number from 0 to {}", option, text, most));
+}
+
+double parse_length(std::string_view option, const std::string& text) {
+    double number = 0;
+    if (parse_whole_text(text, number) && std::isfinite(number) && number >= 0) return number;
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a finite number >= 0", option, text));
+}
+
+std::string grouped(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
+    return text;
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,21 @@
+// Numbers on the command line: decimal, whole, of no locale.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace octopair::cli {
+
+/// A whole number from 0 to `most`. Throws Error{usage} that names `option`.
+std::uint64_t parse_count(std::string_view option, const std::string& text,
+                          std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// A finite number >= 0. Throws Error{usage} that names `option`.
+double parse_length(std::string_view option, const std::string& text);
+
+/// 1234567 as "1,234,567".
+std::string grouped(std::uint64_t number);
+
+}  // namespace octopair::cli

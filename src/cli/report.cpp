@@ -1,0 +1,74 @@
+#include "cli/report.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/numbers.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+std::uint64_t peak_rss_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+std::string duration(double seconds) {
+    return seconds < 0.1 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.3f} s", seconds);
+}
+
+std::string speed(double objects_per_second) {
+    return objects_per_second < 1e6 ? grouped(std::uint64_t(objects_per_second)) + " objects/s"
+                                    : fmt::format("{:.1f} million objects/s", objects_per_second / 1e6);
+}
+
+}  // namespace
+
+std::string summary_text(const DetectReport& report) {
+    const DetectSeconds& seconds = report.seconds;
+    const StepSeconds& steps = report.steps;
+    std::string text = fmt::format("objects     {}", grouped(report.objects));
+    if (report.moving) text += fmt::format(" in each of {} frames", grouped(report.frames));
+    text += fmt::format("\npairs       {}{}\n", grouped(report.pairs),
+                        report.truncated ? " (the limit was reached; more exist)" : "");
+    text += fmt::format("time        {} = read {} + detect {} + write {} + other\n", duration(seconds.total),
+                        duration(seconds.read), duration(seconds.detect), duration(seconds.write));
+    if (!report.counted_only) {
+        text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
+                            duration(steps.sort), duration(steps.merge), duration(steps.scan));
+    }
+    const double objects = double(report.objects) * double(report.frames);
+    if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
+    return text + fmt::format(" on {} thread{}\n", report.threads, report.threads == 1 ? "" : "s");
+}
+
+std::string stats_json(const DetectReport& report) {
+    nlohmann::ordered_json seconds = {
+        {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
+    if (!report.counted_only) {
+        seconds["encode"] = report.steps.encode;
+        seconds["sort"] = report.steps.sort;
+        seconds["merge"] = report.steps.merge;
+        seconds["scan"] = report.steps.scan;
+    }
+    seconds["filter"] = 0.0;
+    seconds["write"] = report.seconds.write;
+    nlohmann::ordered_json stats = {{"objects", report.objects},
+                                    {"frames", report.frames},
+                                    {"pairs", report.pairs},
+                                    {"truncated", report.truncated},
+                                    {"engine", "local"},
+                                    {"threads", report.threads},
+                                    {"workers", 0},
+                                    {"entries", report.entries},
+                                    {"peak_rss_bytes", peak_rss_bytes()},
+                                    {"seconds", seconds}};
+    if (report.counted_only) stats["entries"] = nullptr;
+    return stats.dump(2) + '\n';
+}
+
+}  // namespace octopair::cli

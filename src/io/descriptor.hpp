@@ -1,0 +1,32 @@
+// An open file descriptor, closed when its owner goes.
+#pragma once
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace octopair::io {
+
+class Descriptor {
+public:
+    Descriptor() = default;
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+
+    int number() const { return number_; }
+    bool open() const { return number_ >= 0; }
+    /// Closes now, and returns what close() returned: some file systems report a failed write only then.
+    int close() { return ::close(std::exchange(number_, -1)); }
+
+private:
+    int number_ = -1;
+};
+
+}  // namespace octopair::io

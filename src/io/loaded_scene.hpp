@@ -1,0 +1,32 @@
+// What scene files become in memory: boxes frame after frame, with names where the files had them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "octopair/objects.hpp"
+
+namespace octopair::io {
+
+/// Box i of frame f is boxes[f * objects + i].
+struct LoadedScene {
+    std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
+    std::uint64_t objects = 0;  ///< in each frame
+    std::uint64_t frames = 1;
+    bool moving = false;             ///< a file with a frame axis, though it may hold one frame only
+    std::vector<std::string> names;  ///< empty, or one an object; objects of files without names have empty ones
+
+    /// The boxes of a frame, borrowed.
+    Objects frame(std::uint64_t f) const {
+        return std::visit(
+            [&](const auto& buffer) {
+                return Objects{buffer.span().subspan(std::size_t(f * objects), std::size_t(objects)), {}};
+            },
+            boxes);
+    }
+};
+
+}  // namespace octopair::io

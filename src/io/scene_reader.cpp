@@ -1,0 +1,122 @@
+#include "io/scene_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "io/csv.hpp"
+#include "io/failure.hpp"
+#include "io/mesh.hpp"
+#include "io/npy.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+std::string lower_case_ending(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) {
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    }
+    return ending;
+}
+
+template <typename To, typename From>
+void copy_frame(const Buffer<From>& from, std::size_t begin, std::span<To> to) {
+    std::transform(from.data() + begin, from.data() + begin + to.size(), to.data(), [](const From& box) {
+        To copy;
+        std::copy_n(box.min, 3, copy.min);
+        std::copy_n(box.max, 3, copy.max);
+        return copy;
+    });
+}
+
+template <typename To>
+Buffer<To> join_boxes(std::span<LoadedScene> scenes, std::uint64_t objects) {
+    const std::uint64_t frames = scenes.front().frames;
+    Buffer<To> joined{std::size_t(frames * objects)};
+    std::uint64_t first = 0;
+    for (LoadedScene& scene : scenes) {
+        for (std::uint64_t f = 0; f < frames; ++f) {
+            const auto place = joined.span().subspan(f * objects + first, scene.objects);
+            std::visit([&](const auto& boxes) { copy_frame(boxes, f * scene.objects, place); }, scene.boxes);
+        }
+        first += scene.objects;
+        scene.boxes = {};  // so that no more than one copy is held beside the result
+    }
+    return joined;
+}
+
+template <typename Real>
+std::optional<std::string> fault_of(const Box<Real>& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const char name = "xyz"[axis];
+        if (!std::isfinite(box.min[axis])) return fmt::format("min {} is {}, not a finite number", name, box.min[axis]);
+        if (!std::isfinite(box.max[axis])) return fmt::format("max {} is {}, not a finite number", name, box.max[axis]);
+        if (box.min[axis] > box.max[axis]) {
+            return fmt::format("min {} {} is above max {} {}", name, box.min[axis], name, box.max[axis]);
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop) {
+    const std::string ending = lower_case_ending(path);
+    if (ending == ".npy") return read_npy_scene(path, stop);
+    if (ending == ".csv") return read_csv_scene(path, stop);
+#ifdef OCTOPAIR_WITH_MESHES
+    if (is_mesh_ending(ending)) return read_mesh_scene(path, mesh_objects);
+    refuse(path, "not a kind of file that is known: its name ends neither in .npy nor .csv nor as a mesh file's");
+#else
+    (void)mesh_objects;
+    refuse(path, "its name ends neither in .npy nor in .csv, and this build of octopair reads no mesh files");
+#endif
+}
+
+LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths) {
+    if (scenes.size() == 1) return std::move(scenes.front());
+    LoadedScene joined;
+    joined.moving = scenes.front().moving;
+    joined.frames = scenes.front().frames;
+    bool wide = false, named = false;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const LoadedScene& scene = scenes[i];
+        if (scene.moving != joined.moving || scene.frames != joined.frames) {
+            refuse(paths[i], fmt::format("{} frames beside the {} of {}; one set needs the same number of each",
+                                         scene.frames, joined.frames, paths[0]));
+        }
+        joined.objects += scene.objects;
+        wide |= std::holds_alternative<Buffer<Box3d>>(scene.boxes);
+        named |= !scene.names.empty();
+    }
+    if (named) {
+        for (LoadedScene& scene : scenes) {
+            scene.names.resize(std::size_t(scene.objects));
+            std::move(scene.names.begin(), scene.names.end(), std::back_inserter(joined.names));
+        }
+    }
+    if (wide) {
+        joined.boxes = join_boxes<Box3d>(scenes, joined.objects);
+    } else {
+        joined.boxes = join_boxes<Box3f>(scenes, joined.objects);
+    }
+    return joined;
+}
+
+std::optional<Fault> find_fault(const LoadedScene& scene) {
+    return std::visit(
+        [&](const auto& boxes) -> std::optional<Fault> {
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
+                const auto what = fault_of(boxes[i]);
+                if (what) return Fault{i / scene.objects, i % scene.objects, *what};
+            }
+            return std::nullopt;
+        },
+        scene.boxes);
+}
+
+}  // namespace octopair::io

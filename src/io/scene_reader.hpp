@@ -1,0 +1,33 @@
+// Scene files of any kind, told apart by the ending of their names: .npy, .csv, and what Assimp reads.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+
+#include "io/loaded_scene.hpp"
+
+namespace octopair::io {
+
+/// What one object of a mesh file is: a node that shows a mesh, or a triangle.
+enum class MeshObjects : std::uint8_t { node, triangle };
+
+/// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
+LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop = {});
+
+/// Several scenes as one set: objects are numbered on, in each frame. Float32 beside float64 becomes float64. Throws
+/// Error{bad_input} where their frames do not agree.
+LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths);
+
+/// An object that is not a box, and why: "min x is nan, not a finite number".
+struct Fault {
+    std::uint64_t frame;
+    std::uint64_t object;
+    std::string what;
+};
+
+/// The first one, or nothing if all are boxes.
+std::optional<Fault> find_fault(const LoadedScene& scene);
+
+}  // namespace octopair::io
