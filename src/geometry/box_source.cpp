@@ -25,7 +25,7 @@ float round_down(double value) {
     if (value <= -double(FLT_MAX)) return -FLT_MAX;
     if (value >= double(FLT_MAX)) return FLT_MAX;
     const float nearest = float(value);
-    return double(nearest) > value ? std::nextafter(nearest, -FLT_MAX) : nearest;
+    return double(nearest) > value ? std::nextafterf(nearest, -FLT_MAX) : nearest;
 }
 
 float round_up(double value) { return -round_down(-value); }

@@ -23,20 +23,21 @@ bool oriented(const Entry& row, const Entry& column, const Orientation& orientat
 
 }  // namespace
 
-void PairMaker::sweep(const SweepSet& rows, const SweepSet& columns, SweepKind kind, const Orientation& orientation) {
+void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
-    cursor.row_end = rows.size();
+    cursor.row_end = sweep.rows.size();
     while (cursor.row < cursor.row_end) {
-        const std::size_t count = sweep_rows(rows, columns, kind, cursor, hits_);
-        drain(rows, columns, std::span(hits_).first(count), orientation);
+        const std::size_t count = sweep_rows(sweep, cursor, hits_);
+        drain(sweep, std::span(hits_).first(count), orientation);
         if (cursor.row < cursor.row_end && context_.stop.stop_requested()) {
             throw Error(ErrorCode::cancelled, "cancelled");
         }
     }
 }
 
-void PairMaker::drain(const SweepSet& rows, const SweepSet& columns, std::span<const HitMask> hits,
-                      const Orientation& orientation) {
+void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits, const Orientation& orientation) {
+    const SweepSet& rows = sweep.rows;
+    const SweepSet& columns = sweep.columns;
     const bool plain = context_.source.exact() && orientation == Orientation{};
     if (plain && writer_.counting()) {
         std::uint64_t pairs = 0;

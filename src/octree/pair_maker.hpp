@@ -33,14 +33,13 @@ class PairMaker {
 public:
     PairMaker(const ScanContext& context, PairWriter& writer) : context_(context), writer_(writer) {}
 
-    /// Runs a sweep of the rows [row_begin, row_end) to its end. Throws Error{cancelled}.
-    void sweep(const SweepSet& rows, const SweepSet& columns, SweepKind kind, const Orientation& orientation);
+    /// Runs a sweep to its end. Throws Error{cancelled}.
+    void sweep(const Sweep& sweep, const Orientation& orientation);
     /// Hands what it still holds to the writer; to be called once at the end.
     void flush();
 
 private:
-    void drain(const SweepSet& rows, const SweepSet& columns, std::span<const HitMask> hits,
-               const Orientation& orientation);
+    void drain(const Sweep& sweep, std::span<const HitMask> hits, const Orientation& orientation);
     void add(const Entry& row, const Entry& column, const Orientation& orientation);
     void add(std::uint32_t row, std::uint32_t column);
 

@@ -46,7 +46,7 @@ struct TileSweep {
         for (std::size_t i = 0; i < row_set.size(); ++i) reach = std::max(reach, row_set.high(0)[i]);
         std::size_t first = 0;
         if (kind == SweepKind::self) {
-            maker.sweep(row_set, row_set, SweepKind::self, orientation);
+            maker.sweep({row_set, row_set, SweepKind::self}, orientation);
             first = t + 1;
         }
         const float begin = row_tile.front().key;
@@ -55,7 +55,7 @@ struct TileSweep {
             if (column_tile.back().key < begin) continue;
             if (column_tile.front().key > reach) break;
             column_set.assign(column_entries, column_tile, axis);
-            maker.sweep(row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind, orientation);
+            maker.sweep({row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind}, orientation);
         }
         maker.flush();
     }

@@ -28,8 +28,10 @@ public:
     /// Those that touch `node`, kept by the octants above. Nodes must come in pre-order, from any first one.
     const Handed& at(NodeIndex node) {
         const unsigned level = octree_.nodes()[node].level;
-        if (lists_.size() <= level) lists_.resize(level + 1);
-        if (owners_.size() <= level) owners_.resize(level + 1, none);
+        if (lists_.size() <= level) {
+            lists_.resize(level + 1);
+            owners_.resize(level + 1, none);
+        }
         if (owners_[level] == node) return lists_[level];
         if (level == 0) {
             lists_[0].clear();
@@ -93,7 +95,7 @@ private:
             rows_.assign(own, order_.sort(list, axis, executor_), axis);
             executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
                 PairMaker maker(context_, writer);
-                maker.sweep(rows_, rows_, SweepKind::self, {});
+                maker.sweep({rows_, rows_, SweepKind::self}, {});
                 maker.flush();
             });
             return;
@@ -110,8 +112,8 @@ private:
             columns_.assign(second.entries, order_.sort(second, axis, executor_), axis);
             executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
                 PairMaker maker(context_, writer);
-                maker.sweep(rows_, columns_, SweepKind::cross, {});
-                maker.sweep(columns_, rows_, SweepKind::cross_strict, {});
+                maker.sweep({rows_, columns_, SweepKind::cross}, {});
+                maker.sweep({columns_, rows_, SweepKind::cross_strict}, {});
                 maker.flush();
             });
             return;

@@ -53,8 +53,9 @@ Entry SweepSet::entry(std::size_t i) const {
     return entry;
 }
 
-void start_row(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor) {
+void start_row(const Sweep& sweep, SweepCursor& cursor) {
     if (cursor.in_row) return;
+    const auto& [rows, columns, kind] = sweep;
     if (kind == SweepKind::self) {
         cursor.column = cursor.row + 1;
     } else {
@@ -68,11 +69,12 @@ void start_row(const SweepSet& rows, const SweepSet& columns, SweepKind kind, Sw
     cursor.in_row = true;
 }
 
-std::size_t sweep_rows_scalar(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
-                              std::span<HitMask> hits) {
+std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
+    const SweepSet& rows = sweep.rows;
+    const SweepSet& columns = sweep.columns;
     std::size_t written = 0;
     for (std::size_t tests = 0; cursor.row < cursor.row_end; ++cursor.row, cursor.in_row = false) {
-        start_row(rows, columns, kind, cursor);
+        start_row(sweep, cursor);
         const float end = rows.high(0)[cursor.row];
         for (; cursor.column < columns.size() && columns.low(0)[cursor.column] <= end; ++cursor.column) {
             if (written == hits.size() || ++tests > tests_per_call) return written;

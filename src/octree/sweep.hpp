@@ -66,14 +66,18 @@ struct SweepCursor {
 
 enum class SweepKind : std::uint8_t { self, cross, cross_strict };
 
+struct Sweep {
+    const SweepSet& rows;
+    const SweepSet& columns;  ///< self: the same set
+    SweepKind kind;
+};
+
 /// Fills `hits` from the cursor on; returns how many masks it wrote. It stops early when `hits` is full or after a
 /// bounded number of tests, with the cursor where it stopped; done when cursor.row == cursor.row_end.
-std::size_t sweep_rows(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
-                       std::span<HitMask> hits);
+std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
 /// The specification: the same contract, a column at a time.
-std::size_t sweep_rows_scalar(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
-                              std::span<HitMask> hits);
+std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
 /// The instruction set that sweep_rows uses here, such as "AVX2".
 std::string sweep_instruction_set();
@@ -81,6 +85,6 @@ std::string sweep_instruction_set();
 void restrict_sweep_to_baseline(bool baseline_only);
 
 /// Moves `cursor` to the columns of its row, if it is not there yet. Shared by all versions.
-void start_row(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor);
+void start_row(const Sweep& sweep, SweepCursor& cursor);
 
 }  // namespace octopair

@@ -17,8 +17,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t runs_per_call = std::size_t(1) << 20;  // a few milliseconds: then the caller looks for a stop
 
-std::size_t sweep_rows_simd(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
-                            std::span<HitMask> hits) {
+std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
+    const SweepSet& rows = sweep.rows;
+    const SweepSet& columns = sweep.columns;
     using Floats = hn::CappedTag<float, 16>;  // a register, at most the bits of a HitMask and the padding of a set
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
@@ -33,7 +34,7 @@ std::size_t sweep_rows_simd(const SweepSet& rows, const SweepSet& columns, Sweep
     std::size_t written = 0;
     std::size_t runs = 0;
     for (; cursor.row < cursor.row_end; ++cursor.row, cursor.in_row = false) {
-        start_row(rows, columns, kind, cursor);
+        start_row(sweep, cursor);
         const std::size_t row = cursor.row;
         const float end = rows.high(0)[row];
         const auto row_end = hn::Set(d, end);
@@ -78,9 +79,8 @@ namespace octopair {
 
 HWY_EXPORT(sweep_rows_simd);
 
-std::size_t sweep_rows(const SweepSet& rows, const SweepSet& columns, SweepKind kind, SweepCursor& cursor,
-                       std::span<HitMask> hits) {
-    return HWY_DYNAMIC_DISPATCH(sweep_rows_simd)(rows, columns, kind, cursor, hits);
+std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
+    return HWY_DYNAMIC_DISPATCH(sweep_rows_simd)(sweep, cursor, hits);
 }
 
 std::string sweep_instruction_set() {

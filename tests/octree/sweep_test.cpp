@@ -36,16 +36,16 @@ SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
     return set;
 }
 
-using Kernel = std::size_t (*)(const SweepSet&, const SweepSet&, SweepKind, SweepCursor&, std::span<HitMask>);
+using Kernel = std::size_t (*)(const Sweep&, SweepCursor&, std::span<HitMask>);
 
 /// All hits, by way of a queue of `room` masks.
-Hits run(Kernel kernel, const SweepSet& rows, const SweepSet& columns, SweepKind kind, std::size_t room) {
+Hits run(Kernel kernel, const Sweep& sweep, std::size_t room) {
     Hits hits;
     std::vector<HitMask> queue(room);
     SweepCursor cursor;
-    cursor.row_end = rows.size();
+    cursor.row_end = sweep.rows.size();
     while (cursor.row < cursor.row_end) {
-        const std::size_t count = kernel(rows, columns, kind, cursor, queue);
+        const std::size_t count = kernel(sweep, cursor, queue);
         for (std::size_t i = 0; i < count; ++i) {
             for (unsigned bit = 0; bit < 32; ++bit) {
                 if (queue[i].bits >> bit & 1u) hits.emplace_back(queue[i].row, queue[i].first + bit);
@@ -83,8 +83,8 @@ TEST(Sweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
             const SweepSet& others = kind == SweepKind::self ? rows : columns;
             const Hits expected = brute(rows, others, kind);
             for (const std::size_t room : {1, 3, 1000}) {
-                ASSERT_EQ(run(sweep_rows_scalar, rows, others, kind, room), expected) << "round " << round;
-                ASSERT_EQ(run(sweep_rows, rows, others, kind, room), expected) << "round " << round;
+                ASSERT_EQ(run(sweep_rows_scalar, {rows, others, kind}, room), expected) << "round " << round;
+                ASSERT_EQ(run(sweep_rows, {rows, others, kind}, room), expected) << "round " << round;
             }
         }
     }
@@ -95,8 +95,8 @@ TEST(Sweep, CrossingBothWaysFindsEachPairOnce) {
     const SweepSet rows = sorted_set(random_entries(random, 60, 0), 0);
     const SweepSet columns = sorted_set(random_entries(random, 80, 1000), 0);
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (const auto& [i, k] : run(sweep_rows, rows, columns, SweepKind::cross, 100)) found.insert({i, k});
-    for (const auto& [k, i] : run(sweep_rows, columns, rows, SweepKind::cross_strict, 100)) found.insert({i, k});
+    for (const auto& [i, k] : run(sweep_rows, {rows, columns, SweepKind::cross}, 100)) found.insert({i, k});
+    for (const auto& [k, i] : run(sweep_rows, {columns, rows, SweepKind::cross_strict}, 100)) found.insert({i, k});
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected;
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
         for (std::uint32_t k = 0; k < columns.size(); ++k) {
@@ -110,10 +110,10 @@ TEST(Sweep, CrossingBothWaysFindsEachPairOnce) {
 TEST(Sweep, BaselineInstructionSetFindsTheSameHits) {
     std::mt19937 random(3);
     const SweepSet set = sorted_set(random_entries(random, 2000, 0), 1);
-    const Hits best = run(sweep_rows, set, set, SweepKind::self, 50);
+    const Hits best = run(sweep_rows, {set, set, SweepKind::self}, 50);
     restrict_sweep_to_baseline(true);
     const std::string restricted = sweep_instruction_set();
-    const Hits baseline = run(sweep_rows, set, set, SweepKind::self, 50);
+    const Hits baseline = run(sweep_rows, {set, set, SweepKind::self}, 50);
     restrict_sweep_to_baseline(false);
     EXPECT_EQ(best, baseline) << "against " << restricted;
     EXPECT_GT(best.size(), 1000u);
@@ -125,7 +125,7 @@ TEST(Sweep, FarBoxesTouchTheLargestFiniteNumbersOnly) {
     entries[0] = {{-most, -most, -most}, {most, most, most}, 0, 0};
     entries[1] = {{most, most, most}, {most, most, most}, 1, 0};
     const SweepSet set = sorted_set(entries, 0);
-    EXPECT_EQ(run(sweep_rows, set, set, SweepKind::self, 10), (Hits{{0, 1}}));
+    EXPECT_EQ(run(sweep_rows, {set, set, SweepKind::self}, 10), (Hits{{0, 1}}));
 }
 
 }  // namespace

@@ -103,8 +103,7 @@ std::vector<Share> shares_of(const PairList::Storage& list, unsigned threads) {
 
 }  // namespace
 
-void append_ascending(const PairList::Storage& unsorted, ObjectRange range, PairList::Storage& sorted, Team& team,
-                      std::stop_token stop) {
+void AscendingOrder::append(const PairList::Storage& unsorted, ObjectRange range, PairList::Storage& sorted) const {
     if (unsorted.size == 0) return;
     const std::uint64_t objects = range.end - range.begin;
     const unsigned shift = unsigned(std::max(0, int(std::bit_width(objects)) - int(bucket_bits)));

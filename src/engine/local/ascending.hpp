@@ -9,9 +9,13 @@
 
 namespace octopair {
 
-/// Appends the pairs of `unsorted`, all of whose `a` are in `range`, to `sorted` in ascending order. Pairs are
-/// distinct. Throws Error{cancelled}.
-void append_ascending(const PairList::Storage& unsorted, ObjectRange range, PairList::Storage& sorted, Team& team,
-                      std::stop_token stop);
+struct AscendingOrder {
+    Team& team;
+    std::stop_token stop;
+
+    /// Appends the pairs of `unsorted`, all of whose `a` are in `range`, to `sorted` in ascending order. Pairs are
+    /// distinct. Throws Error{cancelled}.
+    void append(const PairList::Storage& unsorted, ObjectRange range, PairList::Storage& sorted) const;
+};
 
 }  // namespace octopair

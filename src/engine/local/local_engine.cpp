@@ -193,7 +193,7 @@ private:
         const bool straight = call.output.list != nullptr && !call.request.options.limit;
         PairList::Storage& sorted = straight ? call.output.list->storage() : sorted_.storage();
         if (!straight) sorted.reset();
-        append_ascending(scratch_.storage(), range, sorted, team_, call.stop.get_token());
+        AscendingOrder{team_, call.stop.get_token()}.append(scratch_.storage(), range, sorted);
         call.summary.steps.scan += seconds_since(begin);
         if (straight) {
             call.summary.pairs = sorted.size;

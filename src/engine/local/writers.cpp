@@ -10,19 +10,14 @@ namespace octopair {
 
 namespace {
 
-/// Counts for one share, added to the total once.
 class CountWriter final : public PairWriter {
 public:
-    explicit CountWriter(std::atomic<std::uint64_t>& total) : total_(total) {}
-    ~CountWriter() override { total_ += pairs_; }
-    CountWriter(const CountWriter&) = delete;
-    CountWriter& operator=(const CountWriter&) = delete;
     bool counting() const override { return true; }
     void write(std::span<const Pair> pairs) override { pairs_ += pairs.size(); }
     void write_count(std::uint64_t pairs) override { pairs_ += pairs; }
+    std::uint64_t pairs() const { return pairs_; }
 
 private:
-    std::atomic<std::uint64_t>& total_;
     std::uint64_t pairs_ = 0;
 };
 
@@ -55,8 +50,9 @@ void TeamExecutor::for_each_writing(std::size_t, const std::function<void(std::s
 
 void CountExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
     team().for_each(count, [&](std::size_t i, unsigned) {
-        CountWriter writer(pairs_);
+        CountWriter writer;
         body(i, writer);
+        pairs_ += writer.pairs();
     });
 }
 
@@ -90,7 +86,8 @@ public:
 private:
     void put(std::span<const Pair> pairs) {
         if (pairs.empty()) return;
-        if ((owner_.written_ += pairs.size()) > owner_.most_) throw OverBudget{};
+        const std::uint64_t written_so_far = owner_.written_ += pairs.size();
+        if (written_so_far > owner_.most_) throw OverBudget{};
         if (worker_.block.size() < pairs.size()) worker_.block = owner_.list_.take_block(pairs.size());
         std::copy(pairs.begin(), pairs.end(), worker_.block.begin());
         const std::span<const Pair> written = worker_.block.first(pairs.size());
