@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t sample_stride = 16;      // one object of so many is sampled, but
 constexpr std::size_t most_samples = 1 << 21;  // no more than these
 constexpr std::size_t batch_size = 512;        // objects loaded at a time: their entries stay in the first cache
-constexpr NodeIndex crossing = ~NodeIndex(0);
 
 /// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
 std::size_t jitter(std::size_t i, std::size_t stride) {
@@ -23,8 +22,9 @@ std::size_t jitter(std::size_t i, std::size_t stride) {
 
 bool within(const Node& node, const CellBox& box) {
     const std::uint32_t last = (cells_per_axis >> node.level) - 1;
-    return ((box.hi[0] - node.lo[0] <= last) & (box.hi[1] - node.lo[1] <= last) & (box.hi[2] - node.lo[2] <= last)) !=
-           0;
+    bool inside = true;
+    for (unsigned axis = 0; axis < 3; ++axis) inside &= box.hi[axis] - node.lo[axis] <= last;
+    return inside;
 }
 
 /// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the

@@ -1,4 +1,4 @@
-// Team: the threads of an engine. The one place that knows oneTBB.
+// Team: the threads of an engine.
 //
 // A team of one runs everything on the calling thread and touches no scheduler. Which thread runs which index is free;
 // nothing above this file may let its result depend on it. Not reentrant: a body must not call its team.
@@ -21,6 +21,8 @@ struct SortItem {
     bool operator<(const SortItem& other) const { return key != other.key ? key < other.key : object < other.object; }
 };
 
+class TbbThreads;
+
 class Team {
 public:
     /// 0: one thread per core.
@@ -41,9 +43,8 @@ public:
     void sort(std::span<SortItem> items);
 
 private:
-    struct Arena;
     unsigned threads_;
-    std::unique_ptr<Arena> arena_;
+    std::unique_ptr<TbbThreads> tbb_;  // none for a team of one
 };
 
 }  // namespace octopair
