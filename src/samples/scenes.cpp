@@ -21,7 +21,7 @@ const Kind& find_kind(std::string_view name) {
     const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.name == name; });
     if (found != kinds.end()) return *found;
     std::string message = "unknown kind of scene '" + std::string(name) + "'; the kinds are";
-    for (const Kind& kind : kinds) message += " " + std::string(kind.name);
+    for (const Kind& kind : kinds) message.append(" ").append(kind.name);
     refuse(message);
 }
 

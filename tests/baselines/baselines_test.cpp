@@ -1,0 +1,125 @@
+// All baselines agree, pair for pair, with the oracle.
+#include "baselines/baselines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "samples/scenes.hpp"
+#include "support/cases.hpp"
+#include "support/compare.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair::baselines {
+namespace {
+
+using testing::same_pairs;
+
+constexpr std::uint64_t scenes_a_kind = testing::scaled(40, 4);
+
+class Baselines : public ::testing::TestWithParam<std::string> {};
+
+void expect_agreement(const std::vector<Box3f>& boxes) {
+    const Objects objects{std::span<const Box3f>(boxes)};
+    const std::vector<Pair> expected = oracle_pairs(objects);
+    EXPECT_TRUE(same_pairs(naive_pairs(std::span<const Box3f>(boxes)), expected, {objects})) << "naive";
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        EXPECT_TRUE(same_pairs(ascending(sweep_and_prune(boxes, axis)), expected, {objects})) << "sweep along " << axis;
+    }
+    EXPECT_TRUE(same_pairs(ascending(lbvh_pairs(boxes, 1 + unsigned(boxes.size() % 3))), expected, {objects}))
+        << "LBVH";
+    EXPECT_TRUE(same_pairs(ascending(ICollide().next_frame(boxes)), expected, {objects})) << "I-COLLIDE";
+}
+
+TEST_P(Baselines, AgreeWithTheOracle) {
+    for (std::uint64_t i = 0; i < scenes_a_kind; ++i) {
+        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+        SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        expect_agreement(testing::make_boxes(GetParam(), seed % 400, seed));
+    }
+}
+
+TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
+    for (std::uint64_t i = 0; i < scenes_a_kind; ++i) {
+        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+        SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), seed % 100, seed);
+        const Objects objects{std::span<const Box3f>(boxes)};
+        const PaperSettings settings{unsigned(seed >> 8) % 5, 1 + unsigned(seed >> 16) % 3,
+                                     1 + unsigned(seed >> 24) % 3};
+        const PaperResult result = paper_pairs(boxes, settings);
+        EXPECT_TRUE(same_pairs(result.pairs, oracle_pairs(objects), {objects}));
+        EXPECT_GE(result.entries, boxes.size());
+        EXPECT_GE(result.candidates, result.pairs.size());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Baselines, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+
+TEST(BaselinesPaper, EntriesDoNotDependOnTheSlaves) {
+    const auto boxes = samples::make_scene("mixed", 3000, 1);
+    const PaperResult alone = paper_pairs(boxes, {5, 1, 1});
+    for (const PaperSettings settings : {PaperSettings{5, 1, 2}, {5, 3, 1}, {5, 2, 4}}) {
+        const PaperResult result = paper_pairs(boxes, settings);
+        EXPECT_EQ(result.entries, alone.entries);
+        EXPECT_EQ(result.candidates, alone.candidates);
+        EXPECT_TRUE(testing::same_bytes(result.pairs, alone.pairs));
+    }
+}
+
+TEST(BaselinesPaper, AnObjectThatFillsTheWorldHasOneCode) {
+    const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}}};
+    EXPECT_EQ(paper_pairs(std::span(boxes).first(1), {6}).entries, 1u);
+    EXPECT_EQ(paper_pairs(boxes, {1}).entries, 2u);
+}
+
+TEST(BaselinesICollide, FollowsMovingScenes) {
+    constexpr std::uint64_t objects = 1000;
+    ICollide engine;
+    std::vector<Box3f> frame;
+    std::uint64_t frames = 0;
+    samples::generate_scene({"brownian", objects, 3, 20}, [&](std::span<const Box3f> batch) {
+        frame.insert(frame.end(), batch.begin(), batch.end());
+        if (frame.size() < objects) return;
+        const Objects all{std::span<const Box3f>(frame)};
+        EXPECT_TRUE(same_pairs(ascending(engine.next_frame(frame)), oracle_pairs(all), {all})) << "frame " << frames;
+        ++frames;
+        frame.clear();
+    });
+    EXPECT_EQ(frames, 20u);
+}
+
+TEST(BaselinesICollide, FollowsLeapsAndChangesOfNumber) {
+    ICollide engine;
+    for (const std::string& kind : testing::all_kind_names()) {
+        for (const std::uint64_t objects : {200, 200, 150}) {
+            const auto boxes = testing::make_boxes(kind, objects, objects + kind.size());
+            const Objects all{std::span<const Box3f>(boxes)};
+            EXPECT_TRUE(same_pairs(ascending(engine.next_frame(boxes)), oracle_pairs(all), {all})) << kind;
+        }
+    }
+}
+
+TEST(BaselinesOracle, RuleHoldsToTheLastBit) {
+    const float gap = 0x1p-10f;
+    const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1 + gap, 0, 0}, {2, 1, 1}}};
+    const Objects objects{std::span<const Box3f>(boxes)};
+    EXPECT_TRUE(oracle_pairs(objects).empty());
+    EXPECT_EQ(oracle_pairs(objects, gap).size(), 1u);
+    EXPECT_TRUE(oracle_pairs(objects, std::nextafter(double(gap), 0)).empty());
+    const std::vector<double> padding = {gap / 2, gap / 4};
+    const Objects padded{std::span<const Box3f>(boxes), padding};
+    EXPECT_TRUE(oracle_pairs(padded).empty());
+    EXPECT_EQ(oracle_pairs(padded, gap / 4).size(), 1u);
+    EXPECT_EQ(oracle_pairs_between(objects, padded, gap * 3 / 4), (std::vector<Pair>{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
+}
+
+TEST(BaselinesOracle, BothPrecisionsOfNaiveAgree) {
+    const auto boxes = samples::make_scene("dense", 500, 2);
+    const auto doubles = testing::widened(boxes);
+    EXPECT_EQ(naive_pairs(std::span<const Box3f>(boxes)), naive_pairs(std::span<const Box3d>(doubles)));
+}
+
+}  // namespace
+}  // namespace octopair::baselines

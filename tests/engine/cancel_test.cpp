@@ -1,0 +1,134 @@
+// A stop request ends any call within 200 ms.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
+
+class Cancel : public ::testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
+
+/// Runs `call(stop_token)`, asks it to stop after `delay`, and expects Error{cancelled} in time. A call may also finish
+/// before it is asked, if `may_finish`.
+template <typename Call>
+void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
+    std::stop_source source;
+    Clock::time_point asked = Clock::time_point::max();
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(delay);
+        asked = Clock::now();
+        source.request_stop();
+    });
+    bool finished = false;
+    try {
+        call(source.get_token());
+        finished = true;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+    }
+    const Clock::time_point ended = Clock::now();
+    stopper.join();
+    if (finished) {
+        EXPECT_TRUE(may_finish) << "finished, though asked to stop";
+    } else {
+        EXPECT_LE(ended - asked, patience) << std::chrono::duration<double>(ended - asked).count() << " s";
+    }
+}
+
+/// Every way to ask for the pairs of `boxes`, and an engine that works after each.
+void expect_all_cancelled(const std::vector<Box3f>& boxes, unsigned threads, milliseconds delay, bool may_finish) {
+    const Objects objects{std::span<const Box3f>(boxes)};
+    const auto engine = make_local_engine(threads);
+    const auto few = samples::make_scene("dense", 100, 1);
+    const std::uint64_t few_pairs = find_pairs(few).size();
+    PairList list;
+    for (const Order order : {Order::octal, Order::ascending}) {
+        SCOPED_TRACE("order " + std::to_string(int(order)));
+        Options options;
+        options.order = order;
+        options.buffer_bytes = 64 << 20;
+        expect_cancelled([&](std::stop_token stop) { engine->count_pairs(objects, options, stop); }, delay, may_finish);
+        expect_cancelled(
+            [&](std::stop_token stop) {
+                engine->stream_pairs(
+                    objects, [](auto) {}, options, stop);
+            },
+            delay, may_finish);
+        EXPECT_EQ(engine->find_pairs(Objects{std::span<const Box3f>(few)}, list, options).pairs, few_pairs);
+    }
+}
+
+TEST_P(Cancel, InOneCrowdedOctant) {
+    const auto boxes = samples::make_scene("coincident", 300'000, 1);
+    for (const int delay : {0, 20, 150}) {
+        SCOPED_TRACE(delay);
+        expect_all_cancelled(boxes, GetParam(), milliseconds(delay), false);
+    }
+}
+
+TEST_P(Cancel, InAJoinOfOneCrowd) {
+    const auto boxes = samples::make_scene("coincident", 300'000, 1);
+    const Objects objects{std::span<const Box3f>(boxes)};
+    const auto engine = make_local_engine(GetParam());
+    expect_cancelled([&](std::stop_token stop) { engine->count_pairs_between(objects, objects, {}, stop); },
+                     milliseconds(50), false);
+}
+
+TEST_P(Cancel, AtAnyMomentOfALargeScene) {
+    for (const char* kind : {"dense", "rods", "sheets-z"}) {
+        const auto boxes = samples::make_scene(kind, testing::scaled(2'000'000, 10), 1);
+        for (const int delay : {0, 5, 30, 80, 150}) {
+            SCOPED_TRACE(std::string(kind) + " " + std::to_string(delay));
+            expect_all_cancelled(boxes, GetParam(), milliseconds(delay), true);
+        }
+    }
+}
+
+TEST_P(Cancel, ListIsEmptyAfterwards) {
+    const auto boxes = samples::make_scene("dense", testing::scaled(2'000'000, 10), 1);
+    const Objects objects{std::span<const Box3f>(boxes)};
+    const auto engine = make_local_engine(GetParam());
+    PairList list;
+    for (const int delay : {0, 10, 40}) {
+        std::uint64_t left = 0;
+        expect_cancelled(
+            [&](std::stop_token stop) {
+                left = 0;
+                try {
+                    engine->find_pairs(objects, list, {}, stop);
+                } catch (const Error&) {
+                    left = list.size();
+                    throw;
+                }
+            },
+            milliseconds(delay), true);
+        EXPECT_EQ(left, 0u);
+    }
+}
+
+TEST(CancelBefore, ARequestMadeBeforeTheCallHolds) {
+    const auto boxes = samples::make_scene("uniform", 1000, 1);
+    std::stop_source source;
+    source.request_stop();
+    PairList list;
+    try {
+        make_local_engine(2)->find_pairs(Objects{std::span<const Box3f>(boxes)}, list, {}, source.get_token());
+        ADD_FAILURE() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,70 @@
+// The same bytes always: pinned hashes of the ascending pairs of every kind of scene, and octal pairs that do not depend
+// on the number of threads.
+#include <gtest/gtest.h>
+
+#include "baselines/baselines.hpp"
+#include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
+#include "support/hash.hpp"
+#include "support/kinds.hpp"
+#include "support/pinned.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+class EngineHashes : public ::testing::TestWithParam<std::string> {
+protected:
+    const testing::Pinned& expected() const { return testing::pinned_scene(GetParam()); }
+    std::vector<Box3f> scene() const { return samples::make_scene(GetParam(), expected().objects, 1); }
+};
+
+std::vector<std::string> sample_kinds() {
+    const auto kinds = samples::scene_kinds();
+    return {kinds.begin(), kinds.end()};
+}
+
+TEST_P(EngineHashes, AscendingIsAsPinned) {
+    const auto boxes = scene();
+    for (const unsigned threads : {1u, 2u, 3u, 8u, 16u}) {
+        testing::Hash hash;
+        Options options;
+        options.buffer_bytes = 64 << 20;
+        const Summary summary = make_local_engine(threads)->stream_pairs(
+            Objects{std::span<const Box3f>(boxes)}, [&](std::span<const Pair> batch) { hash.add(batch); }, options);
+        EXPECT_EQ(summary.pairs, expected().pairs) << threads << " threads";
+        EXPECT_EQ(hash.value(), expected().pair_hash) << threads << " threads";
+    }
+}
+
+TEST_P(EngineHashes, Float64IsAsPinnedToo) {
+    const auto boxes = testing::widened(scene());
+    PairList list;
+    make_local_engine(2)->find_pairs(Objects{std::span<const Box3d>(boxes)}, list);
+    testing::Hash hash;
+    for (const auto chunk : list.chunks()) hash.add(chunk);
+    EXPECT_EQ(hash.value(), expected().pair_hash);
+}
+
+TEST_P(EngineHashes, OctalIsTheSameForAnyThreads) {
+    const auto boxes = scene();
+    std::vector<Pair> first;
+    for (const unsigned threads : {1u, 2u, 3u, 8u, 16u}) {
+        Options options;
+        options.order = Order::octal;
+        PairList list;
+        make_local_engine(threads)->find_pairs(Objects{std::span<const Box3f>(boxes)}, list, options);
+        EXPECT_EQ(list.size(), expected().pairs);
+        const auto pairs = list.to_vector();
+        if (threads == 1) first = pairs;
+        EXPECT_TRUE(pairs == first) << threads << " threads";
+    }
+    EXPECT_EQ(testing::hash_of(baselines::ascending(first)), expected().pair_hash);
+}
+
+INSTANTIATE_TEST_SUITE_P(, EngineHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+
+TEST(EngineHashesTable, HasEveryKind) { EXPECT_EQ(std::size(testing::pinned_scenes), sample_kinds().size()); }
+
+}  // namespace
+}  // namespace octopair

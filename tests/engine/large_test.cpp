@@ -1,0 +1,88 @@
+// More pairs than 32 bits count, in memory that does not grow with them.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <string>
+#include <vector>
+
+#include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+/// The most memory this process ever had resident, in bytes.
+std::uint64_t peak_rss() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+constexpr std::uint64_t pairs_of(std::uint64_t n) { return n * (n - 1) / 2; }
+
+TEST(EngineLarge, CountsBeyond32Bits) {
+    constexpr std::uint64_t objects = testing::sanitized ? 20'000 : 92'683;
+    static_assert(testing::sanitized || pairs_of(objects) == 4'295'022'903);
+    const auto boxes = samples::make_scene("coincident", objects, 1);
+    const std::uint64_t before = peak_rss();
+    for (const unsigned threads : {1u, 2u}) {
+        EXPECT_EQ(make_local_engine(threads)->count_pairs(Objects{std::span<const Box3f>(boxes)}), pairs_of(objects));
+    }
+    if (!testing::sanitized) {
+        EXPECT_LT(peak_rss() - before, 100u << 20);
+    }
+}
+
+TEST(EngineLarge, StreamsInBoundedMemory) {
+    constexpr std::uint64_t objects = testing::scaled(30'000, 6);
+    const auto boxes = samples::make_scene("coincident", objects, 1);
+    const std::uint64_t before = peak_rss();
+    for (const Order order : {Order::octal, Order::ascending}) {
+        Options options;
+        options.order = order;
+        options.buffer_bytes = 64 << 20;
+        std::uint64_t pairs = 0;
+        make_local_engine(2)->stream_pairs(
+            Objects{std::span<const Box3f>(boxes)}, [&](std::span<const Pair> batch) { pairs += batch.size(); },
+            options);
+        EXPECT_EQ(pairs, pairs_of(objects));
+    }
+    if (!testing::sanitized) {
+        EXPECT_LT(peak_rss() - before, 160u << 20);
+    }
+}
+
+/// One kind a process, so that the peak of one does not hide that of another.
+class EngineMemory : public ::testing::TestWithParam<std::string> {};
+
+std::vector<std::string> kinds_to_measure() {
+    const auto kinds = samples::scene_kinds();
+    std::vector<std::string> names(kinds.begin(), kinds.end());
+    std::erase(names, "coincident");  // half a million million pairs
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(, EngineMemory, ::testing::ValuesIn(kinds_to_measure()), testing::param_name);
+
+TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
+    constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
+    const auto boxes = samples::make_scene(GetParam(), objects, 1);
+    const Objects all{std::span<const Box3f>(boxes)};
+    const std::uint64_t before = peak_rss();
+    const auto engine = make_local_engine(2);
+    engine->count_pairs(all);
+    const double bytes = double(peak_rss() - before) / double(objects);
+    RecordProperty("bytes_an_object", std::to_string(bytes));
+    if (!testing::sanitized) {
+        EXPECT_LE(bytes, 56);
+    }
+    PairList list;
+    Options options;
+    options.order = Order::octal;
+    EXPECT_LE(engine->find_pairs(all, list, options).entries, 8 * objects);
+}
+
+}  // namespace
+}  // namespace octopair

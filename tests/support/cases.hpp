@@ -1,0 +1,43 @@
+// Random calls of an engine, each from one seed, so that any can be run again alone.
+//
+// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that one case.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "octopair/octopair.hpp"
+
+namespace octopair::testing {
+
+/// The objects of a call, owned.
+struct OwnedObjects {
+    std::variant<std::vector<Box3f>, std::vector<Box3d>> boxes;
+    std::vector<double> padding;
+
+    Objects view() const;
+};
+
+/// One random call: what is searched, and how.
+struct Case {
+    OwnedObjects first;
+    std::optional<OwnedObjects> second;  ///< of a join
+    double margin = 0;
+    std::uint64_t limit = 0;         ///< for the calls with a limit; may be more than there are
+    std::uint64_t buffer_bytes = 0;  ///< for the calls that stream
+    unsigned threads[3] = {};        ///< 1 to 8
+
+    std::string describe() const;
+};
+
+/// Objects 0 to 3,000, mostly few; kinds whose pairs are many get fewer.
+Case make_case(const std::string& kind, std::uint64_t seed);
+
+/// The seed of the i-th case of a kind, or OCTOPAIR_TEST_SEED.
+std::uint64_t case_seed(const std::string& kind, std::uint64_t i);
+/// True if OCTOPAIR_TEST_SEED asks for one case only.
+bool replaying();
+
+}  // namespace octopair::testing
