@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/isolated_read.hpp"
+
 namespace octopair::cli {
 
 Objects InputSet::frame(std::uint64_t f) const {
@@ -27,7 +29,8 @@ InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects m
     InputSet set;
     std::vector<io::LoadedScene> scenes;
     for (const std::string& path : paths) {
-        scenes.push_back(io::read_scene(path, mesh_objects, stop));
+        scenes.push_back(io::is_mesh_file(path) ? read_isolated(path, mesh_objects, stop)
+                                                : io::read_scene(path, mesh_objects, stop));
         set.parts.push_back({path, scenes.back().objects});
     }
     set.scene = io::join_scenes(scenes, paths);

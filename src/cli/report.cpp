@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/numbers.hpp"
@@ -11,10 +12,15 @@ namespace octopair::cli {
 
 namespace {
 
+/// The larger of this process and a child that read a mesh file.
 std::uint64_t peak_rss_bytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
+    std::uint64_t peak = 0;
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        ::getrusage(who, &usage);
+        peak = std::max(peak, std::uint64_t(usage.ru_maxrss) * 1024);
+    }
+    return peak;
 }
 
 std::string duration(double seconds) {

@@ -1,6 +1,7 @@
 #include "io/failure.hpp"
 
 #include <cerrno>
+#include <cmath>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -18,6 +19,9 @@ void fail_io(std::string_view file, std::string_view action, int error_number) {
     throw Error(memory ? ErrorCode::resource_limit : ErrorCode::io_failed,
                 fmt::format("{}: {}: {}", file, action, std::generic_category().message(error_number)));
 }
+
+std::string number_text(float number) { return std::isnan(number) ? "nan" : fmt::format("{}", number); }
+std::string number_text(double number) { return std::isnan(number) ? "nan" : fmt::format("{}", number); }
 
 void cancel() { throw Error(ErrorCode::cancelled, "interrupted"); }
 

@@ -11,6 +11,9 @@ namespace octopair::io {
 /// Throws Error{io_failed} "FILE: ACTION: the system's words for `error_number`"; an errno for want of memory becomes
 /// Error{resource_limit}.
 [[noreturn]] void fail_io(std::string_view file, std::string_view action, int error_number);
+/// As short as it can be written; nan without a sign.
+std::string number_text(float number);
+std::string number_text(double number);
 /// Throws Error{cancelled}.
 [[noreturn]] void cancel();
 

@@ -178,7 +178,8 @@ private:
     }
 
     [[noreturn]] void refuse_vertex(const Instance& instance, unsigned index, double value) const {
-        refuse(file_, fmt::format("node '{}': vertex {} is at {}, not at a finite place", instance.name, index, value));
+        refuse(file_, fmt::format("node '{}': vertex {} is at {}, not at a finite place", instance.name, index,
+                                  number_text(value)));
     }
 
     const aiScene& scene_;

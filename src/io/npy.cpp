@@ -97,7 +97,7 @@ Buffer<double> read_padding(const std::string& path, const std::stop_token& stop
     }
     for (std::size_t i = 0; i < padding.size(); ++i) {
         if (padding[i] >= 0 && std::isfinite(padding[i])) continue;
-        refuse(path, fmt::format("object {}: padding is {}, not a finite number >= 0", i, padding[i]));
+        refuse(path, fmt::format("object {}: padding is {}, not a finite number >= 0", i, number_text(padding[i])));
     }
     return padding;
 }

@@ -53,16 +53,29 @@ template <typename Real>
 std::optional<std::string> fault_of(const Box<Real>& box) {
     for (int axis = 0; axis < 3; ++axis) {
         const char name = "xyz"[axis];
-        if (!std::isfinite(box.min[axis])) return fmt::format("min {} is {}, not a finite number", name, box.min[axis]);
-        if (!std::isfinite(box.max[axis])) return fmt::format("max {} is {}, not a finite number", name, box.max[axis]);
+        if (!std::isfinite(box.min[axis]))
+            return fmt::format("min {} is {}, not a finite number", name, number_text(box.min[axis]));
+        if (!std::isfinite(box.max[axis]))
+            return fmt::format("max {} is {}, not a finite number", name, number_text(box.max[axis]));
         if (box.min[axis] > box.max[axis]) {
-            return fmt::format("min {} {} is above max {} {}", name, box.min[axis], name, box.max[axis]);
+            return fmt::format("min {} {} is above max {} {}", name, number_text(box.min[axis]), name,
+                               number_text(box.max[axis]));
         }
     }
     return std::nullopt;
 }
 
 }  // namespace
+
+bool is_mesh_file(const std::string& path) {
+#ifdef OCTOPAIR_WITH_MESHES
+    const std::string ending = lower_case_ending(path);
+    return ending != ".npy" && ending != ".csv" && is_mesh_ending(ending);
+#else
+    (void)path;
+    return false;
+#endif
+}
 
 LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop) {
     const std::string ending = lower_case_ending(path);

@@ -13,6 +13,9 @@ namespace octopair::io {
 /// What one object of a mesh file is: a node that shows a mesh, or a triangle.
 enum class MeshObjects : std::uint8_t { node, triangle };
 
+/// True if read_scene would give the file to Assimp.
+bool is_mesh_file(const std::string& path);
+
 /// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
 LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop = {});
 

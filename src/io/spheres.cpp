@@ -45,12 +45,12 @@ template <typename Real>
     for (int axis = 0; axis < 3; ++axis) {
         if (std::isfinite(sphere.centre[axis])) continue;
         refuse(file, fmt::format("object {}: centre {} is {}, not a finite number", object, "xyz"[axis],
-                                 sphere.centre[axis]));
+                                 number_text(sphere.centre[axis])));
     }
     if (sphere.radius >= 0 && std::isfinite(sphere.radius)) {
         refuse(file, fmt::format("object {}: its box is beyond the file's precision", object));
     }
-    refuse(file, fmt::format("object {}: radius is {}, not a finite number >= 0", object, sphere.radius));
+    refuse(file, fmt::format("object {}: radius is {}, not a finite number >= 0", object, number_text(sphere.radius)));
 }
 
 }  // namespace

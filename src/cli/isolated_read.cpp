@@ -1,0 +1,191 @@
+// Through the pipe go an Answer, then: the message of an error; or the boxes as they lie in memory, and the names, each
+// as its length (uint32) and its bytes.
+#include "cli/isolated_read.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <new>
+#include <span>
+
+#include "io/descriptor.hpp"
+#include "io/failure.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+struct Answer {
+    bool failed;
+    ErrorCode code;
+    bool wide;
+    std::uint64_t objects;
+    std::uint64_t names;
+    std::uint64_t message_bytes;
+};
+
+/// The child's side: it writes, and ends where nobody reads any more.
+class Sender {
+public:
+    explicit Sender(int pipe) : pipe_(pipe) {}
+
+    void scene(const io::LoadedScene& scene) const {
+        const bool wide = std::holds_alternative<Buffer<Box3d>>(scene.boxes);
+        send(Answer{false, {}, wide, scene.objects, scene.names.size(), 0});
+        std::visit([&](const auto& boxes) { send_bytes(std::as_bytes(boxes.span())); }, scene.boxes);
+        for (const std::string& name : scene.names) {
+            send(std::uint32_t(name.size()));
+            send_bytes(std::as_bytes(std::span(name)));
+        }
+    }
+    void error(ErrorCode code, const char* message) const {
+        const std::span text(message, std::strlen(message));
+        send(Answer{true, code, false, 0, 0, text.size()});
+        send_bytes(std::as_bytes(text));
+    }
+
+private:
+    template <typename T>
+    void send(const T& value) const {
+        send_bytes(std::as_bytes(std::span(&value, 1)));
+    }
+    void send_bytes(std::span<const std::byte> bytes) const {
+        while (!bytes.empty()) {
+            const ssize_t written = ::write(pipe_, bytes.data(), bytes.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) std::_Exit(1);
+            bytes = bytes.subspan(std::size_t(written));
+        }
+    }
+
+    int pipe_;
+};
+
+[[noreturn]] void run_child(int pipe, const std::string& path, io::MeshObjects mesh_objects) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    if (nowhere >= 0) {
+        ::dup2(nowhere, STDOUT_FILENO);
+        ::dup2(nowhere, STDERR_FILENO);
+    }
+    const Sender sender(pipe);
+    try {
+        sender.scene(io::read_scene(path, mesh_objects));
+    } catch (const Error& error) {
+        sender.error(error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        sender.error(ErrorCode::resource_limit, "out of memory");
+    } catch (const std::exception& error) {
+        sender.error(ErrorCode::engine_failed, error.what());
+    }
+    std::_Exit(0);
+}
+
+/// A child process with the reading end of the pipe it writes to; killed and waited for when its owner goes.
+class Child {
+public:
+    Child(const std::string& path, io::MeshObjects mesh_objects, std::stop_token stop)
+        : path_(path), stop_(std::move(stop)) {
+        int ends[2];
+        if (::pipe2(ends, O_CLOEXEC) != 0) io::fail_io(path, "cannot make a pipe", errno);
+        pipe_ = io::Descriptor(ends[0]);
+        const io::Descriptor writing(ends[1]);
+        id_ = ::fork();
+        if (id_ < 0) throw Error(ErrorCode::resource_limit, fmt::format("{}: cannot start a process to read it", path));
+        if (id_ == 0) run_child(writing.number(), path, mesh_objects);
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (id_ <= 0) return;
+        ::kill(id_, SIGKILL);
+        (void)wait();
+    }
+
+    template <typename T>
+    T receive() {
+        T value;
+        receive_bytes(std::as_writable_bytes(std::span(&value, 1)));
+        return value;
+    }
+    void receive_bytes(std::span<std::byte> bytes) {
+        while (!bytes.empty()) {
+            if (stop_.stop_requested()) io::cancel();
+            pollfd waiting{pipe_.number(), POLLIN, 0};
+            if (::poll(&waiting, 1, 100) <= 0) continue;
+            const ssize_t got = ::read(pipe_.number(), bytes.data(), bytes.size());
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) explain_end();
+            bytes = bytes.subspan(std::size_t(got));
+        }
+    }
+
+private:
+    int wait() {
+        int status = 0;
+        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+        }
+        id_ = 0;
+        return status;
+    }
+
+    [[noreturn]] void explain_end() {
+        const int status = wait();
+        const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+        if (signal == SIGKILL) {
+            throw Error(ErrorCode::resource_limit, fmt::format("{}: the process that read it was killed", path_));
+        }
+        io::refuse(path_,
+                   fmt::format("its importer crashed ({})", signal != 0 ? ::strsignal(signal) : "it ended early"));
+    }
+
+    std::string path_;
+    std::stop_token stop_;
+    io::Descriptor pipe_;
+    pid_t id_ = 0;
+};
+
+template <typename Real>
+Buffer<Box<Real>> receive_boxes(Child& child, std::uint64_t objects) {
+    Buffer<Box<Real>> boxes{std::size_t(objects)};
+    child.receive_bytes(std::as_writable_bytes(boxes.span()));
+    return boxes;
+}
+
+std::string receive_text(Child& child, std::uint64_t bytes) {
+    std::string text(std::size_t(bytes), '\0');
+    child.receive_bytes(std::as_writable_bytes(std::span(text)));
+    return text;
+}
+
+}  // namespace
+
+io::LoadedScene read_isolated(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
+    Child child(path, mesh_objects, stop);
+    const auto answer = child.receive<Answer>();
+    if (answer.failed) throw Error(answer.code, receive_text(child, answer.message_bytes));
+    io::LoadedScene scene;
+    scene.objects = answer.objects;
+    if (answer.wide) {
+        scene.boxes = receive_boxes<double>(child, answer.objects);
+    } else {
+        scene.boxes = receive_boxes<float>(child, answer.objects);
+    }
+    for (std::uint64_t i = 0; i < answer.names; ++i) {
+        scene.names.push_back(receive_text(child, child.receive<std::uint32_t>()));
+    }
+    return scene;
+}
+
+}  // namespace octopair::cli
