@@ -1,0 +1,90 @@
+// What each kind of scene costs: time, entries and memory an object, side by side with uniform.
+//
+//     scene_costs [OBJECTS [THREADS]]           all kinds, each in a process of its own
+//     scene_costs OBJECTS THREADS KIND float32|float64
+//
+// Memory is the highest resident size during the first call, above the one before it and without the pairs found. Times
+// are medians of 5 further calls in octal order into a reused list.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
+
+namespace {
+
+using namespace octopair;
+
+/// A line of /proc/self/status, in bytes.
+double status_bytes(const std::string& name) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with(name + ":")) return std::strtod(line.c_str() + name.size() + 1, nullptr) * 1024;
+    }
+    return 0;
+}
+
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+template <typename Real>
+void measure(const std::string& kind, std::uint64_t objects, unsigned threads) {
+    const std::vector<Box3f> narrow = samples::make_scene(kind, objects, 1);
+    std::vector<Box<Real>> boxes(narrow.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        std::copy_n(narrow[i].min, 3, boxes[i].min);
+        std::copy_n(narrow[i].max, 3, boxes[i].max);
+    }
+    const Objects scene{std::span<const Box<Real>>(boxes), {}};
+    const auto engine = make_local_engine(threads);
+    Options options;
+    options.order = Order::octal;
+    PairList pairs;
+    forget_peak();
+    const double before = status_bytes("VmRSS");
+    const Summary first = engine->find_pairs(scene, pairs, options);
+    const double peak = status_bytes("VmHWM");
+    std::array<double, 5> seconds{};
+    for (double& one : seconds) one = engine->find_pairs(scene, pairs, options).seconds;
+    std::nth_element(seconds.begin(), seconds.begin() + 2, seconds.end());
+    const double n = double(objects);
+    const double m = double(first.pairs);
+    std::printf("%-12s %-7s %8.1f %8.1f %9.1f %9.2f %8.2f %8.1f\n", kind.c_str(),
+                sizeof(Real) == 4 ? "float32" : "float64", first.seconds * 1e3, seconds[2] * 1e3,
+                seconds[2] * 1e9 / (n + m), m / n, double(first.entries) / n, (peak - before - m * sizeof(Pair)) / n);
+    std::fflush(stdout);
+}
+
+/// Kinds that have so many pairs that a list of them is no measure of anything else, or that are another kind at first.
+bool left_out(std::string_view kind) { return kind == "coincident" || kind == "brownian"; }
+
+}  // namespace
+
+int main(int count, char** words) {
+    const std::string objects = count > 1 ? words[1] : "1000000";
+    const std::string threads = count > 2 ? words[2] : "1";
+    if (count > 4) {
+        const bool narrow = std::string_view(words[4]) == "float32";
+        const std::uint64_t size = std::strtoull(words[1], nullptr, 10);
+        const unsigned k = unsigned(std::strtoul(words[2], nullptr, 10));
+        narrow ? measure<float>(words[3], size, k) : measure<double>(words[3], size, k);
+        return 0;
+    }
+    std::printf("%-12s %-7s %8s %8s %9s %9s %8s %8s\n", "scene", "numbers", "first/ms", "then/ms", "ns/(n+m)",
+                "pairs/n", "entries/n", "bytes/n");
+    std::fflush(stdout);
+    for (const std::string_view kind : samples::scene_kinds()) {
+        if (left_out(kind)) continue;
+        for (const char* numbers : {" float32", " float64"}) {
+            const std::string scene = " " + objects + " " + threads + " " + std::string(kind) + numbers;
+            if (std::system((words[0] + scene).c_str()) != 0) return 1;
+        }
+    }
+    return 0;
+}
