@@ -168,11 +168,12 @@ private:
                    fmt::format("node '{}': a face names vertex {} of {}", instance.name, index, mesh.mNumVertices));
         }
         const aiVector3D& vertex = mesh.mVertices[index];
-        const BoundedPoint point = instance.pose.apply({double(vertex.x), double(vertex.y), double(vertex.z)});
+        const std::array<double, 3> place = {double(vertex.x), double(vertex.y), double(vertex.z)};
+        const BoundedPoint point = instance.pose.apply(place);
         for (int axis = 0; axis < 3; ++axis) {
-            if (!std::isfinite(point.value[axis])) refuse_vertex(instance, index, point.value[axis]);
-            if (!std::isfinite(point.low[axis])) refuse_vertex(instance, index, point.low[axis]);
-            if (!std::isfinite(point.high[axis])) refuse_vertex(instance, index, point.high[axis]);
+            for (const double value : {place[axis], point.low[axis], point.high[axis]}) {
+                if (!std::isfinite(value)) refuse_vertex(instance, index, value);
+            }
         }
         return point;
     }

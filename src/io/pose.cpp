@@ -22,7 +22,8 @@ public:
         constexpr double tiny = 1e-280, allowance = 1e-300;
         const double product = a.value * b.value;
         double error = std::abs(std::fma(a.value, b.value, -product));
-        if (std::abs(product) < tiny && a.value != 0 && b.value != 0) error += allowance;
+        const bool exact = a.value == 0 || b.value == 0 || std::abs(a.value) == 1 || std::abs(b.value) == 1;
+        if (std::abs(product) < tiny && !exact) error += allowance;
         error += std::abs(a.value) * b.error + a.error * std::abs(b.value) + a.error * b.error;
         add({product, error});
     }

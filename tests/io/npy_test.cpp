@@ -1,0 +1,132 @@
+// Arrays as scenes and paddings.
+#include "io/npy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+using io::LoadedScene;
+using io::NpyType;
+
+class Npy : public testing::Test {
+protected:
+    std::string save(const std::string& content) const {
+        const std::string path = directory_.file("a.npy");
+        write_file(path, content);
+        return path;
+    }
+    std::string refusal(const std::string& content) const {
+        const std::string path = save(content);
+        const std::string words = error_of(ErrorCode::bad_input, [&] { (void)io::read_npy_scene(path); });
+        EXPECT_TRUE(words.starts_with(path + ": ")) << words;
+        return words.substr(std::min(words.size(), path.size() + 2));
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(Npy, ReadsBoxesOfBothPrecisions) {
+    std::vector<float> floats(18);
+    std::vector<double> doubles(18);
+    for (int i = 0; i < 18; ++i) doubles[i] = double(floats[i] = float(i) * 0.3f);
+    const LoadedScene narrow = io::read_npy_scene(save(npy_of(NpyType::float32, {3, 6}, floats)));
+    const LoadedScene wide = io::read_npy_scene(save(npy_of(NpyType::float64, {3, 6}, doubles)));
+    for (const LoadedScene* scene : {&narrow, &wide}) {
+        EXPECT_EQ(scene->objects, 3u);
+        EXPECT_EQ(scene->frames, 1u);
+        EXPECT_FALSE(scene->moving);
+        EXPECT_TRUE(scene->names.empty());
+    }
+    EXPECT_EQ(std::get<Buffer<Box3f>>(narrow.boxes)[2].max[1], floats[16]);
+    EXPECT_EQ(std::get<Buffer<Box3d>>(wide.boxes)[2].max[1], doubles[16]);
+}
+
+TEST_F(Npy, ReadsFrames) {
+    std::vector<float> values(2 * 3 * 6);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i);
+    const LoadedScene scene = io::read_npy_scene(save(npy_of(NpyType::float32, {2, 3, 6}, values)));
+    EXPECT_TRUE(scene.moving);
+    EXPECT_EQ(scene.frames, 2u);
+    EXPECT_EQ(scene.objects, 3u);
+    EXPECT_EQ(std::get<std::span<const Box3f>>(scene.frame(1).boxes)[0].min[0], 18.0f);
+}
+
+TEST_F(Npy, ReadsEmptyArrays) {
+    EXPECT_EQ(io::read_npy_scene(save(npy_of<float>(NpyType::float32, {0, 6}, {}))).objects, 0u);
+    EXPECT_EQ(io::read_npy_scene(save(npy_of<float>(NpyType::float32, {0, 4}, {}))).objects, 0u);
+    EXPECT_EQ(io::read_npy_scene(save(npy_of<double>(NpyType::float64, {5, 0, 6}, {}))).frames, 5u);
+}
+
+TEST_F(Npy, ReadsSpheres) {
+    const std::vector<double> spheres = {0, 1, 2, 0.5, -4, -5, -6, 0};
+    const LoadedScene scene = io::read_npy_scene(save(npy_of(NpyType::float64, {2, 4}, spheres)));
+    const auto& boxes = std::get<Buffer<Box3d>>(scene.boxes);
+    EXPECT_EQ(boxes[0].min[2], 1.5);
+    EXPECT_EQ(boxes[0].max[0], 0.5);
+    EXPECT_EQ(boxes[1].min[1], -5.0);
+    EXPECT_EQ(boxes[1].max[1], -5.0);
+}
+
+TEST_F(Npy, RefusesSpheresThatAreNone) {
+    const float nan = std::nanf("");
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {2, 4}, {0, 0, 0, 1, 0, 0, 0, -2})),
+              "object 1: radius is -2, not a finite number >= 0");
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {2, 4}, {0, 0, 0, 1, 0, 0, 0, -nan})),
+              "object 1: radius is nan, not a finite number >= 0");
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1, 4}, {0, nan, 0, 1})),
+              "object 0: centre y is nan, not a finite number");
+    const float huge = std::numeric_limits<float>::max();
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1, 4}, {0, 0, huge, huge})),
+              "object 0: its box is beyond the file's precision");
+}
+
+TEST_F(Npy, RefusesOtherShapesAndTypes) {
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {2, 5}, std::vector<float>(10))),
+              "its shape is (2, 5); boxes are (n, 6) or (frames, n, 6), spheres (n, 4)");
+    EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {6}, std::vector<float>(6))), "");
+    EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {}, std::vector<float>(1))), "");
+    EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {1, 1, 4}, std::vector<float>(4))), "");
+    EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {1, 1, 1, 6}, std::vector<float>(6))), "");
+    EXPECT_EQ(refusal(npy_of<std::uint32_t>(NpyType::uint32, {1, 6}, std::vector<std::uint32_t>(6))),
+              "its array is of type '<u4'; '<f4' or '<f8' is needed");
+    EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1ull << 60, 0, 6}, {})),
+              "1152921504606846976 frames; at most 1000000 are known");
+}
+
+TEST_F(Npy, RefusesWhatIsNoFile) {
+    EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { (void)io::read_npy_scene(directory_.file("none.npy")); }),
+              directory_.file("none.npy") + ": cannot open: No such file or directory");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)io::read_npy_scene(directory_.path()); }),
+              directory_.path() + ": not a regular file");
+}
+
+TEST_F(Npy, StopsWhenAsked) {
+    std::stop_source stop;
+    stop.request_stop();
+    const std::string path = save(npy_of<float>(NpyType::float32, {1, 6}, std::vector<float>(6)));
+    EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)io::read_npy_scene(path, stop.get_token()); }), "");
+}
+
+TEST_F(Npy, ReadsPadding) {
+    const auto wide = io::read_padding(save(npy_of<double>(NpyType::float64, {3}, {0, 0.1, 1e300})));
+    EXPECT_EQ(wide[1], 0.1);
+    const auto narrow = io::read_padding(save(npy_of<float>(NpyType::float32, {2}, {0, 0.1f})));
+    EXPECT_EQ(narrow[1], double(0.1f));
+    for (const double wrong : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        const std::string path = save(npy_of<double>(NpyType::float64, {2}, {0, wrong}));
+        const std::string words = error_of(ErrorCode::bad_input, [&] { (void)io::read_padding(path); });
+        EXPECT_NE(words.find("object 1: padding is "), std::string::npos) << words;
+    }
+    const std::string path = save(npy_of<double>(NpyType::float64, {2, 1}, {0, 1}));
+    EXPECT_NE(error_of(ErrorCode::bad_input, [&] { (void)io::read_padding(path); }), "");
+}
+
+}  // namespace
+}  // namespace octopair::test

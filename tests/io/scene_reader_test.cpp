@@ -1,0 +1,105 @@
+// Scene files of any kind, several as one set, and the search for what is not a box.
+#include "io/scene_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+using io::LoadedScene;
+using io::MeshObjects;
+
+template <typename Real>
+LoadedScene scene_of(const std::vector<Box<Real>>& boxes, std::uint64_t frames = 1, bool moving = false) {
+    LoadedScene scene;
+    Buffer<Box<Real>> buffer{boxes.size()};
+    std::copy(boxes.begin(), boxes.end(), buffer.data());
+    scene.boxes = std::move(buffer);
+    scene.objects = boxes.size() / frames;
+    scene.frames = frames;
+    scene.moving = moving;
+    return scene;
+}
+
+Box3f box_at(float x) { return {{x, 0, 0}, {x + 1, 1, 1}}; }
+Box3d wide_box_at(double x) { return {{x, 0, 0}, {x + 1, 1, 1}}; }
+
+TEST(SceneReader, KnowsFilesByTheirEnding) {
+    const TemporaryDirectory directory;
+    write_file(directory.file("a.CSV"), "0,0,0,1,1,1\n");
+    EXPECT_EQ(io::read_scene(directory.file("a.CSV"), MeshObjects::node).objects, 1u);
+    for (const std::string name : {"a", "a.txt", "a.npz", "a."}) {
+        write_file(directory.file(name), "");
+        EXPECT_NE(
+            error_of(ErrorCode::bad_input, [&] { (void)io::read_scene(directory.file(name), MeshObjects::node); }), "");
+        EXPECT_FALSE(io::is_mesh_file(name));
+    }
+}
+
+TEST(SceneReader, JoinsInOrder) {
+    std::vector<LoadedScene> scenes;
+    scenes.push_back(scene_of<float>({box_at(0), box_at(1)}));
+    scenes.push_back(scene_of<float>({}));
+    scenes.push_back(scene_of<float>({box_at(2)}));
+    scenes[2].names = {"last"};
+    const LoadedScene joined = io::join_scenes(scenes, std::vector<std::string>{"a", "b", "c"});
+    EXPECT_EQ(joined.objects, 3u);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(std::get<Buffer<Box3f>>(joined.boxes)[i].min[0], float(i));
+    EXPECT_EQ(joined.names, (std::vector<std::string>{"", "", "last"}));
+}
+
+TEST(SceneReader, JoinsPrecisionsAsFloat64) {
+    std::vector<LoadedScene> scenes;
+    scenes.push_back(scene_of<float>({box_at(0.1f)}));
+    scenes.push_back(scene_of<double>({wide_box_at(0.1)}));
+    const LoadedScene joined = io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
+    const auto& boxes = std::get<Buffer<Box3d>>(joined.boxes);
+    EXPECT_EQ(boxes[0].min[0], double(0.1f));
+    EXPECT_EQ(boxes[1].min[0], 0.1);
+}
+
+TEST(SceneReader, JoinsFrameByFrame) {
+    std::vector<LoadedScene> scenes;
+    scenes.push_back(scene_of<float>({box_at(0), box_at(1), box_at(10), box_at(11)}, 2, true));
+    scenes.push_back(scene_of<float>({box_at(2), box_at(12)}, 2, true));
+    const LoadedScene joined = io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
+    ASSERT_EQ(joined.frames, 2u);
+    ASSERT_EQ(joined.objects, 3u);
+    const auto second = std::get<std::span<const Box3f>>(joined.frame(1).boxes);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(second[i].min[0], float(10 + i));
+}
+
+TEST(SceneReader, RefusesFramesThatDoNotAgree) {
+    std::vector<LoadedScene> scenes;
+    scenes.push_back(scene_of<float>({box_at(0), box_at(1)}, 2, true));
+    scenes.push_back(scene_of<float>({box_at(2)}));
+    EXPECT_EQ(error_of(ErrorCode::bad_input,
+                       [&] {
+                           (void)io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
+                       }),
+              "b: 1 frames beside the 2 of a; one set needs the same number of each");
+}
+
+TEST(SceneReader, FindsWhatIsNoBox) {
+    EXPECT_FALSE(io::find_fault(scene_of<float>({box_at(0), box_at(1)})));
+    EXPECT_FALSE(io::find_fault(scene_of<float>({})));
+    auto bad = box_at(0);
+    bad.min[1] = -std::nanf("");
+    EXPECT_EQ(io::find_fault(scene_of<float>({box_at(0), bad}))->what, "min y is nan, not a finite number");
+    bad = box_at(0);
+    bad.max[2] = INFINITY;
+    const auto fault = io::find_fault(scene_of<float>({box_at(0), box_at(1), box_at(2), bad}, 2, true));
+    EXPECT_EQ(fault->frame, 1u);
+    EXPECT_EQ(fault->object, 1u);
+    EXPECT_EQ(fault->what, "max z is inf, not a finite number");
+    auto inverted = wide_box_at(0.25);
+    inverted.max[0] = 0.1;
+    EXPECT_EQ(io::find_fault(scene_of<double>({inverted}))->what, "min x 0.25 is above max x 0.1");
+}
+
+}  // namespace
+}  // namespace octopair::test
