@@ -31,7 +31,7 @@ THIRD_PARTY = {
     "tbb": {"parallel"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree"}, "assimp": {"io"}, "CLI": {"cli"},
     "fmt": {"io", "cli"}, "nlohmann": {"io", "cli"},
 }
-SYSTEM = {"sys", "linux"}
+SYSTEM = {"sys", "linux", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
 
