@@ -10,9 +10,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <span>
 
@@ -70,10 +72,26 @@ private:
     int pipe_;
 };
 
+/// Importers believe what a file says of its size: one of 309 bytes has taken 16 GB. So memory is bounded by what files
+/// of that size have been seen to need, many times over. (Sanitizers reserve far more than any bound.)
+void limit_memory([[maybe_unused]] const std::string& path) {
+#ifndef OCTOPAIR_SANITIZED
+    constexpr rlim_t base = rlim_t(4) << 30, factor = 64;
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) return;  // reading says it better
+    rlimit limit{};
+    ::getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, base + factor * size);
+    ::setrlimit(RLIMIT_AS, &limit);
+#endif
+}
+
 [[noreturn]] void run_child(int pipe, const std::string& path, io::MeshObjects mesh_objects) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
+    limit_memory(path);
     const int nowhere = ::open("/dev/null", O_RDWR);
     if (nowhere >= 0) {
         ::dup2(nowhere, STDOUT_FILENO);
@@ -85,7 +103,7 @@ private:
     } catch (const Error& error) {
         sender.error(error.code(), error.what());
     } catch (const std::bad_alloc&) {
-        sender.error(ErrorCode::resource_limit, "out of memory");
+        sender.error(ErrorCode::resource_limit, (path + ": out of memory while reading it").c_str());
     } catch (const std::exception& error) {
         sender.error(ErrorCode::engine_failed, error.what());
     }

@@ -170,9 +170,9 @@ private:
         const aiVector3D& vertex = mesh.mVertices[index];
         const std::array<double, 3> place = {double(vertex.x), double(vertex.y), double(vertex.z)};
         const BoundedPoint point = instance.pose.apply(place);
-        for (int axis = 0; axis < 3; ++axis) {
-            for (const double value : {place[axis], point.low[axis], point.high[axis]}) {
-                if (!std::isfinite(value)) refuse_vertex(instance, index, value);
+        for (const auto& numbers : {place, point.low, point.high}) {
+            for (const double number : numbers) {
+                if (!std::isfinite(number)) refuse_vertex(instance, index, number);
             }
         }
         return point;

@@ -1,0 +1,182 @@
+// What goes wrong while it runs: the documented exit status, a clear line, and nothing half-written.
+#include <cmath>
+
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Failure : public ProgramTest {
+protected:
+    void save_rows(const std::string& name, const std::vector<float>& rows) const {
+        write_file(file(name), npy_of(io::NpyType::float32, {rows.size() / 6, 6}, rows));
+    }
+    void generate(const std::string& kind, int objects) const {
+        ASSERT_EQ(
+            run("generate " + kind + " --objects " + std::to_string(objects) + " --seed 1 --output big.npy --quiet")
+                .status,
+            0);
+    }
+    /// 0, or why the disk of 1 MB cannot be made here.
+    bool can_mount() const {
+        return shell("mkdir -p disk && mount -t tmpfs -o size=1m tmpfs disk && umount disk").status == 0;
+    }
+};
+
+TEST_F(Failure, BoxesThatAreNone) {
+    save_boxes("good.npy", {0, 1, 2});
+    auto rows = rows_of({0, 1, 2});
+    rows[6 + 1] = NAN;
+    save_rows("nan.npy", rows);
+    rows[6 + 1] = INFINITY;
+    save_rows("inf.npy", rows);
+    rows[6 + 1] = 1.5f;
+    save_rows("inverted.npy", rows);
+    write_file(file("old.csv"), "old");
+    const std::string files[3] = {"nan.npy", "inf.npy", "inverted.npy"};
+    const std::string words[3] = {"min y is nan, not a finite number", "min y is inf, not a finite number",
+                                  "min y 1.5 is above max y 1"};
+    for (int i = 0; i < 3; ++i) {
+        const std::string message = "octopair: " + files[i] + ": object 1: " + words[i] + "\n";
+        for (const std::string output : {" --output new.npy", " --output old.csv", "", " --count-only"}) {
+            const Outcome outcome = run("detect good.npy " + files[i] + output);
+            EXPECT_EQ(outcome.status, 3);
+            EXPECT_EQ(outcome.out, "");
+            EXPECT_EQ(outcome.err, message);
+            EXPECT_EQ(run("detect good.npy --against " + files[i] + output).err, message);
+        }
+    }
+    EXPECT_EQ(content("old.csv"), "old");
+    EXPECT_EQ(directory_.names(),
+              (std::vector<std::string>{"good.npy", "inf.npy", "inverted.npy", "nan.npy", "old.csv"}));
+}
+
+TEST_F(Failure, ABadFrameLeavesNoFramesBefore) {
+    auto rows = rows_of({0, 1, 2, 3});
+    rows[3 * 6] = NAN;
+    write_file(file("m.npy"), npy_of(io::NpyType::float32, {2, 2, 6}, rows));
+    const Outcome outcome = run("detect m.npy --output p.npy");
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_EQ(outcome.err, "octopair: m.npy: frame 1: object 1: min x is nan, not a finite number\n");
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{"m.npy"});
+}
+
+TEST_F(Failure, FilesThatAreNone) {
+    write_file(file("text.npy"), "hello");
+    write_file(file("short.csv"), "0,0,0,1,1,1\n1,2\n");
+    save_boxes("a.npy", {0, 1});
+    write_file(file("pad.npy"), npy_of<double>(io::NpyType::float64, {3}, {0, 0, 0}));
+    EXPECT_EQ(run("detect text.npy").status, 3);
+    EXPECT_EQ(run("detect short.csv").err, "octopair: short.csv: line 2: 2 fields, not 6 numbers\n");
+    EXPECT_EQ(run("detect a.npy --padding pad.npy").err, "octopair: pad.npy: 3 paddings for 2 objects\n");
+    EXPECT_EQ(run("detect .").status, 3);
+    const Outcome missing = run("detect a.npy missing.npy");
+    EXPECT_EQ(missing.status, 4);
+    EXPECT_EQ(missing.err, "octopair: missing.npy: cannot open: No such file or directory\n");
+}
+
+TEST_F(Failure, PlacesThatCannotBeWritten) {
+    save_boxes("a.npy", {0, 1});
+    for (const std::string ending : {".npy", ".csv", ".jsonl"}) {
+        const Outcome outcome = run("detect a.npy --output none/p" + ending);
+        EXPECT_EQ(outcome.status, 4);
+        EXPECT_EQ(outcome.err, "octopair: none/p" + ending + ": cannot create: No such file or directory\n");
+    }
+    EXPECT_EQ(run("detect a.npy --stats none/s.json").status, 4);
+    EXPECT_EQ(run("generate uniform --objects 5 --output none/a.npy").status, 4);
+    EXPECT_EQ(run("detect a.npy >/dev/full").err, "octopair: standard output: cannot write: No space left on device\n");
+}
+
+TEST_F(Failure, AFullDiskLeavesTheOldFile) {
+    if (!can_mount()) GTEST_SKIP() << "no right to mount a disk";
+    generate("coincident", 2000);
+    for (const std::string name : {"p.npy", "p.csv", "p.jsonl"}) {
+        const Outcome outcome = shell("mount -t tmpfs -o size=1m tmpfs disk && echo old >disk/" + name +
+                                      "; \"$P\" detect big.npy --output disk/" + name +
+                                      "; status=$?; cat disk/*; ls -A disk; umount disk; exit $status");
+        EXPECT_EQ(outcome.status, 4) << name;
+        EXPECT_EQ(outcome.err, "octopair: disk/" + name + ": cannot write: No space left on device\n");
+        EXPECT_EQ(outcome.out, "old\n" + name + "\n");
+    }
+    const Outcome generated = shell(
+        "mount -t tmpfs -o size=1m tmpfs disk; \"$P\" generate uniform --objects 100000 --output disk/a.npy; "
+        "status=$?; "
+        "ls -A disk; umount disk; exit $status");
+    EXPECT_EQ(generated.status, 4);
+    EXPECT_EQ(generated.out, "");
+}
+
+TEST_F(Failure, AFileSizeLimitLeavesTheOldFile) {
+    generate("coincident", 2000);
+    write_file(file("p.npy"), "old");
+    const Outcome outcome = shell("ulimit -f 1000; \"$P\" detect big.npy --output p.npy");
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_EQ(outcome.err, "octopair: p.npy: cannot write: File too large\n");
+    EXPECT_EQ(content("p.npy"), "old");
+    EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));
+}
+
+TEST_F(Failure, AClosedPipe) {
+    generate("coincident", 2000);
+    const Outcome outcome = shell("{ \"$P\" detect big.npy; echo $? >status; } | head -n 2; cat status");
+    EXPECT_EQ(outcome.out, "a,b\n0,1\n4\n");
+    EXPECT_EQ(outcome.err, "octopair: standard output: cannot write: Broken pipe\n");
+}
+
+TEST_F(Failure, AnInterruptLeavesTheOldFile) {
+    generate("coincident", 60000);  // 1,799,970,000 pairs: seconds of work
+    write_file(file("p.npy"), "old");
+    for (const std::string signal : {"INT", "TERM"}) {
+        const Outcome outcome = shell("\"$P\" detect big.npy --output p.npy & child=$!; sleep 0.4; kill -" + signal +
+                                      " $child; wait $child");
+        EXPECT_EQ(outcome.status, 130);
+        EXPECT_TRUE(outcome.err.starts_with("octopair: ")) << outcome.err;
+        EXPECT_EQ(content("p.npy"), "old");
+        EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));
+    }
+}
+
+TEST_F(Failure, AnInterruptWhileAPipeIsFull) {
+    generate("coincident", 2000);
+    // The reader waits until the program has ended, so only the stop request can end it.
+    const Outcome outcome = shell(
+        "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
+        "\"$P\" detect big.npy >pipe & child=$!; sleep 0.4; kill -INT $child; wait $child; status=$?; echo >status; "
+        "exit $status");
+    EXPECT_EQ(outcome.status, 130) << outcome.err;
+}
+
+TEST_F(Failure, ASecondInterruptKills) {
+    // A stopped process takes both signals when it goes on; so there is no time to end by itself in between.
+    generate("coincident", 60000);
+    const Outcome outcome = shell(
+        "\"$P\" detect big.npy --output p.npy & child=$!; sleep 0.4; kill -STOP $child; "
+        "kill -TERM $child; kill -INT $child; kill -CONT $child; wait $child");
+    EXPECT_TRUE(outcome.status == 128 + 2 || outcome.status == 128 + 15) << outcome.status;
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{"big.npy"});
+}
+
+#ifndef OCTOPAIR_TEST_SANITIZED
+TEST_F(Failure, TooLittleMemory) {
+    generate("uniform", 1'000'000);
+    bool failed = false;
+    for (int mebibytes = 200; mebibytes >= 40; mebibytes -= 20) {
+        const Outcome outcome =
+            shell("ulimit -v " + std::to_string(mebibytes * 1024) + "; \"$P\" detect big.npy --output p.npy --quiet");
+        if (outcome.status == 0) {
+            ASSERT_FALSE(failed);
+            std::filesystem::remove(file("p.npy"));
+            continue;
+        }
+        if (outcome.status == 127) break;  // not even the program could be loaded
+        failed = true;
+        EXPECT_EQ(outcome.status, 5) << mebibytes << " MiB: " << outcome.err;
+        EXPECT_TRUE(outcome.err.starts_with("octopair: ")) << outcome.err;
+        EXPECT_EQ(directory_.names(), std::vector<std::string>{"big.npy"});
+    }
+    EXPECT_TRUE(failed);
+}
+#endif
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,76 @@
+// Mesh scenes from Debian packages: counts that two independent programs found, and files that importers choke on.
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MeshScene : public ProgramTest {
+protected:
+    /// The unpacked file, or "" (and the test is skipped) where scripts/data has not been run.
+    std::string data(const std::string& name) const {
+        const std::string path = std::string(OCTOPAIR_DATA) + "/" + name;
+        return fs::exists(path) ? path : "";
+    }
+};
+
+#ifdef OCTOPAIR_WITH_MESHES
+TEST_F(MeshScene, Counts) {
+    const std::string bunny = data("bunny00.off"), elephant = data("refined_elephant.off");
+    if (bunny.empty() || elephant.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";
+    const auto count = [&](const std::string& path) {
+        return run("detect '" + path + "' --objects triangle --count-only --stats s.json --quiet").out;
+    };
+    EXPECT_EQ(count(bunny), "471777\n");
+    EXPECT_NE(content("s.json").find("\"objects\": 75408,"), std::string::npos);
+    EXPECT_EQ(count(elephant), "538234\n");
+    EXPECT_NE(content("s.json").find("\"objects\": 88928,"), std::string::npos);
+}
+
+TEST_F(MeshScene, NamesReachTheResult) {
+    write_file(file("two.obj"),
+               "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 6\n");
+    ASSERT_EQ(run("detect two.obj --output p.jsonl").status, 0);
+    EXPECT_EQ(content("p.jsonl"), "{\"a\":0,\"b\":1,\"a_name\":\"two.obj/left\",\"b_name\":\"two.obj/right\"}\n");
+}
+
+TEST_F(MeshScene, NoFileCrashesTheProgram) {
+    std::vector<fs::path> roots = {"/usr/share/assimp/models/invalid", "/usr/share/assimp/models/RAW",
+                                   "/usr/share/assimp/models/OBJ", "/usr/share/assimp/models/glTF2/IndexOutOfRange"};
+    std::size_t files = 0, refused = 0;
+#ifdef OCTOPAIR_TEST_SANITIZED
+    constexpr bool sanitized = true;  // memory cannot be bounded then, and one file takes all there is
+#else
+    constexpr bool sanitized = false;
+#endif
+    for (const fs::path& root : roots) {
+        if (!fs::exists(root)) GTEST_SKIP() << "no test models; they are in the package assimp-testmodels";
+        for (const auto& entry : fs::recursive_directory_iterator(root)) {
+            if (!entry.is_regular_file() || (sanitized && entry.path().filename() == "OutOfMemory.off")) continue;
+            const Outcome outcome =
+                run("detect '" + entry.path().string() + "' --objects triangle --output p.csv --quiet");
+            ++files;
+            refused += outcome.status != 0;
+            EXPECT_TRUE(outcome.status == 0 || outcome.status == 3 || outcome.status == 5)
+                << entry.path() << ": " << outcome.status;
+            EXPECT_EQ(outcome.err.empty(), outcome.status == 0) << entry.path();
+            EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), outcome.status == 0 ? 0 : 1)
+                << outcome.err;
+            EXPECT_EQ(fs::exists(file("p.csv")), outcome.status == 0);
+            fs::remove(file("p.csv"));
+        }
+    }
+    EXPECT_GE(files, 20u);
+    EXPECT_GE(refused, 10u);
+}
+#endif
+
+TEST_F(MeshScene, SpheresOfTheMelt) {
+    const std::string melt = data("nylon_melt.npy");
+    if (melt.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";
+    EXPECT_EQ(run("detect '" + melt + "' --count-only --quiet").out, "854050\n");
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,85 @@
+// What is asked wrongly: exit status 2, one line, nothing done.
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Usage : public ProgramTest {};
+
+TEST_F(Usage, HelpAndVersionAreAnswers) {
+    for (const std::string what : {"--help", "detect --help", "generate --help", "--version", "info"}) {
+        const Outcome outcome = run(what);
+        EXPECT_EQ(outcome.status, 0) << what;
+        EXPECT_NE(outcome.out, "") << what;
+        EXPECT_EQ(outcome.err, "") << what;
+    }
+    EXPECT_NE(run("generate --help").out.find("brownian"), std::string::npos);
+    EXPECT_NE(run("info").out.find("engines          local\n"), std::string::npos);
+}
+
+TEST_F(Usage, WrongOptionsAreRefused) {
+    save_boxes("a.npy", {0});
+    const std::vector<std::string> wrong = {
+        "",
+        "find",
+        "detect",
+        "detect a.npy --none",
+        "detect a.npy --margin -1",
+        "detect a.npy --margin nan",
+        "detect a.npy --margin inf",
+        "detect a.npy --margin 1e999",
+        "detect a.npy --margin 1m",
+        "detect a.npy --margin ''",
+        "detect a.npy --limit -1",
+        "detect a.npy --limit 1.5",
+        "detect a.npy --limit 18446744073709551616",
+        "detect a.npy --threads two",
+        "detect a.npy --threads 100000",
+        "detect a.npy --workers 2",
+        "detect a.npy --order random",
+        "detect a.npy --objects edge",
+        "detect a.npy --stage objects",
+        "detect a.npy --stage features",
+        "detect a.npy --engine processes",
+        "detect a.npy --engine mpi",
+        "detect a.npy --engine unix:/run/octopair",
+        "detect a.npy --engine localhost:7000",
+        "detect a.npy --engine quantum",
+        "detect a.npy --events",
+        "detect a.npy --output p",
+        "detect a.npy --output p.txt",
+        "detect a.npy --output p.csv --count-only",
+        "generate",
+        "generate uniform",
+        "generate uniform --objects 5",
+        "generate nothing --objects 5 --output p.npy",
+        "generate uniform --objects -5 --output p.npy",
+        "generate uniform --objects 4294967296 --output p.npy",
+        "generate uniform --objects 5 --seed x --output p.npy",
+        "generate uniform --objects 5 --frames 0 --output p.npy",
+        "generate uniform --objects 5 --frames 2 --output p.npy",
+        "generate uniform --objects 5 --output p.csv",
+        "bench",
+        "serve",
+    };
+    for (const std::string& arguments : wrong) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+        EXPECT_TRUE(outcome.err.starts_with("octopair: ")) << arguments << "\n" << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
+}
+
+TEST_F(Usage, WhatIsNotThereYetIsSaid) {
+    save_boxes("a.npy", {0});
+    EXPECT_EQ(run("detect a.npy --stage objects").err,
+              "octopair: --stage: 'objects' does not exist yet; this version has: pairs\n");
+    EXPECT_EQ(run("detect a.npy --engine processes").err,
+              "octopair: --engine: 'processes' does not exist yet; this version has: local\n");
+    EXPECT_EQ(run("detect a.npy --stage pairs --engine local --quiet").status, 0);
+}
+
+}  // namespace
+}  // namespace octopair::test
