@@ -36,7 +36,7 @@ TEST(EngineLarge, CountsBeyond32Bits) {
 }
 
 TEST(EngineLarge, StreamsInBoundedMemory) {
-    constexpr std::uint64_t objects = testing::scaled(30'000, 6);
+    constexpr std::uint64_t objects = testing::scaled(12'000, 4);
     const auto boxes = samples::make_scene("coincident", objects, 1);
     const std::uint64_t before = peak_rss();
     for (const Order order : {Order::octal, Order::ascending}) {

@@ -16,7 +16,7 @@ using samples::RandomStream;
 std::uint64_t object_count(const std::string& kind, RandomStream& random) {
     const bool many_pairs = kind == "coincident" || kind == "giants" || kind == "duplicates" || kind == "signed-zeros";
     const auto size = random.below(100);
-    std::uint64_t bound = size < 60 ? 64 : size < 93 ? 400 : 3001;
+    std::uint64_t bound = size < 60 ? 64 : size < 96 ? 400 : 3001;
     if (many_pairs && size < 99) bound = std::min<std::uint64_t>(bound, 400);
     return random.below(bound);
 }
