@@ -130,11 +130,18 @@ bool BoxSource::certain(const Entry& a, const Entry& b) const {
 Entry BoxSource::rounded(const Box3d& box, double widening) const {
     Entry entry{};
     for (int axis = 0; axis < 3; ++axis) {
+        if (widening > DBL_MAX / 4) {
+            // Two such sums may overflow in the rule, which then holds for any gap.
+            entry.min[axis] = -FLT_MAX;
+            entry.max[axis] = FLT_MAX;
+            continue;
+        }
         const double origin = origin_[std::size_t(axis)];
-        // Without widening, subtraction and rounding are monotone and lose no pair. With it, the rule's own roundings
-        // and these must be covered: each is below 2^-52 of a number no larger than this sum.
-        const double size = std::abs(box.min[axis]) + std::abs(box.max[axis]) + std::abs(origin) + widening;
-        const double extra = widening > 0 ? widening + size * 0x1p-48 : 0;
+        // Without widening, subtraction and rounding are monotone and lose no pair. With it, the rule's own roundings and
+        // these must be covered: each is below 2^-52 of a number no larger than the sum of these.
+        double error = 0;
+        for (const double part : {box.min[axis], box.max[axis], origin, widening}) error += std::abs(part) * 0x1p-48;
+        const double extra = widening > 0 ? widening + error : 0;
         entry.min[axis] = round_down((box.min[axis] - origin) - extra);
         entry.max[axis] = round_up((box.max[axis] - origin) + extra);
     }
