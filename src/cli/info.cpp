@@ -1,12 +1,12 @@
 // octopair info: version, build, engines, instruction set.
 #include <fmt/format.h>
-#include <hwy/highway.h>
 
 #include <thread>
 
 #include "cli/subcommands.hpp"
 #include "io/output_stream.hpp"
 #include "octopair/version.hpp"
+#include "octree/sweep.hpp"
 
 namespace octopair::cli {
 
@@ -30,12 +30,6 @@ constexpr const char* inputs = ".npy, .csv, mesh scenes (Assimp)";
 constexpr const char* inputs = ".npy, .csv";
 #endif
 
-/// The best one of those that the processor has and that Highway compiles for.
-const char* instruction_set() {
-    const int64_t targets = hwy::SupportedTargets();
-    return hwy::TargetName(targets & -targets);
-}
-
 int run_info() {
     io::StandardOutput out({});
     out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
@@ -43,7 +37,7 @@ int run_info() {
     out.write("engines          local\n");
     out.write("stages           pairs\n");
     out.write(fmt::format("inputs           {}\n", inputs));
-    out.write(fmt::format("instruction set  {}\n", instruction_set()));
+    out.write(fmt::format("instruction set  {}\n", sweep_instruction_set()));
     out.write(fmt::format("cores            {}\n", std::thread::hardware_concurrency()));
     out.commit();
     return 0;
