@@ -1,0 +1,61 @@
+// Feeds any bytes to the .npy reader. What it accepts must be exactly as long as its shape says, and must be the same
+// array when its header is written anew.
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "io/npy.hpp"
+#include "io/spheres.hpp"
+#include "octopair/error.hpp"
+
+namespace {
+
+using namespace octopair;
+
+void require(bool holds) {
+    if (!holds) std::abort();
+}
+
+void check_round_trip(const io::NpyHeader& header, std::uint64_t data_bytes) {
+    const std::string again = io::make_npy_header(header.type, header.shape);
+    const auto parsed = io::parse_npy_header(std::as_bytes(std::span(again)), again.size() + data_bytes, "again");
+    require(parsed.type == header.type && parsed.shape == header.shape);
+}
+
+template <typename Real>
+void check_spheres(std::span<const std::byte> data, std::uint64_t objects) {
+    std::vector<io::Sphere<Real>> spheres(objects);
+    if (objects > 0) std::memcpy(spheres.data(), data.data(), data.size());
+    std::vector<Box<Real>> boxes(objects);
+    io::boxes_of_spheres<Real>(spheres, boxes, "f.npy");
+    for (std::size_t i = 0; i < objects; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+            require(boxes[i].min[axis] <= spheres[i].centre[axis] && spheres[i].centre[axis] <= boxes[i].max[axis]);
+        }
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    const auto file = std::as_bytes(std::span(bytes, size));
+    try {
+        const io::NpyHeader header = io::parse_npy_header(file, size, "f.npy");
+        require(header.data_offset <= size);
+        const auto data = file.subspan(header.data_offset);
+        check_round_trip(header, data.size());
+        const io::SceneShape shape = io::scene_shape(header, "f.npy");
+        const std::uint64_t columns = shape.spheres ? 4 : 6;
+        // Where nothing stands, lengths may be anything.
+        require(data.empty() || shape.objects * shape.frames * columns * io::item_bytes(header.type) == data.size());
+        if (shape.spheres && header.type == io::NpyType::float32) check_spheres<float>(data, shape.objects);
+        if (shape.spheres && header.type == io::NpyType::float64) check_spheres<double>(data, shape.objects);
+    } catch (const Error& error) {
+        require(error.code() == ErrorCode::bad_input);
+        require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    }
+    return 0;
+}
