@@ -1,0 +1,43 @@
+# Completion of octopair's command line for bash.
+
+_octopair() {
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+    local subcommand=${COMP_WORDS[1]}
+    COMPREPLY=()
+
+    if ((COMP_CWORD == 1)); then
+        mapfile -t COMPREPLY < <(compgen -W "detect generate info --help --version" -- "$current")
+        return
+    fi
+    case $previous in
+        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs" -- "$current"); return ;;
+        --objects)
+            if [[ $subcommand == detect ]]; then
+                mapfile -t COMPREPLY < <(compgen -W "node triangle" -- "$current")
+            fi
+            return ;;
+        --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
+        --engine) mapfile -t COMPREPLY < <(compgen -W "local" -- "$current"); return ;;
+        --margin | --limit | --threads | --seed | --frames) return ;;
+        --against | --padding | --output | --stats) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+    esac
+    case $subcommand in
+        detect)
+            if [[ $current == -* ]]; then
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
+                    --count-only --limit --fail-on-collision --engine --threads --stats --quiet --help" -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -f -- "$current")
+            fi ;;
+        generate)
+            if ((COMP_CWORD == 2)); then
+                mapfile -t COMPREPLY < <(compgen -W "$("$1" generate --help 2>/dev/null |
+                    sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p')" -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -W "--objects --seed --frames --output --quiet --help" -- "$current")
+            fi ;;
+        info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
+    esac
+}
+
+complete -o filenames -F _octopair octopair
