@@ -10,7 +10,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 cp -r "$root/tests/install/consumer" "$work/consumer"
-options=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler")
+options=(-G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler")
 if [ "$how" = installed ]; then
     cmake --install "$build" --prefix "$work/prefix" > "$work/install.log"
     options+=(-DCMAKE_PREFIX_PATH="$work/prefix")
