@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/stop.hpp"
+
 namespace octopair {
 
 namespace {
@@ -29,6 +31,7 @@ Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {
 struct Directory::Growth {
     std::span<const CellBox> sample;
     double weight;
+    std::stop_token stop;
 
     bool crowded(const Node& node, const std::vector<std::uint32_t>& inside) const;
     using Lists = std::array<std::vector<std::uint32_t>, 8>;
@@ -86,8 +89,8 @@ std::size_t Directory::Growth::beginning_in(const Node& node, const std::vector<
     }));
 }
 
-Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double weight) {
-    Growth growth{sample, weight};
+Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double weight, std::stop_token stop) {
+    Growth growth{sample, weight, stop};
     std::vector<std::uint32_t> all(sample.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
     const Node root{.lo = {0, 0, 0}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
@@ -99,6 +102,7 @@ Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double
 /// what touches it and is kept above.
 NodeIndex Directory::grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
                           const std::vector<std::uint32_t>& handed) {
+    throw_if_stopped(growth.stop);
     const NodeIndex index = NodeIndex(nodes_.size());
     nodes_.push_back(start);
     std::vector<std::uint32_t> kept = handed;

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "octree/frame.hpp"
@@ -45,8 +46,8 @@ struct Node {
 
 class Directory {
 public:
-    /// `weight`: how many objects one box of the sample stands for.
-    Directory(const Frame& frame, std::span<const CellBox> sample, double weight);
+    /// `weight`: how many objects one box of the sample stands for. Throws Error{cancelled}.
+    Directory(const Frame& frame, std::span<const CellBox> sample, double weight, std::stop_token stop);
 
     std::span<const Node> nodes() const { return nodes_; }
     NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }

@@ -4,15 +4,17 @@
 #include <chrono>
 #include <utility>
 
-#include "octopair/error.hpp"
+#include "base/stop.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t sample_stride = 16;      // one object of so many is sampled, but
-constexpr std::size_t most_samples = 1 << 21;  // no more than these
-constexpr std::size_t batch_size = 512;        // objects loaded at a time: their entries stay in the first cache
+constexpr std::size_t sample_stride = 16;        // one object of so many is sampled, but
+constexpr std::size_t most_samples = 1 << 21;    // no more than these
+constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
+constexpr std::size_t batch_size = 512;          // objects loaded at a time: their entries stay in the first cache
 
 /// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
 std::size_t jitter(std::size_t i, std::size_t stride) {
@@ -66,10 +68,6 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
     return seconds;
 }
 
-void check(const std::stop_token& stop) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
-}
-
 }  // namespace
 
 /// A share of the objects.
@@ -83,17 +81,11 @@ struct LinearOctree::Block {
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
     auto clock = std::chrono::steady_clock::now();
-    const std::vector<Entry> sampled = sample(source);
-    frame_ = Frame::fit(sampled, source.size());
-    std::vector<CellBox> cells(sampled.size());
-    std::transform(sampled.begin(), sampled.end(), cells.begin(),
-                   [&](const Entry& entry) { return frame_.cells(entry); });
-    directory_ = Directory(frame_, cells, double(source.size()) / double(std::max<std::size_t>(1, cells.size())));
-    check(stop);
-
+    plant(source, stop);
     homes_.resize_discard(source.size());
     const std::size_t enough = std::max<std::size_t>(1, source.size() / (8 * batch_size));
-    std::vector<Block> blocks(std::min<std::size_t>(executor.width() == 1 ? 1 : executor.width() * 4, enough));
+    std::vector<Block> blocks(
+        std::min<std::size_t>(executor.width() == 1 ? 1 : executor.width() * blocks_per_thread, enough));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         blocks[i].begin = source.size() * i / blocks.size();
         blocks[i].end = source.size() * (i + 1) / blocks.size();
@@ -109,6 +101,17 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
     executor.for_each(blocks.size(), [&](std::size_t i) { sort(source, blocks[i], stop); });
     homes_ = {};  // its memory is better used by the scan
     seconds_.sort = seconds_since(clock);
+}
+
+/// Frame and directory, from a sample that is gone when the entries need the memory.
+void LinearOctree::plant(const EntrySource& source, std::stop_token stop) {
+    const std::vector<Entry> sampled = sample(source);
+    frame_ = Frame::fit(sampled, source.size());
+    std::vector<CellBox> cells(sampled.size());
+    std::transform(sampled.begin(), sampled.end(), cells.begin(),
+                   [&](const Entry& entry) { return frame_.cells(entry); });
+    const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
+    directory_ = Directory(frame_, cells, weight, stop);
 }
 
 std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
@@ -130,7 +133,7 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
     std::size_t crossers = 0;
     std::array<Entry, batch_size> batch;
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
-        if ((begin / batch_size) % 256 == 0) check(stop);
+        if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
         if (!source.load(begin, entries)) {
             block.valid = false;
@@ -151,7 +154,9 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
     block.crossers.resize(crossers);
     block.crossers.shrink_to_fit();
     Entry entry;
+    std::size_t done = 0;
     for (const std::uint32_t position : block.crossers) {
+        if (done++ % check_interval == 0) throw_if_stopped(stop);
         (void)source.load(position, {&entry, 1});
         for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned) { ++block.crossing_at[node]; });
     }
@@ -175,7 +180,7 @@ void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token
     const std::size_t outside = nodes().size();
     std::array<Entry, batch_size> batch;
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
-        if ((begin / batch_size) % 256 == 0) check(stop);
+        if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
         (void)source.load(begin, entries);
         for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -189,7 +194,9 @@ void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token
         }
     }
     Entry entry;
+    std::size_t done = 0;
     for (const std::uint32_t position : block.crossers) {
+        if (done++ % check_interval == 0) throw_if_stopped(stop);
         (void)source.load(position, {&entry, 1});
         const std::uint32_t brought = entry.mask;
         for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned begins) {

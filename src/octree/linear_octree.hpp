@@ -55,13 +55,14 @@ public:
 
 private:
     struct Block;
+    void plant(const EntrySource& source, std::stop_token stop);
     std::vector<Entry> sample(const EntrySource& source) const;
     void encode(const EntrySource& source, Block& block, std::stop_token stop);
     void merge(std::span<Block> blocks);
     void sort(const EntrySource& source, Block& block, std::stop_token stop);
 
     Frame frame_;
-    Directory directory_{Frame{}, {}, 0};
+    Directory directory_{Frame{}, {}, 0, {}};
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
     Buffer<NodeIndex> homes_;  // of each object, while building

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "octopair/error.hpp"
+#include "base/stop.hpp"
 
 namespace octopair {
 
@@ -29,9 +29,7 @@ void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     while (cursor.row < cursor.row_end) {
         const std::size_t count = sweep_rows(sweep, cursor, hits_);
         drain(sweep, std::span(hits_).first(count), orientation);
-        if (cursor.row < cursor.row_end && context_.stop.stop_requested()) {
-            throw Error(ErrorCode::cancelled, "cancelled");
-        }
+        if (cursor.row < cursor.row_end) throw_if_stopped(context_.stop);
     }
 }
 

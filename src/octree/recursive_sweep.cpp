@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "octopair/error.hpp"
+#include "base/stop.hpp"
 
 namespace octopair {
 
@@ -178,7 +178,7 @@ public:
     Recursion(const ScanContext& context, Executor& executor) : context_(context), executor_(executor) {}
 
     void run(const OwnedJoin& join) {
-        if (context_.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        throw_if_stopped(context_.stop);
         // On settled axes all boxes overlap: no sweep along them thins anything.
         const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
         const SweepChoice choice = open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, open);

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "octopair/error.hpp"
+#include "base/stop.hpp"
 #include "octree/recursive_sweep.hpp"
 
 namespace octopair {
@@ -233,7 +233,7 @@ void scan(const LinearOctree& octree, const ScanContext& context, Executor& exec
             const auto own = octree.entries(node);
             if (!own.empty()) nodes.scan(own, above, octree.frame().long_axis());
         }
-        if (context.stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));
     };
     for (std::size_t i = 0; i < shares.size();) {

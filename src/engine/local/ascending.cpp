@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "octopair/error.hpp"
+#include "base/stop.hpp"
 
 namespace octopair {
 
@@ -114,6 +114,7 @@ void AscendingOrder::append(const PairList::Storage& unsorted, ObjectRange range
     team.for_each(shares.size(), [&](std::size_t i, unsigned) {
         shares[i].at.assign(buckets, 0);
         for (const auto run : shares[i].runs) {
+            throw_if_stopped(stop);
             for (const Pair& pair : run) ++shares[i].at[bucket_of(pair)];
         }
     });
@@ -127,12 +128,13 @@ void AscendingOrder::append(const PairList::Storage& unsorted, ObjectRange range
     const std::span<Pair> out = sorted.take_block(std::size_t(unsorted.size)).first(std::size_t(unsorted.size));
     team.for_each(shares.size(), [&](std::size_t i, unsigned) {
         for (const auto run : shares[i].runs) {
+            throw_if_stopped(stop);
             for (const Pair& pair : run) out[std::size_t(shares[i].at[bucket_of(pair)]++)] = pair;
         }
     });
     std::vector<BucketSort> sorters(team.threads());
     team.for_each(buckets, [&](std::size_t bucket, unsigned worker) {
-        if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        throw_if_stopped(stop);
         const std::size_t begin = bucket == 0 ? 0 : std::size_t(ends[bucket - 1]);
         const std::span<Pair> pairs = out.subspan(begin, std::size_t(ends[bucket]) - begin);
         if (pairs.size() > 1) sorters[worker].sort(pairs);
