@@ -11,6 +11,15 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
+/// Debian's libtbb is not instrumented: the thread sanitizer cannot see how it orders tasks.
+#if defined(__SANITIZE_THREAD__)
+inline constexpr bool thread_sanitized = true;
+#elif defined(__has_feature)
+inline constexpr bool thread_sanitized = __has_feature(thread_sanitizer);
+#else
+inline constexpr bool thread_sanitized = false;
+#endif
+
 /// `full`, or a `divisor`th of it under sanitizers.
 constexpr std::uint64_t scaled(std::uint64_t full, std::uint64_t divisor) {
     return sanitized ? (full + divisor - 1) / divisor : full;
