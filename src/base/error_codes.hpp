@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
 #include "octopair/error.hpp"
@@ -23,6 +24,13 @@ inline constexpr std::array<ErrorCodeRow, 6> error_code_table = {{
     {ErrorCode::engine_failed, "engine failed", 6},
     {ErrorCode::cancelled, "cancelled", 130},
 }};
+
+static_assert([] {
+    for (std::size_t i = 0; i < error_code_table.size(); ++i) {
+        if (std::size_t(error_code_table[i].code) != i) return false;
+    }
+    return true;
+}());
 
 constexpr const ErrorCodeRow& error_code_row(ErrorCode code) { return error_code_table[std::size_t(code)]; }
 constexpr int exit_status(ErrorCode code) { return error_code_row(code).exit_status; }

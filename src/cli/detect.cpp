@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "cli/detection.hpp"
 #include "cli/interrupt.hpp"
@@ -45,16 +46,18 @@ void check_engine(const std::string& engine) {
 
 int run_detect(const DetectRequest& request) {
     const Interrupt interrupt;
+    // Opened at once, so that a place that cannot be written is known before the work.
+    std::optional<io::AtomicFile> stats;
+    if (!request.stats.empty()) stats.emplace(request.stats);
     const DetectReport report = detect(request, interrupt.token());
     if (request.count_only) {
         io::StandardOutput out(interrupt.token());
         out.write(std::to_string(report.pairs) + '\n');
         out.commit();
     }
-    if (!request.stats.empty()) {
-        io::AtomicFile stats(request.stats);
-        stats.write(stats_json(report));
-        stats.commit();
+    if (stats) {
+        stats->write(stats_json(report));
+        stats->commit();
     }
     if (!request.quiet) fmt::print(stderr, "{}", summary_text(report));
     return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;

@@ -16,7 +16,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
     finished_ = true;
-    pthread_kill(waiter_.native_handle(), SIGTERM);
+    pthread_kill(waiter_.native_handle(), SIGINT);  // one of those it waits for
     waiter_.join();
 }
 

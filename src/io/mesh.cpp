@@ -28,7 +28,7 @@ struct Instance {
 
 /// Importers turn what they throw into an error text; want of memory is told apart again.
 void rethrow_bad_alloc(const Assimp::Importer& importer) {
-    const std::exception_ptr exception = importer.GetException();
+    const std::exception_ptr& exception = importer.GetException();
     if (!exception) return;
     try {
         std::rethrow_exception(exception);

@@ -156,7 +156,8 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
 }
 
 /// choose_sweep among some axes.
-SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, std::span<const unsigned> axes) {
+SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, const std::stop_token& stop,
+                            std::span<const unsigned> axes) {
     const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
     SweepChoice choice;
     std::uint64_t least = ~std::uint64_t(0);
@@ -169,19 +170,21 @@ SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, std::span<const
         }
     }
     choice.good = size <= small_set || least <= cheap_window * size ||
-                  least / tests_per_pair <= estimated_hits(join.rows, join.columns);
+                  least / tests_per_pair <= estimated_hits(join.rows, join.columns, stop);
     return choice;
 }
 
 class Recursion {
 public:
-    Recursion(const ScanContext& context, Executor& executor) : context_(context), executor_(executor) {}
+    Recursion(const ScanContext& context, Executor& executor)
+        : context_(context), executor_(executor), order_(context.stop) {}
 
     void run(const OwnedJoin& join) {
         throw_if_stopped(context_.stop);
         // On settled axes all boxes overlap: no sweep along them thins anything.
         const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
-        const SweepChoice choice = open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, open);
+        const SweepChoice choice =
+            open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, context_.stop, open);
         if (choice.good) return tiled_sweep(context_, join.join(), choice.axis, executor_);
         std::vector<OwnedJoin> parts = step(join);
         // Large parts one after another, each shared out; runs of small ones as shares of one part each.
@@ -236,13 +239,13 @@ std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list) {
     return shapes;
 }
 
-SweepChoice choose_sweep(const Join& join, SweepOrder& order) {
+SweepChoice choose_sweep(const Join& join, SweepOrder& order, const std::stop_token& stop) {
     constexpr std::array<unsigned, 3> all = {0, 1, 2};
-    return choose_sweep_of(join, order, all);
+    return choose_sweep_of(join, order, stop, all);
 }
 
 void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor) {
-    SweepOrder row_order;
+    SweepOrder row_order(context.stop);
     const auto rows = row_order.sort(join.rows, axis, executor);
     if (join.self) {
         const TileSweep sweep{context,         join.rows.entries, rows, join.rows.entries, rows, axis,
@@ -251,7 +254,7 @@ void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Ex
                                   [&](std::size_t t, PairWriter& writer) { sweep.run(t, writer); });
         return;
     }
-    SweepOrder column_order;
+    SweepOrder column_order(context.stop);
     const auto columns = column_order.sort(join.columns, axis, executor);
     const TileSweep forth{context,          join.rows.entries, rows, join.columns.entries, columns, axis,
                           SweepKind::cross, join.orientation};
@@ -270,7 +273,7 @@ void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Ex
 }
 
 void recursive_sweep(const ScanContext& context, const Join& join, Executor& executor) {
-    SweepOrder order;
+    SweepOrder order(context.stop);
     std::array<std::pair<std::uint64_t, unsigned>, 3> costs;
     for (unsigned axis = 0; axis < 3; ++axis) costs[axis] = {order.windows(join.rows, join.columns, axis), axis};
     std::sort(costs.begin(), costs.end());

@@ -38,7 +38,8 @@ struct SweepChoice {
     bool good = false;
 };
 
-SweepChoice choose_sweep(const Join& join, SweepOrder& order);
+/// Throws Error{cancelled}.
+SweepChoice choose_sweep(const Join& join, SweepOrder& order, const std::stop_token& stop);
 
 void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor);
 

@@ -76,7 +76,8 @@ private:
 /// Scans single nodes, keeping its memory from node to node. One thread at a time.
 class NodeScan {
 public:
-    NodeScan(const ScanContext& context, Executor& executor) : context_(context), executor_(executor) {}
+    NodeScan(const ScanContext& context, Executor& executor)
+        : context_(context), executor_(executor), order_(context.stop) {}
 
     void scan(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
         if (context_.source.join()) {
@@ -149,6 +150,7 @@ private:
     void crowded(const Join& join) {
         if (swept(join)) return;
         const auto rows = part_by_shape(join.rows);
+        throw_if_stopped(context_.stop);
         const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns);
         for (unsigned i = 0; i < rows.size(); ++i) {
             const EntryList row_list{join.rows.entries, rows[i], false};
@@ -167,7 +169,7 @@ private:
     }
 
     bool swept(const Join& join) {
-        const SweepChoice choice = choose_sweep(join, order_);
+        const SweepChoice choice = choose_sweep(join, order_, context_.stop);
         if (choice.good) tiled_sweep(context_, join, choice.axis, executor_);
         return choice.good;
     }

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cfloat>
 
+#include "base/stop.hpp"
+
 namespace octopair {
 
 namespace {
@@ -35,10 +37,13 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
 
 std::uint64_t SweepOrder::windows(const EntryList& rows, const EntryList& columns, unsigned axis) {
     if (rows.size() == 0 || columns.size() == 0) return 0;
+    throw_if_stopped(stop_);
     const Buckets buckets = buckets_for(columns, axis);
+    throw_if_stopped(stop_);
     counts_.assign(buckets.last + 2, 0);
     for (std::size_t i = 0; i < columns.size(); ++i) ++counts_[buckets.of(columns[i].min[axis]) + 1];
     for (std::size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
+    throw_if_stopped(stop_);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Entry& row = rows[i];
@@ -58,7 +63,9 @@ std::span<const SortItem> SweepOrder::sort(const EntryList& list, unsigned axis,
         const Entry& entry = list[i];
         items_[i] = {entry.min[axis], entry.object, list.position(i)};
     }
+    throw_if_stopped(stop_);
     executor.sort(items_);
+    throw_if_stopped(stop_);
     return items_;
 }
 
@@ -81,10 +88,11 @@ void SweepOrder::small_sort(const EntryList& list, unsigned axis) {
     }
 }
 
-std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns) {
+std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop) {
     const std::size_t samples = std::min(sampled_rows, rows.size());
     std::uint64_t hits = 0;
     for (std::size_t s = 0; s < samples; ++s) {
+        throw_if_stopped(stop);
         const Entry& row = rows[s * rows.size() / samples];
         for (std::size_t i = 0; i < columns.size(); ++i) hits += overlap(row, columns[i]) ? 1 : 0;
         if (s == 3 && hits <= 4) return 0;  // no more than the rows themselves: certainly few

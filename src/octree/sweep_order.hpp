@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "geometry/entry.hpp"
@@ -24,9 +26,12 @@ struct EntryList {
     const Entry& operator[](std::size_t i) const { return entries[position(i)]; }
 };
 
-/// Measures and sorts sets; keeps its memory from call to call. One thread at a time.
+/// Measures and sorts sets; keeps its memory from call to call. One thread at a time. Throws Error{cancelled} between
+/// its passes over a set.
 class SweepOrder {
 public:
+    explicit SweepOrder(std::stop_token stop) : stop_(std::move(stop)) {}
+
     /// An upper bound, close where the boxes are spread out, on the columns that a sweep along `axis` tests for all
     /// rows.
     std::uint64_t windows(const EntryList& rows, const EntryList& columns, unsigned axis);
@@ -48,11 +53,13 @@ private:
     static Buckets buckets_for(const EntryList& list, unsigned axis);
     void small_sort(const EntryList& list, unsigned axis);
 
+    std::stop_token stop_;
     std::vector<std::uint32_t> counts_;
     std::vector<SortItem> items_;
 };
 
 /// About how many pairs of rows and columns overlap, from a few rows at fixed places.
-std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns);
+/// Throws Error{cancelled}.
+std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop);
 
 }  // namespace octopair

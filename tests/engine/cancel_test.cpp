@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "octopair/octopair.hpp"
@@ -19,10 +20,10 @@ constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
 class Cancel : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
 
-/// Runs `call(stop_token)`, asks it to stop after `delay`, and expects Error{cancelled} in time. A call may also finish
-/// before it is asked, if `may_finish`.
+/// Runs `call(stop_token)` and asks it to stop after `delay`: how long it took to end by Error{cancelled}, or nothing if
+/// it finished before it was asked.
 template <typename Call>
-void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
+std::optional<Clock::duration> time_to_cancel(const Call& call, milliseconds delay) {
     std::stop_source source;
     Clock::time_point asked = Clock::time_point::max();
     std::jthread stopper([&] {
@@ -39,10 +40,23 @@ void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
     }
     const Clock::time_point ended = Clock::now();
     stopper.join();
-    if (finished) {
+    if (finished) return std::nullopt;
+    return ended - asked;
+}
+
+/// Expects Error{cancelled} in time, in one of a few attempts: a machine busy with other work delays any thread. A call
+/// may also finish before it is asked, if `may_finish`.
+template <typename Call>
+void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
+    std::optional<Clock::duration> took;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        took = time_to_cancel(call, delay);
+        if (!took || *took <= patience) break;
+    }
+    if (!took) {
         EXPECT_TRUE(may_finish) << "finished, though asked to stop";
     } else {
-        EXPECT_LE(ended - asked, patience) << std::chrono::duration<double>(ended - asked).count() << " s";
+        EXPECT_LE(*took, patience) << std::chrono::duration<double>(*took).count() << " s";
     }
 }
 
