@@ -83,6 +83,8 @@ TEST_F(Failure, PlacesThatCannotBeWritten) {
         EXPECT_EQ(outcome.err, "octopair: none/p" + ending + ": cannot create: No such file or directory\n");
     }
     EXPECT_EQ(run("detect a.npy --stats none/s.json").status, 4);
+    EXPECT_EQ(run("detect a.npy --stats none/s.json --output p.csv").status, 4);
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
     EXPECT_EQ(run("generate uniform --objects 5 --output none/a.npy").status, 4);
     EXPECT_EQ(run("detect a.npy >/dev/full").err, "octopair: standard output: cannot write: No space left on device\n");
 }
