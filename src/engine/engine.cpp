@@ -56,6 +56,7 @@ Summary Engine::find_pairs(const Objects& objects, PairList& pairs, const Option
     return call({objects, nullptr, options}, {.list = &pairs}, stop);
 }
 
+// NOLINTNEXTLINE(readability-function-size): the public face has these five.
 Summary Engine::find_pairs_between(const Objects& first, const Objects& second, PairList& pairs, const Options& options,
                                    std::stop_token stop) {
     return call({first, &second, options}, {.list = &pairs}, stop);
@@ -66,6 +67,7 @@ Summary Engine::stream_pairs(const Objects& objects, const PairSink& sink, const
     return call({objects, nullptr, options}, {.sink = &sink}, stop);
 }
 
+// NOLINTNEXTLINE(readability-function-size): the public face has these five.
 Summary Engine::stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
                                      const Options& options, std::stop_token stop) {
     return call({first, &second, options}, {.sink = &sink}, stop);
