@@ -105,9 +105,8 @@ TEST_F(Mesh, RefusesVerticesThatAreNowhere) {
     for (const MeshObjects objects : {MeshObjects::node, MeshObjects::triangle}) {
         const std::string words =
             error_of(ErrorCode::bad_input, [&] { (void)read("i.gltf", instances_gltf, objects); });
-        // Posed, -infinity times 0 is not a number: either word names it.
-        EXPECT_NE(words.find("vertex 2 is at "), std::string::npos) << words;
-        EXPECT_NE(words.find(", not at a finite place"), std::string::npos) << words;
+        // The file's own number, not what posing makes of it: -infinity times 0 is not a number.
+        EXPECT_NE(words.find("vertex 2 is at -inf, not at a finite place"), std::string::npos) << words;
     }
 }
 
