@@ -33,7 +33,7 @@ void expect_agreement(const std::vector<Box3f>& boxes) {
 }
 
 TEST_P(Baselines, AgreeWithTheOracle) {
-    for (std::uint64_t i = 0; i < scenes_a_kind; ++i) {
+    for (std::uint64_t i = 0; i < testing::case_count(scenes_a_kind); ++i) {
         const std::uint64_t seed = testing::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         expect_agreement(testing::make_boxes(GetParam(), seed % 400, seed));
@@ -41,7 +41,7 @@ TEST_P(Baselines, AgreeWithTheOracle) {
 }
 
 TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
-    for (std::uint64_t i = 0; i < scenes_a_kind; ++i) {
+    for (std::uint64_t i = 0; i < testing::case_count(scenes_a_kind); ++i) {
         const std::uint64_t seed = testing::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), seed % 100, seed);

@@ -106,7 +106,11 @@ Case make_case(const std::string& kind, std::uint64_t seed) {
     return result;
 }
 
-bool replaying() { return std::getenv("OCTOPAIR_TEST_SEED") != nullptr; }
+std::uint64_t case_count(std::uint64_t usual) {
+    if (std::getenv("OCTOPAIR_TEST_SEED") != nullptr) return 1;
+    const char* asked = std::getenv("OCTOPAIR_TEST_CASES");
+    return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
+}
 
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i) {
     if (const char* seed = std::getenv("OCTOPAIR_TEST_SEED")) return std::strtoull(seed, nullptr, 10);

@@ -1,6 +1,7 @@
 // Random calls of an engine, each from one seed, so that any can be run again alone.
 //
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that one case.
+// Soak:   OCTOPAIR_TEST_CASES=<number> runs so many cases of each kind instead of the usual number.
 #pragma once
 
 #include <optional>
@@ -37,7 +38,7 @@ Case make_case(const std::string& kind, std::uint64_t seed);
 
 /// The seed of the i-th case of a kind, or OCTOPAIR_TEST_SEED.
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i);
-/// True if OCTOPAIR_TEST_SEED asks for one case only.
-bool replaying();
+/// How many cases of a kind to run: `usual`, or what the environment asks for.
+std::uint64_t case_count(std::uint64_t usual);
 
 }  // namespace octopair::testing
