@@ -42,7 +42,7 @@ int guarded_run(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const Error& error) {
-        return fail(error.code(), error.what());
+        return fail(error.code(), error.code() == ErrorCode::cancelled ? "interrupted" : error.what());
     } catch (const std::bad_alloc&) {
         return fail(ErrorCode::resource_limit, "out of memory");
     } catch (const std::system_error& error) {
