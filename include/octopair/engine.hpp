@@ -65,7 +65,8 @@ public:
     Summary find_pairs(const Objects& objects, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
     Summary find_pairs_between(const Objects& first, const Objects& second, PairList& pairs,
                                const Options& options = {}, std::stop_token stop = {});
-    /// Hands the pairs to `sink` in order; holds at most `Options::buffer_bytes` of them at a time.
+    /// Hands the pairs to `sink` in order; holds at most `Options::buffer_bytes` of them at a time. An empty `sink` has
+    /// them counted only.
     Summary stream_pairs(const Objects& objects, const PairSink& sink, const Options& options = {},
                          std::stop_token stop = {});
     Summary stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,

@@ -51,7 +51,6 @@ private:
         report_.objects = first_.scene.objects + second_.scene.objects;
         const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
         report_.threads = request_.threads > 0 ? request_.threads : cores;
-        report_.counted_only = request_.count_only;
         report_.seconds.read = seconds_since(start_);
     }
 
@@ -79,24 +78,15 @@ private:
     }
 
     void count(Engine& engine) {
-        const auto start = Clock::now();
-        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
-            Options options = options_for(frame);
-            // One more than asked tells whether there are more.
-            if (options.limit && *options.limit < std::numeric_limits<std::uint64_t>::max()) ++*options.limit;
-            const Objects first = first_.frame(frame), second = second_.frame(frame);
-            const std::uint64_t pairs = join() ? engine.count_pairs_between(first, second, options, stop_)
-                                               : engine.count_pairs(first, options, stop_);
-            add_pairs(pairs);
-        }
-        report_.seconds.detect = seconds_since(start);
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) add(search(engine, frame, {}), 0);
         progress_.clear();
     }
 
-    void add_pairs(std::uint64_t pairs) {
-        const std::uint64_t wanted = request_.limit ? *request_.limit - report_.pairs : pairs;
-        report_.truncated |= pairs > wanted;
-        report_.pairs += std::min(pairs, wanted);
+    /// An empty sink counts.
+    Summary search(Engine& engine, std::uint64_t frame, const PairSink& sink) {
+        const Objects first = first_.frame(frame), second = second_.frame(frame);
+        return join() ? engine.stream_pairs_between(first, second, sink, options_for(frame), stop_)
+                      : engine.stream_pairs(first, sink, options_for(frame), stop_);
     }
 
     void stream(Engine& engine) {
@@ -105,9 +95,7 @@ private:
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
             timed_write([&] { writer->begin_frame(frame); });
             const double written_before = report_.seconds.write;
-            const Objects first = first_.frame(frame), second = second_.frame(frame);
-            const Summary summary = join() ? engine.stream_pairs_between(first, second, sink, options_for(frame), stop_)
-                                           : engine.stream_pairs(first, sink, options_for(frame), stop_);
+            const Summary summary = search(engine, frame, sink);
             add(summary, report_.seconds.write - written_before);
             progress_.clear();
             timed_write([&] { writer->end_frame(); });
@@ -129,7 +117,7 @@ private:
         report_.steps.encode += summary.steps.encode;
         report_.steps.sort += summary.steps.sort;
         report_.steps.merge += summary.steps.merge;
-        report_.steps.scan += std::max(0.0, summary.steps.scan);
+        report_.steps.scan += summary.steps.scan;
         report_.seconds.detect += std::max(0.0, summary.seconds - written);
     }
 

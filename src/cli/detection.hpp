@@ -39,7 +39,6 @@ struct DetectReport {
     bool moving = false;
     std::uint64_t pairs = 0;  ///< of all frames
     bool truncated = false;
-    bool counted_only = false;  ///< then `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;

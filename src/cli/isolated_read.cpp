@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <span>
 
@@ -72,14 +73,25 @@ private:
     int pipe_;
 };
 
+/// The size of a file; of a glTF with all that lies beside it, as its numbers may be in further files.
+std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.extension() != ".gltf") return std::filesystem::file_size(path, error);
+    std::uintmax_t bytes = 0;
+    const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
+    for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+        if (const auto size = entry.file_size(error); !error) bytes += size;
+    }
+    return bytes;
+}
+
 /// Importers believe what a file says of its size: one of 309 bytes has taken 16 GB. So memory is bounded by what files
 /// of that size have been seen to need, many times over. (Sanitizers reserve far more than any bound.)
 void limit_memory([[maybe_unused]] const std::string& path) {
 #ifndef OCTOPAIR_SANITIZED
     constexpr rlim_t base = rlim_t(4) << 30, factor = 64;
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (error) return;  // reading says it better
+    const std::uintmax_t size = bytes_to_read(path);
+    if (size > std::numeric_limits<rlim_t>::max() / factor / 2) return;  // no file; reading says it better
     rlimit limit{};
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, base + factor * size);

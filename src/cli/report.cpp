@@ -43,37 +43,29 @@ std::string summary_text(const DetectReport& report) {
                         report.truncated ? " (the limit was reached; more exist)" : "");
     text += fmt::format("time        {} = read {} + detect {} + write {} + other\n", duration(seconds.total),
                         duration(seconds.read), duration(seconds.detect), duration(seconds.write));
-    if (!report.counted_only) {
-        text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
-                            duration(steps.sort), duration(steps.merge), duration(steps.scan));
-    }
+    text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
+                        duration(steps.sort), duration(steps.merge), duration(steps.scan));
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
     return text + fmt::format(" on {} thread{}\n", report.threads, report.threads == 1 ? "" : "s");
 }
 
 std::string stats_json(const DetectReport& report) {
-    nlohmann::ordered_json seconds = {
-        {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
-    if (!report.counted_only) {
-        seconds["encode"] = report.steps.encode;
-        seconds["sort"] = report.steps.sort;
-        seconds["merge"] = report.steps.merge;
-        seconds["scan"] = report.steps.scan;
-    }
-    seconds["filter"] = 0.0;
-    seconds["write"] = report.seconds.write;
-    nlohmann::ordered_json stats = {{"objects", report.objects},
-                                    {"frames", report.frames},
-                                    {"pairs", report.pairs},
-                                    {"truncated", report.truncated},
-                                    {"engine", "local"},
-                                    {"threads", report.threads},
-                                    {"workers", 0},
-                                    {"entries", report.entries},
-                                    {"peak_rss_bytes", peak_rss_bytes()},
-                                    {"seconds", seconds}};
-    if (report.counted_only) stats["entries"] = nullptr;
+    const nlohmann::ordered_json seconds = {{"total", report.seconds.total},   {"read", report.seconds.read},
+                                            {"detect", report.seconds.detect}, {"encode", report.steps.encode},
+                                            {"sort", report.steps.sort},       {"merge", report.steps.merge},
+                                            {"scan", report.steps.scan},       {"filter", 0.0},
+                                            {"write", report.seconds.write}};
+    const nlohmann::ordered_json stats = {{"objects", report.objects},
+                                          {"frames", report.frames},
+                                          {"pairs", report.pairs},
+                                          {"truncated", report.truncated},
+                                          {"engine", "local"},
+                                          {"threads", report.threads},
+                                          {"workers", 0},
+                                          {"entries", report.entries},
+                                          {"peak_rss_bytes", peak_rss_bytes()},
+                                          {"seconds", seconds}};
     return stats.dump(2) + '\n';
 }
 

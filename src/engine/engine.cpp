@@ -64,13 +64,13 @@ Summary Engine::find_pairs_between(const Objects& first, const Objects& second, 
 
 Summary Engine::stream_pairs(const Objects& objects, const PairSink& sink, const Options& options,
                              std::stop_token stop) {
-    return call({objects, nullptr, options}, {.sink = &sink}, stop);
+    return call({objects, nullptr, options}, {.sink = sink ? &sink : nullptr}, stop);
 }
 
 // NOLINTNEXTLINE(readability-function-size): the public face has these five.
 Summary Engine::stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
                                      const Options& options, std::stop_token stop) {
-    return call({first, &second, options}, {.sink = &sink}, stop);
+    return call({first, &second, options}, {.sink = sink ? &sink : nullptr}, stop);
 }
 
 std::uint64_t Engine::count_pairs(const Objects& objects, const Options& options, std::stop_token stop) {

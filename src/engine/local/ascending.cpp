@@ -1,145 +1,235 @@
-// Two passes over the pairs: into buckets of neighbouring `a` (an MSD radix step, shared out by runs of the input),
-// then each bucket within the cache, by comparison or, where it is large, by an LSD radix sort over the digits in use.
-
 #include "engine/local/ascending.hpp"
 
-#include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "base/stop.hpp"
+#include "engine/local/pair_pages.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr unsigned bucket_bits = 11;
-constexpr std::size_t radix_from = 2048;  // pairs in a bucket
+constexpr unsigned most_bucket_bits = 10;
+constexpr unsigned objects_a_bucket_bits = 12;   // unless that makes too many buckets
+constexpr unsigned split_bits = 6;               // of a bucket too large to be sorted at once
+constexpr std::size_t sorted_at_once = 1 << 18;  // pairs
+constexpr std::size_t radix_from = 512;          // pairs
 constexpr unsigned digit_bits = 11;
 
-std::uint64_t key_of(const Pair& pair) { return std::uint64_t(pair.a) << 32 | pair.b; }
+/// Pairs as numbers in the same order, of as few bits as the rows and columns need.
+class PairKeys {
+public:
+    PairKeys(ObjectRange rows, std::uint64_t columns)
+        : first_(rows.begin), count_(rows.end - rows.begin), b_bits_(unsigned(std::bit_width(columns))) {}
 
-/// `a` and `b` as one number of as few bits as the bucket needs.
-struct Packing {
-    std::uint32_t first_a;
-    unsigned b_bits;
-    unsigned bits;
-
-    std::uint64_t pack(const Pair& pair) const { return std::uint64_t(pair.a - first_a) << b_bits | pair.b; }
-    Pair unpack(std::uint64_t key) const {
-        return {std::uint32_t(key >> b_bits) + first_a, std::uint32_t(key & ((std::uint64_t(1) << b_bits) - 1))};
+    bool wanted(const Pair& pair) const { return pair.a - first_ < count_; }
+    std::uint64_t key(const Pair& pair) const { return (pair.a - first_) << b_bits_ | pair.b; }
+    Pair pair(std::uint64_t key) const {
+        return {std::uint32_t((key >> b_bits_) + first_), std::uint32_t(key & ((std::uint64_t(1) << b_bits_) - 1))};
     }
+    unsigned row_bits() const { return std::max(1u, unsigned(std::bit_width(count_))); }
+    unsigned bits() const { return row_bits() + b_bits_; }
+
+private:
+    std::uint64_t first_, count_;
+    unsigned b_bits_;
 };
 
-Packing packing_of(std::span<const Pair> pairs) {
-    std::uint32_t first = pairs[0].a, last = pairs[0].a, most_b = 0;
-    for (const Pair& pair : pairs) {
-        first = std::min(first, pair.a);
-        last = std::max(last, pair.a);
-        most_b = std::max(most_b, pair.b);
-    }
-    const unsigned b_bits = std::max(1u, unsigned(std::bit_width(most_b)));
-    return {first, b_bits, b_bits + unsigned(std::bit_width(last - first))};
-}
-
-/// Keeps its memory from bucket to bucket.
-class BucketSort {
+/// Sorts by the lowest bits of keys that agree above them; keeps its memory from call to call.
+template <typename Key>
+class RadixSort {
 public:
-    void sort(std::span<Pair> pairs) {
-        if (pairs.size() < radix_from) {
-            std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return key_of(a) < key_of(b); });
-            return;
+    std::span<Key> take(std::size_t size) {
+        keys_.resize_discard(size);
+        return keys_.span();
+    }
+
+    /// What take() gave, in order.
+    std::span<const Key> sort(unsigned bits) {
+        if (keys_.size() < radix_from) {
+            std::sort(keys_.span().begin(), keys_.span().end());
+            return keys_.span();
         }
-        const Packing packing = packing_of(pairs);
-        keys_.resize_discard(pairs.size());
-        other_.resize_discard(pairs.size());
-        for (std::size_t i = 0; i < pairs.size(); ++i) keys_[i] = packing.pack(pairs[i]);
-        for (unsigned shift = 0; shift < packing.bits; shift += digit_bits) {
+        other_.resize_discard(keys_.size());
+        for (unsigned shift = 0; shift < bits; shift += digit_bits) {
             pass(shift);
             std::swap(keys_, other_);
         }
-        for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = packing.unpack(keys_[i]);
+        return keys_.span();
     }
 
 private:
     void pass(unsigned shift) {
-        constexpr std::uint64_t digit_mask = (1u << digit_bits) - 1;
-        std::array<std::size_t, (1u << digit_bits) + 1> at{};
-        for (const std::uint64_t key : keys_.span()) ++at[(key >> shift & digit_mask) + 1];
+        constexpr Key digit_mask = (Key(1) << digit_bits) - 1;
+        std::array<std::uint32_t, (1u << digit_bits) + 1> at{};
+        for (const Key key : keys_.span()) ++at[(key >> shift & digit_mask) + 1];
         for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
-        for (const std::uint64_t key : keys_.span()) other_[at[key >> shift & digit_mask]++] = key;
+        for (const Key key : keys_.span()) other_[at[key >> shift & digit_mask]++] = key;
     }
 
-    Buffer<std::uint64_t> keys_, other_;
+    Buffer<Key> keys_, other_;
 };
 
-/// A share of the input: some chunks, or parts of them.
-struct Share {
-    std::vector<std::span<const Pair>> runs;
-    std::vector<std::uint64_t> at;  // per bucket: first the number of pairs, then the next one's place
+/// What one thread needs.
+struct Worker {
+    Worker(PairList::Storage& list, std::atomic<std::int64_t>& pages_left) : pages(list, pages_left) {}
+
+    Pages pages;
+    std::vector<PageString> found;  // by bucket
+    RadixSort<std::uint32_t> narrow;
+    RadixSort<std::uint64_t> wide;
 };
 
-std::vector<Share> shares_of(const PairList::Storage& list, unsigned threads) {
-    const std::uint64_t even = list.size / threads + 1;
-    std::vector<Share> shares(threads);
-    std::uint64_t held = 0;
-    std::size_t share = 0;
-    for (std::span<const Pair> chunk : list.chunks) {
-        while (!chunk.empty()) {
-            const std::size_t part = std::size_t(std::min<std::uint64_t>(chunk.size(), even - held));
-            shares[share].runs.push_back(chunk.first(part));
-            chunk = chunk.subspan(part);
-            held += part;
-            if (held == even) {
-                ++share;
-                held = 0;
+using Runs = std::vector<std::span<const Pair>>;
+
+/// Puts the pairs of one bucket in order. One thread at a time.
+class BucketSort {
+public:
+    BucketSort(const PairKeys& keys, Worker& worker, const std::stop_token& stop, Runs& sorted)
+        : keys_(keys), worker_(worker), stop_(stop), sorted_(sorted) {}
+
+    /// The keys of the pairs differ in their lowest `bits` alone.
+    void sort(std::vector<PageString>&& strings, unsigned bits) {
+        std::size_t size = 0;
+        for (const PageString& string : strings) size += string.size();
+        if (size == 0) return;
+        throw_if_stopped(stop_);
+        if (size > sorted_at_once && bits > 0) return split(std::move(strings), bits);
+        if (bits <= 32) return sort_at_once(strings, size, bits, worker_.narrow);
+        sort_at_once(strings, size, bits, worker_.wide);
+    }
+
+private:
+    void split(std::vector<PageString>&& strings, unsigned bits) {
+        const unsigned low_bits = bits - std::min(bits, split_bits);
+        std::array<PageString, 1u << split_bits> parts;
+        for (const PageString& string : strings) {
+            for (std::size_t i = 0; i < string.pages().size(); ++i) {
+                throw_if_stopped(stop_);
+                for (const Pair& pair : string.page(i)) {
+                    parts[keys_.key(pair) >> low_bits & (parts.size() - 1)].add(pair, worker_.pages);
+                }
+                worker_.pages.give_back(string.pages()[i]);
             }
         }
+        strings.clear();
+        for (PageString& part : parts) {
+            std::vector<PageString> one;
+            one.push_back(std::move(part));
+            sort(std::move(one), low_bits);
+        }
     }
-    return shares;
-}
+
+    template <typename Key>
+    void sort_at_once(const std::vector<PageString>& strings, std::size_t size, unsigned bits, RadixSort<Key>& radix) {
+        const std::span<Key> keys = radix.take(size);
+        std::size_t at = 0;
+        std::vector<Pair*> pages;
+        for (const PageString& string : strings) {
+            for (std::size_t i = 0; i < string.pages().size(); ++i) {
+                for (const Pair& pair : string.page(i)) keys[at++] = Key(keys_.key(pair));
+                pages.push_back(string.pages()[i]);
+            }
+        }
+        const std::uint64_t above = keys_.key(*pages[0]) >> (sizeof(Key) * 8 - 1) >> 1 << (sizeof(Key) * 8 - 1) << 1;
+        write(radix.sort(bits), above, pages);
+    }
+
+    /// Back over the pages that they came from; what remains free is given back.
+    template <typename Key>
+    void write(std::span<const Key> keys, std::uint64_t above, const std::vector<Pair*>& pages) {
+        for (Pair* const page : pages) {
+            const auto part = keys.first(std::min(keys.size(), page_pairs));
+            for (std::size_t i = 0; i < part.size(); ++i) page[i] = keys_.pair(above | part[i]);
+            if (part.empty())
+                worker_.pages.give_back(page);
+            else
+                sorted_.emplace_back(page, part.size());
+            keys = keys.subspan(part.size());
+        }
+    }
+
+    const PairKeys& keys_;
+    Worker& worker_;
+    const std::stop_token& stop_;
+    Runs& sorted_;
+};
+
+/// Throws pairs into one thread's buckets.
+class BucketWriter final : public FullWriter {
+public:
+    BucketWriter(const PairKeys& keys, unsigned shift, Worker& worker) : keys_(keys), shift_(shift), worker_(worker) {}
+
+    void write(std::span<const Pair> pairs) override {
+        for (const Pair& pair : pairs) {
+            if (keys_.wanted(pair)) worker_.found[keys_.key(pair) >> shift_].add(pair, worker_.pages);
+        }
+    }
+
+private:
+    const PairKeys& keys_;
+    const unsigned shift_;
+    Worker& worker_;
+};
 
 }  // namespace
 
-void AscendingOrder::append(const PairList::Storage& unsorted, ObjectRange range, PairList::Storage& sorted) const {
-    if (unsorted.size == 0) return;
-    const std::uint64_t objects = range.end - range.begin;
-    const unsigned shift = unsigned(std::max(0, int(std::bit_width(objects)) - int(bucket_bits)));
-    const std::size_t buckets = std::size_t(objects >> shift) + 1;
-    const auto bucket_of = [&](const Pair& pair) { return std::size_t((pair.a - range.begin) >> shift); };
-
-    std::vector<Share> shares = shares_of(unsorted, team.threads());
-    team.for_each(shares.size(), [&](std::size_t i, unsigned) {
-        shares[i].at.assign(buckets, 0);
-        for (const auto run : shares[i].runs) {
-            throw_if_stopped(stop);
-            for (const Pair& pair : run) ++shares[i].at[bucket_of(pair)];
+class AscendingExecutor::Buckets {
+public:
+    Buckets(unsigned threads, PairList::Storage& list, const Bounds& bounds)
+        : list_(list), keys_(bounds.rows, bounds.columns), pages_left_(std::int64_t(bounds.most / page_pairs)) {
+        const std::uint64_t spare_pages = bounds.most / page_pairs / 4 / threads;
+        const unsigned row_bits = keys_.row_bits();
+        const unsigned wanted = std::min(row_bits - std::min(row_bits, objects_a_bucket_bits), most_bucket_bits);
+        bits_ = std::clamp(wanted, 1u, unsigned(std::bit_width(spare_pages | 2)) - 1);
+        workers_.reserve(threads);
+        for (unsigned i = 0; i < threads; ++i) {
+            workers_.emplace_back(list, pages_left_).found.resize(std::size_t(1) << bits_);
         }
-    });
-    std::vector<std::uint64_t> ends(buckets);
-    std::uint64_t at = 0;
-    for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
-        for (Share& share : shares) at += std::exchange(share.at[bucket], at);
-        ends[bucket] = at;
     }
 
-    const std::span<Pair> out = sorted.take_block(std::size_t(unsorted.size)).first(std::size_t(unsorted.size));
-    team.for_each(shares.size(), [&](std::size_t i, unsigned) {
-        for (const auto run : shares[i].runs) {
-            throw_if_stopped(stop);
-            for (const Pair& pair : run) out[std::size_t(shares[i].at[bucket_of(pair)]++)] = pair;
+    BucketWriter writer(unsigned worker) { return {keys_, shift(), workers_[worker]}; }
+
+    void append_sorted(Team& team, const std::stop_token& stop) {
+        pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting takes a few more
+        std::vector<Runs> sorted(std::size_t(1) << bits_);
+        team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
+            std::vector<PageString> strings;
+            for (Worker& other : workers_) strings.push_back(std::exchange(other.found[bucket], {}));
+            BucketSort(keys_, workers_[worker], stop, sorted[bucket]).sort(std::move(strings), shift());
+        });
+        for (const Runs& runs : sorted) {
+            for (const auto run : runs) list_.append(run);
         }
+    }
+
+private:
+    unsigned shift() const { return keys_.bits() - bits_; }
+
+    PairList::Storage& list_;
+    PairKeys keys_;
+    std::atomic<std::int64_t> pages_left_;
+    unsigned bits_;
+    std::vector<Worker> workers_;
+};
+
+AscendingExecutor::AscendingExecutor(Team& team, PairList::Storage& list, const Bounds& bounds)
+    : TeamExecutor(team), buckets_(std::make_unique<Buckets>(team.threads(), list, bounds)) {}
+
+AscendingExecutor::~AscendingExecutor() = default;
+
+void AscendingExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
+    team().for_each(count, [&](std::size_t i, unsigned worker) {
+        BucketWriter writer = buckets_->writer(worker);
+        body(i, writer);
     });
-    std::vector<BucketSort> sorters(team.threads());
-    team.for_each(buckets, [&](std::size_t bucket, unsigned worker) {
-        throw_if_stopped(stop);
-        const std::size_t begin = bucket == 0 ? 0 : std::size_t(ends[bucket - 1]);
-        const std::span<Pair> pairs = out.subspan(begin, std::size_t(ends[bucket]) - begin);
-        if (pairs.size() > 1) sorters[worker].sort(pairs);
-    });
-    sorted.append(out);
 }
+
+void AscendingExecutor::append_sorted(const std::stop_token& stop) { buckets_->append_sorted(team(), stop); }
 
 }  // namespace octopair

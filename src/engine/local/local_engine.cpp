@@ -2,8 +2,8 @@
 //
 //   build   the linear octree of all objects, once a call
 //   octal   scan once, pairs to a list or to the receiver as they come
-//   ascending  scan into a buffer and sort it. Where the buffer is too small: scan to count each object's pairs, then
-//           once for every window of objects whose pairs fit.
+//   ascending  scan into buckets and sort them, in the list or, for the receiver, in a buffer. Where the buffer is too
+//           small: scan to count each object's pairs, then once for every window of objects whose pairs fit.
 // With a limit, octal pairs are received one by one and the scan is abandoned after the first pair too many.
 
 #include <algorithm>
@@ -28,9 +28,18 @@ namespace {
 constexpr std::uint64_t least_buffer_bytes = 1 << 20;
 constexpr double built = 0.3;  // of the progress
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
+/// Adds the time of a block to a sum, however the block is left.
+class Timed {
+public:
+    explicit Timed(double& seconds) : seconds_(seconds) {}
+    Timed(const Timed&) = delete;
+    Timed& operator=(const Timed&) = delete;
+    ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 /// Receives pairs in their final order, up to the limit.
 class Receiver {
@@ -53,12 +62,13 @@ public:
 
     void flush() {
         if (held_.empty()) return;
-        (*output_.sink)(held_);
+        give(held_);
         held_.clear();
     }
 
     std::uint64_t pairs() const { return pairs_; }
     bool truncated() const { return truncated_; }
+    double sink_seconds() const { return sink_seconds_; }
 
 private:
     void deliver(std::span<const Pair> pairs) {
@@ -66,10 +76,15 @@ private:
         if (output_.list != nullptr) return keep(pairs);
         if (held_.size() + pairs.size() > worth_a_call) flush();
         if (pairs.size() >= worth_a_call) {
-            (*output_.sink)(pairs);
+            give(pairs);
         } else {
             held_.insert(held_.end(), pairs.begin(), pairs.end());
         }
+    }
+
+    void give(std::span<const Pair> pairs) {
+        const Timed timed(sink_seconds_);
+        (*output_.sink)(pairs);
     }
 
     void keep(std::span<const Pair> pairs) {
@@ -84,6 +99,7 @@ private:
     std::optional<std::uint64_t> limit_;
     std::uint64_t pairs_ = 0;
     bool truncated_ = false;
+    double sink_seconds_ = 0;
     std::vector<Pair> held_;
     std::span<Pair> block_;
 };
@@ -109,22 +125,25 @@ public:
 private:
     Summary run(const Request& request, const Output& output, const Control& control) override {
         const std::lock_guard lock(mutex_);
-        const auto begin = std::chrono::steady_clock::now();
         const BoxSource source(request.first, request.second, request.options.margin);
         Progress progress(control.progress);
         Call call{request, output, source, {}, progress, {}};
         const std::stop_callback forward(control.stop, [&] { call.stop.request_stop(); });
+        search(call);
+        progress.finish();
+        return call.summary;
+    }
+
+    void search(Call& call) {
+        const Timed timed(call.summary.seconds);
         build(call);
-        if (output.list == nullptr && output.sink == nullptr) {
+        if (call.output.list == nullptr && call.output.sink == nullptr) {
             count(call);
-        } else if (request.options.order == Order::octal) {
+        } else if (call.request.options.order == Order::octal) {
             find_octal(call);
         } else {
             find_ascending(call);
         }
-        progress.finish();
-        call.summary.seconds = seconds_since(begin);
-        return call.summary;
     }
 
     void build(Call& call) {
@@ -143,11 +162,10 @@ private:
 
     /// One pass over the octree, which takes the progress to `end`.
     void scan_into(Call& call, Executor& executor, double end) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Timed timed(call.summary.steps.scan);
         call.progress.stage(end, octree_.entry_count());
         const ScanContext context{call.source, call.stop.get_token()};
         scan(octree_, context, executor, [&](std::uint64_t entries) { call.progress.add(entries); });
-        call.summary.steps.scan += seconds_since(begin);
     }
 
     void count(Call& call) {
@@ -161,7 +179,7 @@ private:
     void find_octal(Call& call) {
         if (call.output.list != nullptr && !call.request.options.limit) {
             PairList::Storage& list = call.output.list->storage();
-            ListExecutor executor(team_, list, ~std::uint64_t(0));
+            ListExecutor executor(team_, list);
             scan_into(call, executor, 1);
             call.summary.pairs = list.size;
             return;
@@ -170,56 +188,63 @@ private:
         StreamExecutor executor(
             team_, [&](std::span<const Pair> pairs) { receiver.take(pairs); }, call.buffer_pairs(), call.stop);
         receive(call, receiver, [&] { scan_into(call, executor, 1); });
+        call.summary.steps.scan = std::max(0.0, call.summary.steps.scan - receiver.sink_seconds());
     }
 
     void find_ascending(Call& call) {
-        Receiver receiver(call.output, call.request.options.limit);
-        // Half of the buffer for the pairs as they come, half for their order.
-        const std::uint64_t most = call.buffer_pairs() / 2;
-        PairList::Storage& found = scratch_.storage();
-        found.reset();
-        try {
-            ListExecutor executor(team_, found, most);
-            scan_into(call, executor, 0.9);
-        } catch (const ListExecutor::OverBudget&) {
-            return find_windows(call, receiver, most);
-        }
-        hand_out_sorted(call, receiver, {0, call.source.size()});
-    }
-
-    /// The pairs in scratch_, all those of `range`, in ascending order to the receiver.
-    void hand_out_sorted(Call& call, Receiver& receiver, ObjectRange range) {
-        const auto begin = std::chrono::steady_clock::now();
-        const bool straight = call.output.list != nullptr && !call.request.options.limit;
-        PairList::Storage& sorted = straight ? call.output.list->storage() : sorted_.storage();
-        if (!straight) sorted.reset();
-        AscendingOrder{team_, call.stop.get_token()}.append(scratch_.storage(), range, sorted);
-        call.summary.steps.scan += seconds_since(begin);
-        if (straight) {
-            call.summary.pairs = sorted.size;
+        if (call.output.list != nullptr && !call.request.options.limit) {
+            PairList::Storage& list = call.output.list->storage();
+            collect_ascending(call, list, {{0, call.source.size()}, call.source.size()}, 1);
+            call.summary.pairs = list.size;
             return;
         }
+        Receiver receiver(call.output, call.request.options.limit);
+        const ObjectRange all{0, call.source.size()};
+        try {
+            collect_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, 0.9);
+        } catch (const AscendingExecutor::OverBudget&) {
+            return find_windows(call, receiver);
+        }
+        hand_out_held(call, receiver);
+    }
+
+    /// The pairs of some objects to an empty list, in ascending order.
+    void collect_ascending(Call& call, PairList::Storage& list, const AscendingExecutor::Bounds& bounds, double end) {
+        list.reset();
+        AscendingExecutor executor(team_, list, bounds);
+        scan_into(call, executor, end);
+        const Timed timed(call.summary.steps.scan);
+        executor.append_sorted(call.stop.get_token());
+    }
+
+    void hand_out_held(Call& call, Receiver& receiver) {
         receive(call, receiver, [&] {
-            for (const auto chunk : sorted.chunks) receiver.take(chunk);
+            for (const auto chunk : held_.storage().chunks) receiver.take(chunk);
         });
     }
 
-    void find_windows(Call& call, Receiver& receiver, std::uint64_t most) {
-        std::vector<std::uint32_t> counts(call.source.size(), 0);
+    /// Where the pairs do not fit into the buffer: counts those of each object, then collects as many objects at a time
+    /// as fit.
+    void find_windows(Call& call, Receiver& receiver) {
+        const std::uint64_t objects = call.source.size();
+        std::vector<std::uint32_t> counts(objects, 0);
         CountByObjectExecutor counter(team_, counts);
         scan_into(call, counter, 0.5);
+        // A quarter of the buffer is for pages that are not full.
+        const std::uint64_t most = call.buffer_pairs() - call.buffer_pairs() / 4;
         ObjectRange window{0, 0};
-        while (window.end < counts.size() && !call.summary.truncated) {
+        while (window.end < objects && !call.summary.truncated) {
             window.begin = window.end;
             std::uint64_t pairs = 0;
-            while (window.end < counts.size() && (pairs == 0 || pairs + counts[window.end] <= most)) {
+            while (window.end < objects && (pairs == 0 || pairs + counts[window.end] <= most)) {
                 pairs += counts[window.end++];
             }
             if (pairs == 0) break;
-            scratch_.storage().reset();
-            ListExecutor executor(team_, scratch_.storage(), pairs, window);
-            scan_into(call, executor, 0.5 + 0.5 * double(window.end) / double(counts.size()));
-            hand_out_sorted(call, receiver, window);
+            const double done = 0.5 + 0.5 * double(window.end) / double(objects);
+            // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
+            const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + team_.threads() * 2 * page_pairs;
+            collect_ascending(call, held_.storage(), {window, objects, room}, done);
+            hand_out_held(call, receiver);
         }
     }
 
@@ -237,8 +262,7 @@ private:
     std::mutex mutex_;
     Team team_;
     LinearOctree octree_;
-    PairList scratch_;  // pairs before they are put in order, and after
-    PairList sorted_;
+    PairList held_;  // ascending pairs on their way to a receiver
 };
 
 }  // namespace

@@ -59,32 +59,16 @@ private:
     std::span<std::uint32_t> counts_;
 };
 
-/// Objects [begin, end).
-struct ObjectRange {
-    std::uint64_t begin = 0;
-    std::uint64_t end = ~std::uint64_t(0);
-};
-
-/// Appends the pairs whose `a` is in `range` to a list.
+/// Appends the pairs to a list as they come.
 class ListExecutor final : public TeamExecutor {
 public:
-    /// More than `most` pairs end the scan by an OverBudget.
-    ListExecutor(Team& team, PairList::Storage& list, std::uint64_t most, ObjectRange range = {});
-    struct OverBudget {};
-
+    ListExecutor(Team& team, PairList::Storage& list);
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
 
 private:
     class Writer;
-    struct Worker {
-        std::span<Pair> block;  // free part of the block in this worker's hands
-    };
-
     PairList::Storage& list_;
-    std::uint64_t most_;
-    ObjectRange range_;
-    std::atomic<std::uint64_t> written_ = 0;
-    std::vector<Worker> workers_;
+    std::vector<std::span<Pair>> blocks_;  // each worker's: what is free of the block in its hands
 };
 
 /// Hands pairs to a function on the calling thread, as they come, holding at most `buffer_pairs`.

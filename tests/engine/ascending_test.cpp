@@ -1,0 +1,80 @@
+// Pairs into ascending order, whoever found them and however few pages there are.
+#include "engine/local/ascending.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace octopair {
+namespace {
+
+/// Distinct pairs of objects below `objects`, shuffled; `crowd` of them share one `a`.
+std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::size_t crowd) {
+    std::mt19937_64 random(count + objects);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto a = std::uint32_t(random() % objects), b = std::uint32_t(random() % objects);
+        if (a != b) pairs.push_back({std::min(a, b), std::max(a, b)});
+    }
+    for (std::uint32_t i = 0; i < crowd; ++i) pairs.push_back({objects / 3, objects / 3 + 1 + i});
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    std::shuffle(pairs.begin(), pairs.end(), random);
+    return pairs;
+}
+
+/// Writes `pairs` as 100 shares and returns what the list then holds.
+std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingExecutor::Bounds& bounds) {
+    Team team(threads);
+    PairList list;
+    AscendingExecutor executor(team, list.storage(), bounds);
+    executor.for_each_writing(100, [&](std::size_t i, PairWriter& writer) {
+        const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
+        writer.write(std::span(pairs).subspan(begin, end - begin));
+    });
+    executor.append_sorted({});
+    EXPECT_EQ(list.size(), list.to_vector().size());
+    return list.to_vector();
+}
+
+class Ascending : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(Ascending, KeysOfAnyWidth) {
+    for (const std::uint32_t objects : {2u, 1000u, 1u << 16, 1u << 22, ~0u}) {
+        std::vector<Pair> pairs = random_pairs(100'000, objects, 0);
+        const auto found = sorted_by(GetParam(), pairs, {{0, objects}, objects});
+        std::sort(pairs.begin(), pairs.end());
+        EXPECT_TRUE(found == pairs) << objects;
+    }
+}
+
+TEST_P(Ascending, BucketsTooLargeToSortAtOnce) {
+    std::vector<Pair> pairs = random_pairs(10'000, 5'000'000, 600'000);
+    const auto found = sorted_by(GetParam(), pairs, {{0, 5'000'000}, 5'000'000});
+    std::sort(pairs.begin(), pairs.end());
+    EXPECT_TRUE(found == pairs);
+}
+
+TEST_P(Ascending, OnlyTheRowsAskedFor) {
+    std::vector<Pair> pairs = random_pairs(100'000, 1'000'000, 1000);
+    const auto found = sorted_by(GetParam(), pairs, {{250'000, 600'001}, 1'000'000});
+    std::erase_if(pairs, [](const Pair& pair) { return pair.a < 250'000 || pair.a > 600'000; });
+    std::sort(pairs.begin(), pairs.end());
+    EXPECT_TRUE(found == pairs);
+}
+
+TEST_P(Ascending, NoPairs) { EXPECT_TRUE(sorted_by(GetParam(), {}, {{0, 0}, 0}).empty()); }
+
+TEST_P(Ascending, TooManyForTheBudget) {
+    const std::vector<Pair> pairs = random_pairs(100'000, 1000, 0);
+    EXPECT_THROW(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() - page_pairs}),
+                 AscendingExecutor::OverBudget);
+    EXPECT_EQ(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() * 2}).size(), pairs.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, Ascending, ::testing::Values(1, 2, 8));
+
+}  // namespace
+}  // namespace octopair
