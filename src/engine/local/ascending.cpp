@@ -185,7 +185,9 @@ public:
         : list_(list), keys_(bounds.rows, bounds.columns), pages_left_(std::int64_t(bounds.most / page_pairs)) {
         const std::uint64_t spare_pages = bounds.most / page_pairs / 4 / threads;
         const unsigned row_bits = keys_.row_bits();
-        const unsigned wanted = std::min(row_bits - std::min(row_bits, objects_a_bucket_bits), most_bucket_bits);
+        const unsigned for_rows = row_bits - std::min(row_bits, objects_a_bucket_bits);
+        const unsigned for_pairs = std::min(row_bits, unsigned(std::bit_width(bounds.expected / sorted_at_once * 2)));
+        const unsigned wanted = std::min(std::max(for_rows, for_pairs), most_bucket_bits);
         bits_ = std::clamp(wanted, 1u, unsigned(std::bit_width(spare_pages | 2)) - 1);
         workers_.reserve(threads);
         for (unsigned i = 0; i < threads; ++i) {

@@ -28,6 +28,7 @@ public:
         ObjectRange rows;                            ///< the `a` that are wanted
         std::uint64_t columns = 0;                   ///< above every `b`
         std::uint64_t most = ~std::uint64_t(0) / 2;  ///< pairs for whom there may be pages
+        std::uint64_t expected = 0;                  ///< pairs, if that is known
     };
     /// Thrown by a scan that needs more pages than `most` allows; no more than a quarter of them is not full.
     using OverBudget = Pages::OverBudget;

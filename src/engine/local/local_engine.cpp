@@ -243,7 +243,7 @@ private:
             const double done = 0.5 + 0.5 * double(window.end) / double(objects);
             // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
             const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + team_.threads() * 2 * page_pairs;
-            collect_ascending(call, held_.storage(), {window, objects, room}, done);
+            collect_ascending(call, held_.storage(), {window, objects, room, pairs}, done);
             hand_out_held(call, receiver);
         }
     }
