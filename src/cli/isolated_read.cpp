@@ -74,7 +74,7 @@ private:
 };
 
 /// The size of a file; of a glTF with all that lies beside it, as its numbers may be in further files.
-std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
+[[maybe_unused]] std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
     std::error_code error;
     if (path.extension() != ".gltf") return std::filesystem::file_size(path, error);
     std::uintmax_t bytes = 0;

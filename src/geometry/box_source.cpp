@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/box_kernel.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -29,18 +30,6 @@ float round_down(double value) {
 }
 
 float round_up(double value) { return -round_down(-value); }
-
-template <typename Real>
-bool is_box(const Box<Real>& box) {
-    bool good = true;
-    for (int axis = 0; axis < 3; ++axis) {
-        // Also false for NaN; |finite| <= max is false for the infinities.
-        good &= box.min[axis] <= box.max[axis];
-        good &= std::abs(box.min[axis]) <= std::numeric_limits<Real>::max();
-        good &= std::abs(box.max[axis]) <= std::numeric_limits<Real>::max();
-    }
-    return good;
-}
 
 bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
 
@@ -111,20 +100,13 @@ bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
     return true;
 }
 
-bool BoxSource::certain(const Entry& a, const Entry& b) const {
+RoundingSlack BoxSource::slack() const {
     // A bound of an entry is off by at most 2^-23 of itself (rounding to float32) plus 2^-47 of the numbers it was made
-    // from (the widening's own error bound in rounded()); four times that separates real overlaps from made ones.
-    for (int axis = 0; axis < 3; ++axis) {
-        const double origin = std::abs(origin_[std::size_t(axis)]);
-        const double size = std::max({std::abs(double(a.min[axis])), std::abs(double(a.max[axis])),
-                                      std::abs(double(b.min[axis])), std::abs(double(b.max[axis]))});
-        const double slack = size * 0x1p-20 + origin * 0x1p-44 + double(FLT_MIN);
-        const double depth =
-            std::min(double(a.max[axis]) - double(b.min[axis]), double(b.max[axis]) - double(a.min[axis]));
-        // The widening may exceed the entry's own coordinates, but then so does the box's own extent: it is in `size`.
-        if (!(depth > slack) || size >= double(FLT_MAX)) return false;
-    }
-    return true;
+    // from (the widening's own error bound in rounded()); more than four times that separates real overlaps from made
+    // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
+    RoundingSlack slack;
+    for (unsigned axis = 0; axis < 3; ++axis) slack.base[axis] = round_up(std::abs(origin_[axis]) * 0x1p-44 + FLT_MIN);
+    return slack;
 }
 
 Entry BoxSource::rounded(const Box3d& box, double widening) const {
@@ -151,17 +133,13 @@ Entry BoxSource::rounded(const Box3d& box, double widening) const {
 template <typename Real>
 bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
                          std::span<Entry> out) const {
+    if constexpr (std::is_same_v<Real, float>) {
+        if (exact_) return copy_boxes(boxes.subspan(begin, out.size()), out);
+    }
     bool good = true;
     for (std::size_t i = 0; i < out.size(); ++i) {
         const Box<Real>& box = boxes[begin + i];
         good &= is_box(box);
-        if (exact_) {
-            for (int axis = 0; axis < 3; ++axis) {
-                out[i].min[axis] = float(box.min[axis]);
-                out[i].max[axis] = float(box.max[axis]);
-            }
-            continue;
-        }
         const double own = padding.empty() ? 0 : padding[begin + i];
         good &= is_padding(own);
         Box3d wide;

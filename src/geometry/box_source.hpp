@@ -39,8 +39,8 @@ public:
     std::uint32_t second_begin() const { return join() ? std::uint32_t(first_size_) : 0; }
     /// True if overlapping entries are a pair, without a further test.
     bool exact() const { return exact_; }
-    /// True if the hit is deep enough that rounding cannot have made it.
-    bool certain(const Entry& a, const Entry& b) const;
+    /// For certain(): a hit of which that is not true counts only if counts() says so.
+    RoundingSlack slack() const;
     /// The rule of objects.hpp, in float64, on the caller's numbers.
     bool counts(std::uint32_t a, std::uint32_t b) const;
 

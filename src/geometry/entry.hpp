@@ -12,6 +12,10 @@
 //   bit 3, 4   the object belongs to the first, the second set of a join: pairs within a set do not count.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
 #include <cstdint>
 
 namespace octopair {
@@ -32,6 +36,24 @@ inline constexpr std::uint32_t second_set = 16;
 inline bool overlap(const Entry& a, const Entry& b) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
+    }
+    return true;
+}
+
+/// What rounding may have added to entries, on each axis: `part` of the coordinates, and `base` whatever they are.
+struct RoundingSlack {
+    static constexpr float part = 0x1p-20f;
+    std::array<float, 3> base = {0, 0, 0};
+};
+
+/// True if the hit is deep enough that rounding cannot have made it: the specification of the kernel's keep_certain.
+inline bool certain(const Entry& a, const Entry& b, const RoundingSlack& slack) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const float size = std::max(std::abs(a.min[axis]), std::abs(a.max[axis])) +
+                           std::max(std::abs(b.min[axis]), std::abs(b.max[axis]));
+        const float depth = std::min(a.max[axis] - b.min[axis], b.max[axis] - a.min[axis]);
+        // A bound at the end of float32's range says nothing of where the box ends.
+        if (!(depth > size * RoundingSlack::part + slack.base[axis] && size < FLT_MAX)) return false;
     }
     return true;
 }

@@ -10,12 +10,12 @@ namespace octopair {
 namespace {
 
 // Found by measurement on the scenes of docs/scenes.md; they change the shape of the tree, never the set of pairs.
-constexpr double always_split = 2048;  // objects: more would not stay in the cache while they are swept
-constexpr double never_split = 128;    // objects
-constexpr double crowded_window = 40;  // objects that a sweep tests for each object
-constexpr double ghost_growth = 1.45;  // entries below a node for each object that begins in it
-constexpr double handed_growth = 1.5;  // entries and boxes handed down, after a split against before
-constexpr std::uint64_t table_cells = 1 << 16;
+constexpr double always_split = 2048;      // objects: more would not stay in the cache while they are swept
+constexpr double never_split = 128;        // objects
+constexpr double crowded_window = 40;      // objects that a sweep tests for each object
+constexpr double ghost_growth = 1.45;      // entries below a node for each object that begins in it
+constexpr double handed_growth = 1.5;      // entries and boxes handed down, after a split against before
+constexpr std::uint64_t cells_a_node = 8;  // of the table from cells to leaves
 
 /// The octant `digit` of `node`, as a leaf.
 Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {
@@ -93,7 +93,7 @@ Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double
     Growth growth{sample, weight, stop};
     std::vector<std::uint32_t> all(sample.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    const Node root{.lo = {0, 0, 0}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
+    const Node root{.lo = {}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
     grow(growth, root, all, {});
     make_table(frame);
 }
@@ -111,7 +111,8 @@ NodeIndex Directory::grow(Growth& growth, const Node& start, std::vector<std::ui
         (natural_level(growth.sample[i]) > start.level ? inside : kept).push_back(i);
     }
     Growth::Lists inside_child, handed_child;
-    bool split = start.level < deepest && growth.crowded(start, inside);
+    const bool room = nodes_.size() + 8 * (deepest + 1) < most_nodes;  // for the siblings to come, too
+    bool split = room && start.level < deepest && growth.crowded(start, inside);
     if (split) {
         const std::size_t entries = growth.divide(start, inside, inside_child);
         const std::size_t copies = growth.divide(start, kept, handed_child);
@@ -136,28 +137,41 @@ void Directory::make_table(const Frame& frame) {
     unsigned depth = 0;
     for (const Node& node : nodes_) depth = std::max(depth, node.level);
     const auto rows = [&](unsigned level, unsigned axis) { return (frame.last_cell(axis) >> (deepest - level)) + 1; };
+    const std::uint64_t most_cells = cells_a_node * nodes_.size();
     unsigned level = 0;
-    while (level < depth &&
-           std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= table_cells) {
+    while (level < depth && std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= most_cells) {
         ++level;
-    }
-    std::vector<NodeIndex> table;
-    for (std::uint32_t z = 0; z < rows(level, 2); ++z) {
-        for (std::uint32_t y = 0; y < rows(level, 1); ++y) {
-            for (std::uint32_t x = 0; x < rows(level, 0); ++x) {
-                const unsigned shift = deepest - level;
-                const Cell cell = {x << shift, y << shift, z << shift};
-                NodeIndex node = 0;
-                while (nodes_[node].level < level && !nodes_[node].leaf()) {
-                    node = child(nodes_[node], digit_at(cell, nodes_[node].level));
-                }
-                table.push_back(node);
-            }
-        }
     }
     table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};
     table_shift_ = deepest - level;
-    table_ = std::move(table);
+    table_.resize(std::size_t(table_size_[0]) * table_size_[1] * table_size_[2]);
+    fill_table(0, {}, table_size_, table_shift_, 0);
+}
+
+/// Fills the table of octants of 2^shift cells that begins at `begin`, within the node `from` at the cell `first`.
+void Directory::fill_table(NodeIndex from, const Cell& first, std::array<std::uint32_t, 3> sizes, unsigned shift,
+                           std::size_t begin) {
+    std::size_t at = begin;
+    for (std::uint32_t z = 0; z < sizes[2]; ++z) {
+        for (std::uint32_t y = 0; y < sizes[1]; ++y) {
+            for (std::uint32_t x = 0; x < sizes[0]; ++x, ++at) {
+                const Cell cell = {first[0] + (x << shift), first[1] + (y << shift), first[2] + (z << shift), 0};
+                NodeIndex node = from;
+                while (nodes_[node].level < deepest - shift && !nodes_[node].leaf()) {
+                    node = child(nodes_[node], digit_at(cell, nodes_[node].level));
+                }
+                if (nodes_[node].leaf()) {
+                    table_[at] = node | nodes_[node].level << node_bits;
+                    continue;
+                }
+                const std::size_t next = table_.size();
+                table_.resize(next + (std::size_t(1) << 3 * table_levels));
+                table_[at] = further + std::uint32_t(next);
+                constexpr std::uint32_t side = 1u << table_levels;
+                fill_table(node, cell, {side, side, side}, shift - std::min(shift, table_levels), next);
+            }
+        }
+    }
 }
 
 }  // namespace octopair

@@ -10,6 +10,7 @@
 // handed down from above would be copied into the children without being thinned.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -32,7 +33,7 @@ struct Node {
 
     static constexpr std::uint32_t no_children = ~std::uint32_t(0);
     bool leaf() const { return children == no_children; }
-    OctalCode code() const { return OctalCode::from_cell(lo, level); }
+    OctalCode code() const { return OctalCode::from_cell({lo[0], lo[1], lo[2]}, level); }
 
     bool touches(const CellBox& box) const {
         bool touched = true;
@@ -52,16 +53,32 @@ public:
     std::span<const Node> nodes() const { return nodes_; }
     NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
 
+    /// A leaf and its level.
+    struct Leaf {
+        NodeIndex node;
+        unsigned level;
+    };
+    /// The leaf that holds the cell.
+    Leaf leaf(const Cell& cell) const {
+        unsigned shift = table_shift_;
+        std::uint32_t found =
+            table_[((cell[2] >> shift) * table_size_[1] + (cell[1] >> shift)) * table_size_[0] + (cell[0] >> shift)];
+        while (found >= further) {
+            const unsigned bits = std::min(shift, table_levels);
+            const unsigned mask = (1u << bits) - 1;
+            shift -= bits;
+            const Cell at = {cell[0] >> shift & mask, cell[1] >> shift & mask, cell[2] >> shift & mask, 0};
+            found = table_[found - further + ((at[2] << table_levels | at[1]) << table_levels | at[0])];
+        }
+        return {found & most_nodes, found >> node_bits};
+    }
     /// The deepest node of at most `level` that holds the cell.
     NodeIndex find(const Cell& cell, unsigned level) const {
-        NodeIndex found = table_[table_row(cell)];
-        while (nodes_[found].level > level) found = nodes_[found].parent;
-        while (nodes_[found].level < level && !nodes_[found].leaf())
-            found = child(nodes_[found], digit_at(cell, nodes_[found].level));
-        return found;
+        const Leaf found = leaf(cell);
+        NodeIndex node = found.node;
+        for (unsigned at = found.level; at > level; --at) node = nodes_[node].parent;
+        return node;
     }
-    /// The leaf that holds the cell.
-    NodeIndex leaf(const Cell& cell) const { return find(cell, deepest); }
 
     /// Of the octant one level below `level`.
     static unsigned digit_at(const Cell& cell, unsigned level) {
@@ -74,15 +91,20 @@ private:
     NodeIndex grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
                    const std::vector<std::uint32_t>& handed);
     void make_table(const Frame& frame);
-    std::size_t table_row(const Cell& cell) const {
-        return (std::size_t(cell[2] >> table_shift_) * table_size_[1] + (cell[1] >> table_shift_)) * table_size_[0] +
-               (cell[0] >> table_shift_);
-    }
+    void fill_table(NodeIndex from, const Cell& first, std::array<std::uint32_t, 3> sizes, unsigned shift,
+                    std::size_t begin);
 
     std::vector<Node> nodes_;
     std::vector<std::array<NodeIndex, 8>> children_;
-    std::vector<NodeIndex> table_;  // node of at most the table's level at each of its cells, row-major
-    Cell table_size_ = {1, 1, 1};
+
+    // From cells to leaves: a table of one level's octants, row-major, and for octants that are divided further tables
+    // of the next three levels, and so on. An element is a leaf and its level, or where the further table begins.
+    static constexpr unsigned table_levels = 3;
+    static constexpr unsigned node_bits = 26;
+    static constexpr std::uint32_t most_nodes = (std::uint32_t(1) << node_bits) - 1;
+    static constexpr std::uint32_t further = (deepest + 1) << node_bits;
+    std::vector<std::uint32_t> table_;
+    std::array<std::uint32_t, 3> table_size_ = {1, 1, 1};
     unsigned table_shift_ = deepest;
 };
 

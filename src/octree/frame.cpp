@@ -9,6 +9,8 @@ namespace octopair {
 
 namespace {
 
+constexpr std::size_t most_samples = 4096;
+
 /// How far the bulk of the objects reaches on one axis, and how long a typical one is.
 struct AxisFit {
     double begin = 0, end = 0, typical = 0;
@@ -23,7 +25,9 @@ double quantile(std::vector<double>& values, std::size_t rank) {
 /// Between the 1/64 quantiles plus a quarter on each side, but no further than the sample itself reaches.
 AxisFit fit_axis(std::span<const Entry> sample, unsigned axis) {
     std::vector<double> lows, highs, extents;
-    for (const Entry& entry : sample) {
+    const std::size_t stride = sample.size() / most_samples + 1;
+    for (std::size_t i = 0; i < sample.size(); i += stride) {
+        const Entry& entry = sample[i];
         const double low = double(entry.min[axis]);
         const double high = double(entry.max[axis]);
         if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
@@ -80,9 +84,9 @@ Frame Frame::fit(std::span<const Entry> sample, std::uint64_t objects) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         const double length = shape[axis] * most_octants;
         const double scale = length > 0 ? double(cells_per_axis) / length : 1.0;
-        frame.origin_[axis] = float(axes[axis].begin);
-        frame.scale_[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
-        frame.last_[axis] = float(frame.cell(float(axes[axis].end), axis));
+        frame.map_.origin[axis] = float(axes[axis].begin);
+        frame.map_.scale[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
+        frame.map_.last[axis] = float(frame.map_.cell(float(axes[axis].end), axis));
     }
     return frame;
 }

@@ -20,14 +20,15 @@
 
 namespace octopair {
 
-using Cell = std::array<std::uint32_t, 3>;
+/// A cell on each axis, and a zero that makes it a register.
+using Cell = std::array<std::uint32_t, 4>;
 
 inline constexpr unsigned deepest = OctalCode::max_level;
 inline constexpr std::uint32_t cells_per_axis = std::uint32_t(1) << deepest;
 
 /// The cells that a box touches on each axis, both ends included.
-struct CellBox {
-    Cell lo, hi;
+struct alignas(16) CellBox {
+    Cell lo = {}, hi = {};
 };
 
 /// The deepest level at which the box touches at most two octants on each axis, so at most eight.
@@ -36,37 +37,43 @@ inline unsigned natural_level(const CellBox& box) {
     return deepest - unsigned(std::bit_width(extent));
 }
 
+/// The map: the specification of what the kernel does with many boxes at once.
+struct FrameMap {
+    static constexpr float end = float(cells_per_axis - 1);
+    std::array<float, 4> origin = {0, 0, 0, 0};
+    std::array<float, 4> scale = {1, 1, 1, 0};
+    std::array<float, 4> last = {end, end, end, 0};
+
+    std::uint32_t cell(float coordinate, unsigned axis) const {
+        // Clamped before the conversion: infinity (of an overflowing difference) is a border cell like any far value.
+        const float scaled = (coordinate - origin[axis]) * scale[axis];
+        const float below = scaled > 0.0f ? scaled : 0.0f;
+        return std::uint32_t(below < last[axis] ? below : last[axis]);
+    }
+};
+
 class Frame {
 public:
     Frame() = default;
     /// `objects`: how many the sample stands for. The sample may be empty.
     static Frame fit(std::span<const Entry> sample, std::uint64_t objects);
 
-    std::uint32_t cell(float coordinate, unsigned axis) const {
-        // Clamped before the conversion: infinity (of an overflowing difference) is a border cell like any far value.
-        const float scaled = (coordinate - origin_[axis]) * scale_[axis];
-        const float below = scaled > 0.0f ? scaled : 0.0f;
-        return std::uint32_t(below < last_[axis] ? below : last_[axis]);
-    }
-
     CellBox cells(const Entry& entry) const {
         CellBox box;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            box.lo[axis] = cell(entry.min[axis], axis);
-            box.hi[axis] = cell(entry.max[axis], axis);
-        }
+        cells({&entry, 1}, {&box, 1});
         return box;
     }
+    /// Of many at once; entries must be valid boxes (frame_kernel.cpp).
+    void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
 
+    const FrameMap& map() const { return map_; }
     /// The axis that octants are long on and are swept along first.
     unsigned long_axis() const { return long_axis_; }
     /// The last cell of an axis that a box can touch.
-    std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(last_[axis]); }
+    std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(map_.last[axis]); }
 
 private:
-    std::array<float, 3> origin_ = {0, 0, 0};
-    std::array<float, 3> scale_ = {1, 1, 1};
-    std::array<float, 3> last_ = {float(cells_per_axis - 1), float(cells_per_axis - 1), float(cells_per_axis - 1)};
+    FrameMap map_;
     unsigned long_axis_ = 0;
 };
 

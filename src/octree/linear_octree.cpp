@@ -1,7 +1,9 @@
 #include "octree/linear_octree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <deque>
 #include <utility>
 
 #include "base/stop.hpp"
@@ -14,7 +16,7 @@ constexpr std::size_t sample_stride = 16;        // one object of so many is sam
 constexpr std::size_t most_samples = 1 << 21;    // no more than these
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
-constexpr std::size_t batch_size = 512;          // objects loaded at a time: their entries stay in the first cache
+constexpr std::size_t batch_size = 256;          // objects loaded at a time: they stay in the first cache
 
 /// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
 std::size_t jitter(std::size_t i, std::size_t stride) {
@@ -22,11 +24,9 @@ std::size_t jitter(std::size_t i, std::size_t stride) {
     return std::size_t(scattered * stride >> 32);
 }
 
-bool within(const Node& node, const CellBox& box) {
-    const std::uint32_t last = (cells_per_axis >> node.level) - 1;
-    bool inside = true;
-    for (unsigned axis = 0; axis < 3; ++axis) inside &= box.hi[axis] - node.lo[axis] <= last;
-    return inside;
+/// Whether a box lies within the octant of `level` that its low corner lies in.
+bool within(const CellBox& box, unsigned level) {
+    return ((box.lo[0] ^ box.hi[0]) | (box.lo[1] ^ box.hi[1]) | (box.lo[2] ^ box.hi[2])) >> (deepest - level) == 0;
 }
 
 /// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the
@@ -70,11 +70,26 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
 
 }  // namespace
 
+/// An entry of a box that crosses octants.
+class Crossing {
+public:
+    Crossing(std::size_t position, NodeIndex node, unsigned begins)
+        : position_(std::uint32_t(position)), node_and_begins_(node << 3 | begins) {}
+
+    std::size_t position() const { return position_; }
+    NodeIndex node() const { return node_and_begins_ >> 3; }
+    /// The class bits.
+    unsigned begins() const { return node_and_begins_ & begins_before; }
+
+private:
+    std::uint32_t position_, node_and_begins_;
+};
+
 /// A share of the objects.
 struct LinearOctree::Block {
     std::size_t begin = 0, end = 0;
     bool valid = true;
-    std::vector<std::uint32_t> crossers;   // positions of the boxes that do not lie within their home octant
+    std::deque<Crossing> crossings;        // by position
     std::vector<std::uint64_t> inside_at;  // per node: first the number of entries, after merge the next one's place
     std::vector<std::uint64_t> crossing_at;
 };
@@ -108,8 +123,7 @@ void LinearOctree::plant(const EntrySource& source, std::stop_token stop) {
     const std::vector<Entry> sampled = sample(source);
     frame_ = Frame::fit(sampled, source.size());
     std::vector<CellBox> cells(sampled.size());
-    std::transform(sampled.begin(), sampled.end(), cells.begin(),
-                   [&](const Entry& entry) { return frame_.cells(entry); });
+    frame_.cells(sampled, cells);
     const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
     directory_ = Directory(frame_, cells, weight, stop);
 }
@@ -129,9 +143,9 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
     const std::size_t node_count = nodes().size();
     block.inside_at.assign(node_count + 1, 0);  // the last one counts the boxes that cross, which are not inside any
     block.crossing_at.assign(node_count, 0);
-    block.crossers.resize(block.end - block.begin);
-    std::size_t crossers = 0;
     std::array<Entry, batch_size> batch;
+    std::array<CellBox, batch_size> cells;
+    std::array<std::uint32_t, batch_size> crossers;
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
         if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
@@ -139,26 +153,24 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
             block.valid = false;
             return;
         }
+        frame_.cells(entries, cells);
+        std::size_t crossing = 0;
         for (std::size_t i = 0; i < entries.size(); ++i) {
-            const CellBox cells = frame_.cells(entries[i]);
-            const NodeIndex home = directory_.leaf(cells.lo);
+            const Directory::Leaf home = directory_.leaf(cells[i].lo);
             // No branch on whether a box crosses: mispredicting it cost more than everything else here.
-            const bool inside = within(nodes()[home], cells);
-            const NodeIndex slot = inside ? home : NodeIndex(node_count);
+            const bool inside = within(cells[i], home.level);
+            const NodeIndex slot = inside ? home.node : NodeIndex(node_count);
             homes_[begin + i] = slot;
             ++block.inside_at[slot];
-            block.crossers[crossers] = std::uint32_t(begin + i);
-            crossers += inside ? 0 : 1;
+            crossers[crossing] = std::uint32_t(i);
+            crossing += inside ? 0 : 1;
         }
-    }
-    block.crossers.resize(crossers);
-    block.crossers.shrink_to_fit();
-    Entry entry;
-    std::size_t done = 0;
-    for (const std::uint32_t position : block.crossers) {
-        if (done++ % check_interval == 0) throw_if_stopped(stop);
-        (void)source.load(position, {&entry, 1});
-        for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned) { ++block.crossing_at[node]; });
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            for_each_octant(directory_, cells[i], [&](NodeIndex node, unsigned begins) {
+                ++block.crossing_at[node];
+                block.crossings.emplace_back(begin + i, node, begins);
+            });
+        }
     }
 }
 
@@ -179,6 +191,7 @@ void LinearOctree::merge(std::span<Block> blocks) {
 void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token stop) {
     const std::size_t outside = nodes().size();
     std::array<Entry, batch_size> batch;
+    auto crossing = block.crossings.begin();
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
         if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
@@ -192,18 +205,13 @@ void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token
             }
             at += slot != outside ? 1 : 0;
         }
+        for (; crossing != block.crossings.end() && crossing->position() < begin + entries.size(); ++crossing) {
+            Entry& entry = entries_[std::size_t(block.crossing_at[crossing->node()]++)];
+            entry = entries[crossing->position() - begin];
+            entry.mask = mask_in(nodes()[crossing->node()], entry.mask, crossing->begins());
+        }
     }
-    Entry entry;
-    std::size_t done = 0;
-    for (const std::uint32_t position : block.crossers) {
-        if (done++ % check_interval == 0) throw_if_stopped(stop);
-        (void)source.load(position, {&entry, 1});
-        const std::uint32_t brought = entry.mask;
-        for_each_octant(directory_, frame_.cells(entry), [&](NodeIndex node, unsigned begins) {
-            entry.mask = mask_in(nodes()[node], brought, begins);
-            entries_[std::size_t(block.crossing_at[node]++)] = entry;
-        });
-    }
+    block.crossings.clear();
 }
 
 }  // namespace octopair

@@ -27,54 +27,63 @@ void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
     cursor.row_end = sweep.rows.size();
     while (cursor.row < cursor.row_end) {
-        const std::size_t count = sweep_rows(sweep, cursor, hits_);
-        drain(sweep, std::span(hits_).first(count), orientation);
+        const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, hits_));
+        if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
+        if (!context_.source.exact()) drop_rounded(sweep, hits);
+        drain(sweep, hits);
         if (cursor.row < cursor.row_end) throw_if_stopped(context_.stop);
     }
 }
 
-void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits, const Orientation& orientation) {
-    const SweepSet& rows = sweep.rows;
-    const SweepSet& columns = sweep.columns;
-    const bool plain = context_.source.exact() && orientation == Orientation{};
-    if (plain && writer_.counting()) {
+namespace {
+
+/// Clears the bits of hits for which keep(hit, column) is false.
+template <typename Keep>
+void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
+    for (; asked != 0; asked &= asked - 1) {
+        if (!keep(hit.first + unsigned(std::countr_zero(asked)))) hit.bits &= ~(asked & -asked);
+    }
+}
+
+}  // namespace
+
+void PairMaker::drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation) {
+    for (HitMask& hit : hits) {
+        filter(hit, hit.bits, [&](std::size_t column) {
+            return oriented(sweep.rows.entry(hit.row), sweep.columns.entry(column), orientation);
+        });
+    }
+}
+
+void PairMaker::drop_rounded(const Sweep& sweep, std::span<HitMask> hits) {
+    const std::span<HitMask> certain = std::span(certain_).first(hits.size());
+    std::copy(hits.begin(), hits.end(), certain.begin());
+    keep_certain(sweep, slack_, certain);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        filter(hits[i], hits[i].bits & ~certain[i].bits, [&](std::size_t column) {
+            return context_.source.counts(sweep.rows.object()[hits[i].row], sweep.columns.object()[column]);
+        });
+    }
+}
+
+void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
+    if (writer_.counting()) {
         std::uint64_t pairs = 0;
         for (const HitMask& hit : hits) pairs += std::uint64_t(std::popcount(hit.bits));
         writer_.write_count(pairs);
         return;
     }
-    for (const HitMask& hit : hits) {
-        for (std::uint32_t bits = hit.bits; bits != 0; bits &= bits - 1) {
-            const std::size_t column = hit.first + unsigned(std::countr_zero(bits));
-            if (plain) {
-                add(rows.object(hit.row), columns.object(column));
-            } else {
-                add(rows.entry(hit.row), columns.entry(column), orientation);
-            }
-        }
+    while (!hits.empty()) {
+        const std::size_t room = (pairs_.size() - held_) / most_hits;
+        const auto some = hits.first(std::min(hits.size(), room));
+        held_ += pairs_of_hits(sweep, some, context_.source.second_begin(), pairs_.data() + held_);
+        hits = hits.subspan(some.size());
+        if (!hits.empty()) flush();
     }
-}
-
-void PairMaker::add(const Entry& row, const Entry& column, const Orientation& orientation) {
-    const BoxSource& source = context_.source;
-    if (!oriented(row, column, orientation)) return;
-    if (source.exact() || source.certain(row, column) || source.counts(row.object, column.object)) {
-        add(row.object, column.object);
-    }
-}
-
-void PairMaker::add(std::uint32_t row, std::uint32_t column) {
-    if (held_ == pairs_.size()) flush();
-    pairs_[held_++] = {std::min(row, column), std::max(row, column) - context_.source.second_begin()};
 }
 
 void PairMaker::flush() {
-    if (held_ == 0) return;
-    if (writer_.counting()) {
-        writer_.write_count(held_);
-    } else {
-        writer_.write(std::span(pairs_).first(held_));
-    }
+    if (held_ > 0) writer_.write(std::span(pairs_).first(held_));
     held_ = 0;
 }
 

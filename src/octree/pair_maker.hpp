@@ -31,7 +31,8 @@ struct ScanContext {
 
 class PairMaker {
 public:
-    PairMaker(const ScanContext& context, PairWriter& writer) : context_(context), writer_(writer) {}
+    PairMaker(const ScanContext& context, PairWriter& writer)
+        : context_(context), slack_(context.source.slack()), writer_(writer) {}
 
     /// Runs a sweep to its end. Throws Error{cancelled}.
     void sweep(const Sweep& sweep, const Orientation& orientation);
@@ -39,14 +40,16 @@ public:
     void flush();
 
 private:
-    void drain(const Sweep& sweep, std::span<const HitMask> hits, const Orientation& orientation);
-    void add(const Entry& row, const Entry& column, const Orientation& orientation);
-    void add(std::uint32_t row, std::uint32_t column);
+    void drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation);
+    void drop_rounded(const Sweep& sweep, std::span<HitMask> hits);
+    void drain(const Sweep& sweep, std::span<const HitMask> hits);
 
     const ScanContext& context_;
+    RoundingSlack slack_;
     PairWriter& writer_;
     std::array<HitMask, 1024> hits_;
-    std::array<Pair, 2048> pairs_;
+    std::array<HitMask, 1024> certain_;
+    std::array<Pair, 2048 + most_hits> pairs_;
     std::size_t held_ = 0;
 };
 

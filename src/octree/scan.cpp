@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <vector>
 
 #include "base/stop.hpp"
@@ -14,9 +15,9 @@ namespace {
 constexpr std::size_t large_node = 1 << 15;     // entries: shared out among threads on its own
 constexpr std::size_t share_entries = 1 << 13;  // entries of a share at most, so that stops are seen soon
 constexpr std::size_t shares_per_thread = 64;
-constexpr std::size_t hot_node = 4096;     // entries: swept at once where the first axis does
-constexpr std::uint64_t good_window = 48;  // tests a box
-constexpr double worth_splitting = 0.75;   // of the entries may be left in the largest octant of an own octree
+constexpr std::size_t hot_node = 4096;      // entries: swept at once where the first axis does
+constexpr std::uint64_t good_window = 192;  // tests a box
+constexpr double worth_splitting = 0.75;    // of the entries may be left in the largest octant of an own octree
 
 using Handed = std::vector<Entry>;
 
@@ -80,46 +81,35 @@ public:
         : context_(context), executor_(executor), order_(context.stop) {}
 
     void scan(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
-        if (context_.source.join()) {
-            scan_join(own, handed);
-        } else {
-            within(own, axis);
-            between({handed}, {own}, axis);
+        if (context_.source.join()) return scan_join(own, handed);
+        const EntryList own_list{own}, handed_list{handed};
+        const bool small = own.size() <= hot_node;
+        if (small) order_.lay_out(own_list, axis, own_set_);
+        if (own.size() > 1 && !(small && swept({{own_set_, own_set_, SweepKind::self}}, own.size()))) {
+            crowded({own_list, own_list, true, {}});
+        }
+        if (handed.empty()) return;
+        const bool both_small = small && handed.size() <= hot_node;
+        if (both_small) order_.lay_out(handed_list, axis, handed_set_);
+        if (!(both_small &&
+              swept({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}},
+                    own.size() + handed.size()))) {
+            crowded({handed_list, own_list, false, {}});
         }
     }
 
 private:
-    void within(std::span<const Entry> own, unsigned axis) {
-        if (own.size() < 2) return;
-        const EntryList list{own};
-        if (own.size() <= hot_node && order_.windows(list, list, axis) <= good_window * own.size()) {
-            rows_.assign(own, order_.sort(list, axis, executor_), axis);
-            executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
-                PairMaker maker(context_, writer);
-                maker.sweep({rows_, rows_, SweepKind::self}, {});
-                maker.flush();
-            });
-            return;
-        }
-        crowded({list, list, true, {}});
-    }
-
-    void between(const EntryList& first, const EntryList& second, unsigned axis) {
-        if (first.size() == 0 || second.size() == 0) return;
-        const std::size_t size = first.size() + second.size();
-        if (size <= hot_node &&
-            order_.windows(first, second, axis) + order_.windows(second, first, axis) <= good_window * size) {
-            rows_.assign(first.entries, order_.sort(first, axis, executor_), axis);
-            columns_.assign(second.entries, order_.sort(second, axis, executor_), axis);
-            executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
-                PairMaker maker(context_, writer);
-                maker.sweep({rows_, columns_, SweepKind::cross}, {});
-                maker.sweep({columns_, rows_, SweepKind::cross_strict}, {});
-                maker.flush();
-            });
-            return;
-        }
-        crowded({first, second, false, {}});
+    /// Sweeps if that tests few boxes for each of `size`.
+    bool swept(std::initializer_list<Sweep> sweeps, std::size_t size) {
+        std::uint64_t tests = 0;
+        for (const Sweep& sweep : sweeps) tests += sampled_windows(sweep);
+        if (tests > good_window * size) return false;
+        executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
+            PairMaker maker(context_, writer);
+            for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
+            maker.flush();
+        });
+        return true;
     }
 
     /// Pairs between the sets of a join only: the sets are never swept against themselves.
@@ -194,8 +184,8 @@ private:
     const ScanContext& context_;
     Executor& executor_;
     SweepOrder order_;
-    SweepSet rows_;
-    SweepSet columns_;
+    SweepSet own_set_;
+    SweepSet handed_set_;
 };
 
 /// Runs of nodes in pre-order that make up one share each; a large node is a share alone.

@@ -17,29 +17,43 @@ bool hit(const SweepSet& rows, std::size_t row, const SweepSet& columns, std::si
     return (rows.mask()[row] & columns.mask()[column]) == 0;
 }
 
+std::uint32_t position_of(std::uint32_t position) { return position; }
+std::uint32_t position_of(const SortItem& item) { return item.position; }
+
 }  // namespace
 
-void SweepSet::assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis) {
+template <typename Item>
+void SweepSet::assign_all(std::span<const Entry> entries, std::span<const Item> order, unsigned axis) {
     size_ = order.size();
     stride_ = (size_ + padding + 15) / 16 * 16;
     axes_ = {axis, (axis + 1) % 3, (axis + 2) % 3};
     numbers_.resize_discard(6 * stride_);
     words_.resize_discard(2 * stride_);
+    float* const numbers = numbers_.data();
+    std::uint32_t* const words = words_.data();
     for (std::size_t i = 0; i < size_; ++i) {
-        const Entry& entry = entries[order[i].position];
+        const Entry& entry = entries[position_of(order[i])];
         for (unsigned k = 0; k < 3; ++k) {
-            numbers_[k * stride_ + i] = entry.min[axes_[k]];
-            numbers_[(3 + k) * stride_ + i] = entry.max[axes_[k]];
+            numbers[k * stride_ + i] = entry.min[axes_[k]];
+            numbers[(3 + k) * stride_ + i] = entry.max[axes_[k]];
         }
-        words_[i] = entry.mask;
-        words_[stride_ + i] = entry.object;
+        words[i] = entry.mask;
+        words[stride_ + i] = entry.object;
     }
     // NaN compares false with everything: neither ends a row's columns late nor hits.
     for (std::size_t k = 0; k < 6; ++k) {
         for (std::size_t i = size_; i < stride_; ++i)
-            numbers_[k * stride_ + i] = std::numeric_limits<float>::quiet_NaN();
+            numbers[k * stride_ + i] = std::numeric_limits<float>::quiet_NaN();
     }
-    for (std::size_t i = size_; i < stride_; ++i) words_[i] = words_[stride_ + i] = 0;
+    for (std::size_t i = size_; i < stride_; ++i) words[i] = words[stride_ + i] = 0;
+}
+
+void SweepSet::assign(std::span<const Entry> entries, std::span<const std::uint32_t> positions, unsigned axis) {
+    assign_all(entries, positions, axis);
+}
+
+void SweepSet::assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis) {
+    assign_all(entries, order, axis);
 }
 
 Entry SweepSet::entry(std::size_t i) const {
@@ -49,7 +63,7 @@ Entry SweepSet::entry(std::size_t i) const {
         entry.max[axes_[k]] = high(k)[i];
     }
     entry.mask = mask()[i];
-    entry.object = object(i);
+    entry.object = object()[i];
     return entry;
 }
 

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "geometry/entry.hpp"
+#include "geometry/box_source.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {
@@ -28,7 +28,9 @@ class SweepSet {
 public:
     static constexpr std::size_t padding = 32;  // columns that may be read beyond the end
 
-    /// Takes the entries at `order[i].position`, in that order; `axis` is the one that `order` was made for.
+    /// Takes the entries at `positions[i]`, in that order; `axis` is the one that the order was made for.
+    void assign(std::span<const Entry> entries, std::span<const std::uint32_t> positions, unsigned axis);
+    /// The same, where positions stand with what they were sorted by.
     void assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis);
 
     std::size_t size() const { return size_; }
@@ -36,11 +38,16 @@ public:
     const float* low(unsigned axis) const { return numbers_.data() + axis * stride_; }
     const float* high(unsigned axis) const { return numbers_.data() + (3 + axis) * stride_; }
     const std::uint32_t* mask() const { return words_.data(); }
-    std::uint32_t object(std::size_t i) const { return words_[stride_ + i]; }
+    const std::uint32_t* object() const { return words_.data() + stride_; }
+    /// The coordinate that low(k) and high(k) are bounds on.
+    unsigned axis(unsigned k) const { return axes_[k]; }
     /// The box as it was put in.
     Entry entry(std::size_t i) const;
 
 private:
+    template <typename Item>
+    void assign_all(std::span<const Entry> entries, std::span<const Item> order, unsigned axis);
+
     Buffer<float> numbers_;
     Buffer<std::uint32_t> words_;
     std::size_t size_ = 0;
@@ -78,6 +85,14 @@ std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMas
 
 /// The specification: the same contract, a column at a time.
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
+
+/// Writes the pairs of hits, in order, as (lower object, higher object - `second_begin`); returns how many. `pairs` must
+/// have room for `most_hits` of each mask.
+std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
+inline constexpr std::size_t most_hits = 16;  // of a HitMask
+
+/// Keeps of each mask what certain() of the entries says is certain.
+void keep_certain(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits);
 
 /// The instruction set that sweep_rows uses here, such as "AVX2".
 std::string sweep_instruction_set();

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <limits>
+
 #include "octree/sweep.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,10 +19,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t runs_per_call = std::size_t(1) << 20;  // a few milliseconds: then the caller looks for a stop
 
+template <typename D, typename M>
+std::uint32_t bits_of(D d, M mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
+}
+
 std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
     const SweepSet& rows = sweep.rows;
     const SweepSet& columns = sweep.columns;
-    using Floats = hn::CappedTag<float, 16>;  // a register, at most the bits of a HitMask and the padding of a set
+    using Floats = hn::CappedTag<float, most_hits>;  // a register, at most the bits of a HitMask
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const std::size_t lanes = hn::Lanes(d);
@@ -58,15 +67,60 @@ std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<H
             const auto shared = hn::And(hn::LoadU(du, masks + column), row_mask);
             const auto apart = hn::RebindMask(d, hn::Eq(shared, hn::Zero(du)));
             const auto hit = hn::And(hn::And(on0, on1), hn::And(on2, apart));
-            std::uint8_t bytes[8] = {};
-            hn::StoreMaskBits(d, hit, bytes);
-            const std::uint32_t bits = std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
+            const std::uint32_t bits = bits_of(d, hit);
             hits[written] = {std::uint32_t(row), std::uint32_t(column), bits};
             written += bits != 0 ? 1 : 0;
             column += lanes;
         }
     }
     return written;
+}
+
+/// Of 16 bits; instruction sets with vectors do not all count bits.
+std::size_t set_bits(std::uint32_t bits) {
+    bits -= bits >> 1 & 0x5555u;
+    bits = (bits & 0x3333u) + (bits >> 2 & 0x3333u);
+    bits = (bits + (bits >> 4)) & 0x0F0Fu;
+    return (bits + (bits >> 8)) & 0x1Fu;
+}
+
+std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin,
+                               Pair* pairs) {
+    const hn::CappedTag<std::uint32_t, most_hits> d;
+    const auto offset = hn::Set(d, second_begin);
+    const std::uint32_t* const rows = sweep.rows.object();
+    const std::uint32_t* const columns = sweep.columns.object();
+    std::uint32_t* at = reinterpret_cast<std::uint32_t*>(pairs);
+    for (const HitMask& hit : hits) {
+        // All lanes are written, and what lies beyond the hits is written over by the next ones.
+        const std::uint8_t bits[8] = {std::uint8_t(hit.bits), std::uint8_t(hit.bits >> 8)};
+        const auto column = hn::CompressBits(hn::LoadU(d, columns + hit.first), bits);
+        const auto row = hn::Set(d, rows[hit.row]);
+        hn::StoreInterleaved2(hn::Min(row, column), hn::Sub(hn::Max(row, column), offset), d, at);
+        at += 2 * set_bits(hit.bits);
+    }
+    return std::size_t(at - reinterpret_cast<std::uint32_t*>(pairs)) / 2;
+}
+
+void keep_certain_simd(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits) {
+    const hn::CappedTag<float, most_hits> d;
+    const auto part = hn::Set(d, RoundingSlack::part);
+    const auto largest = hn::Set(d, std::numeric_limits<float>::max());
+    for (HitMask& hit : hits) {
+        std::uint32_t bits = hit.bits;
+        for (unsigned k = 0; k < 3; ++k) {
+            const auto row_low = hn::Set(d, sweep.rows.low(k)[hit.row]);
+            const auto row_high = hn::Set(d, sweep.rows.high(k)[hit.row]);
+            const auto low = hn::LoadU(d, sweep.columns.low(k) + hit.first);
+            const auto high = hn::LoadU(d, sweep.columns.high(k) + hit.first);
+            const auto size =
+                hn::Add(hn::Max(hn::Abs(row_low), hn::Abs(row_high)), hn::Max(hn::Abs(low), hn::Abs(high)));
+            const auto depth = hn::Min(hn::Sub(row_high, low), hn::Sub(high, row_low));
+            const auto needed = hn::Add(hn::Mul(size, part), hn::Set(d, slack.base[sweep.rows.axis(k)]));
+            bits &= bits_of(d, hn::And(hn::Gt(depth, needed), hn::Lt(size, largest)));
+        }
+        hit.bits = bits;
+    }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -78,9 +132,19 @@ HWY_AFTER_NAMESPACE();
 namespace octopair {
 
 HWY_EXPORT(sweep_rows_simd);
+HWY_EXPORT(pairs_of_hits_simd);
+HWY_EXPORT(keep_certain_simd);
 
 std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
     return HWY_DYNAMIC_DISPATCH(sweep_rows_simd)(sweep, cursor, hits);
+}
+
+std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs) {
+    return HWY_DYNAMIC_DISPATCH(pairs_of_hits_simd)(sweep, hits, second_begin, pairs);
+}
+
+void keep_certain(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits) {
+    HWY_DYNAMIC_DISPATCH(keep_certain_simd)(sweep, slack, hits);
 }
 
 std::string sweep_instruction_set() {

@@ -12,9 +12,15 @@ namespace {
 
 constexpr std::size_t cached_buckets = 4096;  // for sets whose buckets should stay in the first cache
 constexpr std::size_t bucket_boxes = 4;       // in larger sets: fewer buckets would make windows look wide
-constexpr std::size_t few = 24;               // sets this small are sorted by comparison at once
-constexpr std::size_t in_cache = 1 << 14;     // up to here one thread's bucket sort is best
+constexpr std::size_t few = 24;               // boxes: so many at most are sorted by comparison
 constexpr std::size_t sampled_rows = 16;
+constexpr std::size_t sampled_stride = 13;  // rows
+
+/// Bits that as integers are in the order of the numbers.
+std::uint32_t ordered_bits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return bits ^ (bits >> 31 != 0 ? ~0u : 0x80000000u);
+}
 
 }  // namespace
 
@@ -54,10 +60,6 @@ std::uint64_t SweepOrder::windows(const EntryList& rows, const EntryList& column
 }
 
 std::span<const SortItem> SweepOrder::sort(const EntryList& list, unsigned axis, Executor& executor) {
-    if (list.size() > few && list.size() <= in_cache) {
-        small_sort(list, axis);
-        return items_;
-    }
     items_.resize(list.size());
     for (std::size_t i = 0; i < list.size(); ++i) {
         const Entry& entry = list[i];
@@ -69,23 +71,60 @@ std::span<const SortItem> SweepOrder::sort(const EntryList& list, unsigned axis,
     return items_;
 }
 
-/// Bucket sort: places by a prefix sum over buckets, then each bucket by comparison.
-void SweepOrder::small_sort(const EntryList& list, unsigned axis) {
-    const Buckets buckets = buckets_for(list, axis);
-    counts_.assign(buckets.last + 2, 0);
-    for (std::size_t i = 0; i < list.size(); ++i) ++counts_[buckets.of(list[i].min[axis]) + 1];
-    for (std::size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
-    items_.resize(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        const Entry& entry = list[i];
-        items_[counts_[buckets.of(entry.min[axis])]++] = {entry.min[axis], entry.object, list.position(i)};
+void SweepOrder::lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
+    sort_keys(list, axis);
+    positions_.resize(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) positions_[i] = std::uint32_t(keys_[i]);
+    set.assign(list.entries, positions_, axis);
+}
+
+/// Bucket sort: places by a prefix sum over buckets, then an insertion sort, which finds almost all in place; where
+/// some bucket is crowded, sorts by comparison.
+void SweepOrder::sort_keys(const EntryList& list, unsigned axis) {
+    const std::size_t size = list.size();
+    const auto key_of = [&](std::size_t i) {
+        return std::uint64_t(ordered_bits(list[i].min[axis])) << 32 | list.position(i);
+    };
+    keys_.resize(size);
+    bool crowded = size <= few;
+    if (!crowded) {
+        const Buckets buckets = buckets_for(list, axis);
+        counts_.assign(buckets.last + 2, 0);
+        buckets_.resize(size);
+        for (std::size_t i = 0; i < size; ++i) ++counts_[(buckets_[i] = buckets.of(list[i].min[axis])) + 1];
+        std::uint32_t most = 0;
+        for (std::size_t i = 1; i < counts_.size(); ++i) {
+            most = std::max(most, counts_[i]);
+            counts_[i] += counts_[i - 1];
+        }
+        for (std::size_t i = 0; i < size; ++i) keys_[counts_[buckets_[i]]++] = key_of(i);
+        crowded = most > few;
+    } else {
+        for (std::size_t i = 0; i < size; ++i) keys_[i] = key_of(i);
     }
-    std::size_t begin = 0;  // counts_[b] is now where bucket b ends
-    for (std::size_t bucket = 0; bucket <= buckets.last; ++bucket) {
-        const std::size_t end = counts_[bucket];
-        if (end - begin > 1) std::sort(items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(end));
-        begin = end;
+    if (crowded) {
+        std::sort(keys_.begin(), keys_.end());
+        return;
     }
+    for (std::size_t i = 1; i < size; ++i) {
+        const std::uint64_t key = keys_[i];
+        std::size_t at = i;
+        for (; at > 0 && keys_[at - 1] > key; --at) keys_[at] = keys_[at - 1];
+        keys_[at] = key;
+    }
+}
+
+std::uint64_t sampled_windows(const Sweep& sweep) {
+    const auto& [rows, columns, kind] = sweep;
+    const float* const lows = columns.low(0);
+    const float* const end = lows + columns.size();
+    std::uint64_t sum = 0;
+    std::size_t samples = 0;
+    for (std::size_t i = 0; i < rows.size(); i += sampled_stride, ++samples) {
+        const float* const first = kind == SweepKind::self ? lows + i + 1 : std::lower_bound(lows, end, rows.low(0)[i]);
+        sum += std::uint64_t(std::upper_bound(first, end, rows.high(0)[i]) - first);
+    }
+    return samples == 0 ? 0 : sum * rows.size() / samples;
 }
 
 std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop) {

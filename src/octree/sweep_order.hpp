@@ -12,6 +12,7 @@
 
 #include "geometry/entry.hpp"
 #include "octree/executor.hpp"
+#include "octree/sweep.hpp"
 
 namespace octopair {
 
@@ -36,6 +37,9 @@ public:
     /// rows.
     std::uint64_t windows(const EntryList& rows, const EntryList& columns, unsigned axis);
 
+    /// Lays the list out in the order (min on the axis, position). For sets that stay in the cache.
+    void lay_out(const EntryList& list, unsigned axis, SweepSet& set);
+
     /// The list in the order (min on the axis, object). The span is valid until the next call.
     std::span<const SortItem> sort(const EntryList& list, unsigned axis, Executor& executor);
 
@@ -51,12 +55,18 @@ private:
         }
     };
     static Buckets buckets_for(const EntryList& list, unsigned axis);
-    void small_sort(const EntryList& list, unsigned axis);
+    void sort_keys(const EntryList& list, unsigned axis);
 
     std::stop_token stop_;
     std::vector<std::uint32_t> counts_;
+    std::vector<std::uint32_t> buckets_;  // of each box
+    std::vector<std::uint64_t> keys_;     // min on the axis, as bits in its order, and position
+    std::vector<std::uint32_t> positions_;
     std::vector<SortItem> items_;
 };
+
+/// About the columns that a sweep of laid out sets tests for all rows, from some rows at fixed places.
+std::uint64_t sampled_windows(const Sweep& sweep);
 
 /// About how many pairs of rows and columns overlap, from a few rows at fixed places.
 /// Throws Error{cancelled}.

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <random>
 
 #include "samples/scenes.hpp"
 
@@ -96,7 +98,7 @@ TEST_P(Scene, EveryBoxHasOneToEightEntriesWhichCoverIt) {
             for (unsigned axis = 0; axis < 3; ++axis) {
                 if (corner >> axis & 1u) cell[axis] = cells.hi[axis];
             }
-            const OctalCode at = OctalCode::from_cell(cell, deepest);
+            const OctalCode at = OctalCode::from_cell({cell[0], cell[1], cell[2]}, deepest);
             std::size_t covering = 0;
             for (const NodeIndex octant : octants) covering += octree_.nodes()[octant].code().contains(at) ? 1 : 0;
             ASSERT_EQ(covering, 1u) << "object " << object << " corner " << corner;
@@ -157,9 +159,34 @@ TEST(Frame, CellsNeverFallAsTheCoordinateGrows) {
                             1e-13f,   1,      9999999, 1e7f, 1.00001e7f, 1e30f, 3.4e38f};
     for (unsigned axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 1; i < std::size(values); ++i) {
-            EXPECT_LE(frame.cell(values[i - 1], axis), frame.cell(values[i], axis));
+            EXPECT_LE(frame.map().cell(values[i - 1], axis), frame.map().cell(values[i], axis));
         }
-        EXPECT_LT(frame.cell(3.4e38f, axis), cells_per_axis);
+        EXPECT_LT(frame.map().cell(3.4e38f, axis), cells_per_axis);
+    }
+}
+
+TEST(Frame, TheKernelFollowsTheMap) {
+    std::mt19937 random(7);
+    const std::vector<float> special = {0.0f, -0.0f, 1e-45f, -1e-45f, 3.4e38f, -3.4e38f, 0.5f, 1.0f};
+    std::vector<Entry> entries(1001);
+    for (Entry& entry : entries) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            std::array<float, 2> ends;
+            for (float& end : ends) end = random() % 4 == 0 ? special[random() % 8] : float(random() % 1000) / 300 - 1;
+            entry.min[axis] = std::min(ends[0], ends[1]);
+            entry.max[axis] = std::max(ends[0], ends[1]);
+        }
+        entry.object = std::uint32_t(random());
+        entry.mask = 0;
+    }
+    const Frame frame = Frame::fit(std::span(entries).first(50), 1000);
+    std::vector<CellBox> boxes(entries.size());
+    frame.cells(entries, boxes);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            ASSERT_EQ(boxes[i].lo[axis], frame.map().cell(entries[i].min[axis], axis));
+            ASSERT_EQ(boxes[i].hi[axis], frame.map().cell(entries[i].max[axis], axis));
+        }
     }
 }
 
@@ -171,7 +198,7 @@ TEST(Frame, AFarOutBoxDoesNotStretchIt) {
     }
     sample[500] = {{1e30f, 1e30f, 1e30f}, {1e30f, 1e30f, 1e30f}, 500, 0};
     const Frame frame = Frame::fit(sample, 1000);
-    EXPECT_NE(frame.cell(0.25f, 1), frame.cell(0.2501f, 1));
+    EXPECT_NE(frame.map().cell(0.25f, 1), frame.map().cell(0.2501f, 1));
 }
 
 }  // namespace

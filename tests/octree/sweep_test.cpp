@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "octree/sweep_order.hpp"
+
 namespace octopair {
 namespace {
 
@@ -86,6 +88,80 @@ TEST(Sweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
                 ASSERT_EQ(run(sweep_rows_scalar, {rows, others, kind}, room), expected) << "round " << round;
                 ASSERT_EQ(run(sweep_rows, {rows, others, kind}, room), expected) << "round " << round;
             }
+        }
+    }
+}
+
+TEST(Sweep, HitsBecomePairsInOrder) {
+    std::mt19937 random(4);
+    const SweepSet rows = sorted_set(random_entries(random, 300, 0), 0);
+    const SweepSet columns = sorted_set(random_entries(random, 200, 1000), 0);
+    std::vector<HitMask> hits(20'000);
+    for (const std::uint32_t second_begin : {0u, 1000u}) {
+        const Sweep sweep{rows, columns, SweepKind::cross};
+        SweepCursor cursor;
+        cursor.row_end = rows.size();
+        hits.resize(sweep_rows(sweep, cursor, hits));
+        ASSERT_EQ(cursor.row, cursor.row_end);
+        std::vector<Pair> expected, found(hits.size() * most_hits);
+        for (const HitMask& hit : hits) {
+            for (unsigned bit = 0; bit < 32; ++bit) {
+                if (hit.bits >> bit & 1u)
+                    expected.push_back({rows.object()[hit.row], columns.object()[hit.first + bit] - second_begin});
+            }
+        }
+        found.resize(pairs_of_hits(sweep, hits, second_begin, found.data()));
+        EXPECT_GT(found.size(), 100u);
+        EXPECT_TRUE(found == expected);
+    }
+}
+
+TEST(Sweep, KernelAndSpecificationAgreeOnWhatIsCertain) {
+    std::mt19937 random(5);
+    std::vector<Entry> entries = random_entries(random, 500, 0);
+    for (Entry& entry : entries) {
+        entry.mask = 0;
+        for (float& bound : entry.max) bound += float(random() % 3) * 1e-6f;
+        if (random() % 50 == 0) entry.max[random() % 3] = 3.40282347e38f;
+    }
+    const SweepSet set = sorted_set(entries, 1);
+    const Sweep sweep{set, set, SweepKind::self};
+    const RoundingSlack slack{{0, 1e-6f, 1}};
+    std::vector<HitMask> hits(100'000);
+    SweepCursor cursor;
+    cursor.row_end = set.size();
+    hits.resize(sweep_rows(sweep, cursor, hits));
+    std::vector<HitMask> kept = hits;
+    keep_certain(sweep, slack, kept);
+    std::array<std::size_t, 2> seen{};
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        for (unsigned bit = 0; bit < 32; ++bit) {
+            if (!(hits[i].bits >> bit & 1u)) continue;
+            const bool expected = certain(set.entry(hits[i].row), set.entry(hits[i].first + bit), slack);
+            ASSERT_EQ((kept[i].bits >> bit & 1u) != 0, expected);
+            ++seen[expected ? 1 : 0];
+        }
+    }
+    EXPECT_GT(seen[0], 100u);
+    EXPECT_GT(seen[1], 100u);
+}
+
+TEST(SweepOrder, LaysOutByLowEndThenPosition) {
+    std::mt19937 random(6);
+    for (const std::size_t count : {0, 1, 2, 24, 25, 500, 4096}) {
+        for (const float far : {1.0f, 3e38f}) {  // one far box crowds all others into one bucket
+            std::vector<Entry> entries = random_entries(random, count, 0);
+            for (Entry& entry : entries) {
+                entry.min[2] = float(random() % 1000) / 8 - 50;
+                entry.max[2] = entry.min[2] + 1;
+            }
+            if (count > 0) entries[count / 2].max[2] = entries[count / 2].min[2] = far;
+            SweepOrder order({});
+            SweepSet set;
+            order.lay_out({entries}, 2, set);
+            const SweepSet expected = sorted_set(entries, 2);
+            ASSERT_EQ(set.size(), count);
+            for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(set.object()[i], expected.object()[i]);
         }
     }
 }

@@ -202,6 +202,7 @@ public:
         std::vector<Runs> sorted(std::size_t(1) << bits_);
         team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
             std::vector<PageString> strings;
+            strings.reserve(workers_.size());
             for (Worker& other : workers_) strings.push_back(std::exchange(other.found[bucket], {}));
             BucketSort(keys_, workers_[worker], stop, sorted[bucket]).sort(std::move(strings), shift());
         });
