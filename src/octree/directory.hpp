@@ -72,11 +72,10 @@ public:
         }
         return {found & most_nodes, found >> node_bits};
     }
-    /// The deepest node of at most `level` that holds the cell.
-    NodeIndex find(const Cell& cell, unsigned level) const {
-        const Leaf found = leaf(cell);
-        NodeIndex node = found.node;
-        for (unsigned at = found.level; at > level; --at) node = nodes_[node].parent;
+    /// The leaf itself, or the octant of `level` that holds it.
+    NodeIndex at_most(const Leaf& leaf, unsigned level) const {
+        NodeIndex node = leaf.node;
+        for (unsigned at = leaf.level; at > level; --at) node = nodes_[node].parent;
         return node;
     }
 

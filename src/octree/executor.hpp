@@ -4,14 +4,12 @@
 // such that pairs end up in the order of the shares.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 
 #include "octopair/objects.hpp"
-#include "parallel/team.hpp"
 
 namespace octopair {
 
@@ -34,7 +32,6 @@ public:
     virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
     /// The same, with pairs: those of share i come before those of share i + 1.
     virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) = 0;
-    virtual void sort(std::span<SortItem> items) = 0;
 };
 
 /// Runs all shares on the calling thread, pairs to one writer: how a share runs steps within itself.
@@ -48,7 +45,6 @@ public:
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
         for (std::size_t i = 0; i < count; ++i) body(i, writer_);
     }
-    void sort(std::span<SortItem> items) override { std::sort(items.begin(), items.end()); }
 
 private:
     PairWriter& writer_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "octree/sample.hpp"
 
 namespace octopair {
 
@@ -17,12 +18,6 @@ constexpr std::size_t most_samples = 1 << 21;    // no more than these
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
 constexpr std::size_t batch_size = 256;          // objects loaded at a time: they stay in the first cache
-
-/// A fixed scatter of positions within strides, so that a scene laid out with a period does not fool the sample.
-std::size_t jitter(std::size_t i, std::size_t stride) {
-    const std::uint64_t scattered = (std::uint64_t(i) * 0x9E3779B97F4A7C15ull) >> 32;
-    return std::size_t(scattered * stride >> 32);
-}
 
 /// Whether a box lies within the octant of `level` that its low corner lies in.
 bool within(const CellBox& box, unsigned level) {
@@ -37,23 +32,49 @@ std::uint32_t mask_in(const Node& node, std::uint32_t brought, std::uint32_t beg
     return (brought & ~begins_before) | begins | (brought & border);
 }
 
-/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants: at its natural
-/// level the corners of the box reach them all; where several corners lie in one coarser leaf, the lowest counts.
-template <typename Place>
-void for_each_octant(const Directory& directory, const CellBox& box, Place&& place) {
-    const unsigned level = natural_level(box);
+/// The axes, as bits, on which a box reaches into further octants of `level`.
+unsigned crossed_axes(const CellBox& box, unsigned level) {
     const unsigned shift = deepest - level;
     unsigned crossed = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         crossed |= unsigned(box.lo[axis] >> shift != box.hi[axis] >> shift) << axis;
     }
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        if ((corner & ~crossed) != 0) continue;
-        Cell cell = box.lo;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            if (corner >> axis & 1u) cell[axis] = box.hi[axis];
-        }
-        const NodeIndex node = directory.find(cell, level);
+    return crossed;
+}
+
+Cell corner_of(const CellBox& box, unsigned corner) {
+    Cell cell = box.lo;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1u) cell[axis] = box.hi[axis];
+    }
+    return cell;
+}
+
+/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants. At its natural level
+/// and above, the corners of a box reach all octants that it touches; where several lie in one coarser leaf, the lowest
+/// counts.
+template <typename Place>
+void for_each_octant(const Directory& directory, const CellBox& box, Place&& place) {
+    const unsigned natural = natural_level(box);
+    std::array<std::pair<unsigned, NodeIndex>, 8> corners;
+    std::size_t count = 0;
+    // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
+    unsigned level = std::min(natural, directory.leaf(box.lo).level);
+    for (bool again = true; again;) {
+        const unsigned crossed = crossed_axes(box, level);
+        unsigned finest = level;
+        unsigned corner = 0;
+        count = 0;
+        do {
+            const Directory::Leaf leaf = directory.leaf(corner_of(box, corner));
+            finest = std::max(finest, std::min(natural, leaf.level));
+            corners[count++] = {corner, directory.at_most(leaf, natural)};
+            corner = (corner - crossed) & crossed;  // the next subset of `crossed`
+        } while (corner != 0);
+        again = finest != level;
+        level = finest;
+    }
+    for (const auto& [corner, node] : std::span(corners).first(count)) {
         const Cell& first = directory.nodes()[node].lo;
         unsigned begins = 0;
         for (unsigned axis = 0; axis < 3; ++axis) begins |= unsigned(box.lo[axis] < first[axis]) << axis;
@@ -129,12 +150,10 @@ void LinearOctree::plant(const EntrySource& source, std::stop_token stop) {
 }
 
 std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
-    const std::size_t size = source.size();
-    const std::size_t stride = std::max(sample_stride, size / most_samples);
-    std::vector<Entry> sampled((size + stride - 1) / stride);
+    const Sample sample(source.size(), sample_stride, most_samples);
+    std::vector<Entry> sampled(sample.size());
     for (std::size_t i = 0; i < sampled.size(); ++i) {
-        const std::size_t position = std::min(size - 1, i * stride + jitter(i, stride));
-        (void)source.load(position, {&sampled[i], 1});  // what is invalid is found by encode, with its position
+        (void)source.load(sample[i], {&sampled[i], 1});  // what is invalid is found by encode, with its position
     }
     return sampled;
 }

@@ -18,7 +18,7 @@ constexpr std::uint64_t tests_per_pair = 16;  // two registers a pair
 constexpr std::size_t large_join = 1 << 15;   // boxes: shared out among threads
 
 /// The part of `order` that is tile `t`; a set of up to two tiles is one.
-std::span<const SortItem> tile_of(std::span<const SortItem> order, std::size_t t) {
+std::span<const SortKey> tile_of(std::span<const SortKey> order, std::size_t t) {
     if (order.size() <= 2 * tile) return order;
     return order.subspan(t * tile, std::min(tile, order.size() - t * tile));
 }
@@ -29,9 +29,9 @@ std::size_t tile_count(std::size_t size) { return size == 0 ? 0 : size <= 2 * ti
 struct TileSweep {
     const ScanContext& context;
     std::span<const Entry> row_entries;
-    std::span<const SortItem> rows;
+    std::span<const SortKey> rows;
     std::span<const Entry> column_entries;
-    std::span<const SortItem> columns;
+    std::span<const SortKey> columns;
     unsigned axis;
     SweepKind kind;
     Orientation orientation;
@@ -49,11 +49,11 @@ struct TileSweep {
             maker.sweep({row_set, row_set, SweepKind::self}, orientation);
             first = t + 1;
         }
-        const float begin = row_tile.front().key;
+        const float begin = low_of(row_tile.front());
         for (std::size_t c = first; c < tile_count(columns.size()); ++c) {
             const auto column_tile = tile_of(columns, c);
-            if (column_tile.back().key < begin) continue;
-            if (column_tile.front().key > reach) break;
+            if (low_of(column_tile.back()) < begin) continue;
+            if (low_of(column_tile.front()) > reach) break;
             column_set.assign(column_entries, column_tile, axis);
             maker.sweep({row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind}, orientation);
         }

@@ -51,21 +51,26 @@ private:
     static constexpr NodeIndex none = ~NodeIndex(0);
 
     void hand(std::span<const Entry> from, NodeIndex parent, NodeIndex to) {
+        std::array<CellBox, 64> cells;
+        while (!from.empty()) {
+            const auto some = from.first(std::min(from.size(), cells.size()));
+            octree_.frame().cells(some, cells);
+            for (std::size_t i = 0; i < some.size(); ++i) hand(some[i], cells[i], parent, to);
+            from = from.subspan(some.size());
+        }
+    }
+
+    void hand(const Entry& entry, const CellBox& box, NodeIndex parent, NodeIndex to) {
         const Node& node = octree_.nodes()[to];
         const Node& above = octree_.nodes()[parent];
-        Handed& list = lists_[node.level];
-        for (const Entry& entry : from) {
-            const CellBox box = octree_.frame().cells(entry);
-            if (!node.touches(box)) continue;
-            Entry handed = entry;
-            for (unsigned axis = 0; axis < 3; ++axis) {
-                // Beginning before the octant above, it begins before the lower half of it as well; the upper half's
-                // own first cell decides.
-                const std::uint32_t bit = 1u << axis;
-                if (node.lo[axis] != above.lo[axis])
-                    handed.mask = (handed.mask & ~bit) | (box.lo[axis] < node.lo[axis] ? bit : 0);
-            }
-            list.push_back(handed);
+        if (!node.touches(box)) return;
+        Entry& handed = lists_[node.level].emplace_back(entry);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            // Beginning before the octant above, it begins before the lower half of it as well; the upper half's own
+            // first cell decides.
+            const std::uint32_t bit = 1u << axis;
+            if (node.lo[axis] != above.lo[axis])
+                handed.mask = (handed.mask & ~bit) | (box.lo[axis] < node.lo[axis] ? bit : 0);
         }
     }
 

@@ -17,13 +17,9 @@ bool hit(const SweepSet& rows, std::size_t row, const SweepSet& columns, std::si
     return (rows.mask()[row] & columns.mask()[column]) == 0;
 }
 
-std::uint32_t position_of(std::uint32_t position) { return position; }
-std::uint32_t position_of(const SortItem& item) { return item.position; }
-
 }  // namespace
 
-template <typename Item>
-void SweepSet::assign_all(std::span<const Entry> entries, std::span<const Item> order, unsigned axis) {
+void SweepSet::assign(std::span<const Entry> entries, std::span<const SortKey> order, unsigned axis) {
     size_ = order.size();
     stride_ = (size_ + padding + 15) / 16 * 16;
     axes_ = {axis, (axis + 1) % 3, (axis + 2) % 3};
@@ -46,14 +42,6 @@ void SweepSet::assign_all(std::span<const Entry> entries, std::span<const Item> 
             numbers[k * stride_ + i] = std::numeric_limits<float>::quiet_NaN();
     }
     for (std::size_t i = size_; i < stride_; ++i) words[i] = words[stride_ + i] = 0;
-}
-
-void SweepSet::assign(std::span<const Entry> entries, std::span<const std::uint32_t> positions, unsigned axis) {
-    assign_all(entries, positions, axis);
-}
-
-void SweepSet::assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis) {
-    assign_all(entries, order, axis);
 }
 
 Entry SweepSet::entry(std::size_t i) const {

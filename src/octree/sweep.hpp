@@ -20,7 +20,7 @@
 
 #include "base/memory.hpp"
 #include "geometry/box_source.hpp"
-#include "parallel/team.hpp"
+#include "octree/sort_key.hpp"
 
 namespace octopair {
 
@@ -28,10 +28,8 @@ class SweepSet {
 public:
     static constexpr std::size_t padding = 32;  // columns that may be read beyond the end
 
-    /// Takes the entries at `positions[i]`, in that order; `axis` is the one that the order was made for.
-    void assign(std::span<const Entry> entries, std::span<const std::uint32_t> positions, unsigned axis);
-    /// The same, where positions stand with what they were sorted by.
-    void assign(std::span<const Entry> entries, std::span<const SortItem> order, unsigned axis);
+    /// Takes the entries at the keys' positions, in that order; `axis` is the one that the keys were made for.
+    void assign(std::span<const Entry> entries, std::span<const SortKey> order, unsigned axis);
 
     std::size_t size() const { return size_; }
     /// Bounds on the sweep's axis (0) and the two others (1, 2).
@@ -45,9 +43,6 @@ public:
     Entry entry(std::size_t i) const;
 
 private:
-    template <typename Item>
-    void assign_all(std::span<const Entry> entries, std::span<const Item> order, unsigned axis);
-
     Buffer<float> numbers_;
     Buffer<std::uint32_t> words_;
     std::size_t size_ = 0;

@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <array>
 #include <limits>
 
 #include "octree/sweep.hpp"
@@ -76,30 +77,46 @@ std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<H
     return written;
 }
 
-/// Of 16 bits; instruction sets with vectors do not all count bits.
-std::size_t set_bits(std::uint32_t bits) {
-    bits -= bits >> 1 & 0x5555u;
-    bits = (bits & 0x3333u) + (bits >> 2 & 0x3333u);
-    bits = (bits + (bits >> 4)) & 0x0F0Fu;
-    return (bits + (bits >> 8)) & 0x1Fu;
-}
+/// For each set of lanes their numbers, ascending, and how many they are. (Highway's own table for this is copied on
+/// each use by g++ 12.)
+struct LaneTable {
+    static constexpr std::size_t lanes = 8;
+    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};
+    std::array<std::uint8_t, 1 << lanes> count{};
+
+    constexpr LaneTable() {
+        for (std::size_t set = 0; set < of.size(); ++set) {
+            for (std::uint8_t lane = 0; lane < lanes; ++lane) {
+                if (set >> lane & 1u) of[set][count[set]++] = lane;
+            }
+        }
+    }
+};
+constexpr LaneTable lanes_in;
 
 std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin,
                                Pair* pairs) {
-    const hn::CappedTag<std::uint32_t, most_hits> d;
+    const hn::CappedTag<std::uint32_t, LaneTable::lanes> d;
+    const hn::Rebind<std::uint8_t, decltype(d)> bytes;
     const auto offset = hn::Set(d, second_begin);
     const std::uint32_t* const rows = sweep.rows.object();
     const std::uint32_t* const columns = sweep.columns.object();
-    std::uint32_t* at = reinterpret_cast<std::uint32_t*>(pairs);
+    std::uint32_t* const begin = reinterpret_cast<std::uint32_t*>(pairs);
+    std::uint32_t* at = begin;
     for (const HitMask& hit : hits) {
-        // All lanes are written, and what lies beyond the hits is written over by the next ones.
-        const std::uint8_t bits[8] = {std::uint8_t(hit.bits), std::uint8_t(hit.bits >> 8)};
-        const auto column = hn::CompressBits(hn::LoadU(d, columns + hit.first), bits);
         const auto row = hn::Set(d, rows[hit.row]);
-        hn::StoreInterleaved2(hn::Min(row, column), hn::Sub(hn::Max(row, column), offset), d, at);
-        at += 2 * set_bits(hit.bits);
+        const std::uint32_t* column = columns + hit.first;
+        for (std::uint32_t bits = hit.bits; bits != 0; bits >>= LaneTable::lanes, column += LaneTable::lanes) {
+            // All lanes are written, and what lies beyond the hits is written over by the next ones.
+            const std::uint32_t set = bits & (lanes_in.of.size() - 1);
+            const auto lanes = hn::PromoteTo(d, hn::LoadU(bytes, lanes_in.of[set].data()));
+            const auto hit_columns = hn::TableLookupLanes(hn::LoadU(d, column), hn::IndicesFromVec(d, lanes));
+            const auto high = hn::Sub(hn::Max(row, hit_columns), offset);
+            hn::StoreInterleaved2(hn::Min(row, hit_columns), high, d, at);
+            at += 2 * std::size_t(lanes_in.count[set]);
+        }
     }
-    return std::size_t(at - reinterpret_cast<std::uint32_t*>(pairs)) / 2;
+    return std::size_t(at - begin) / 2;
 }
 
 void keep_certain_simd(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits) {

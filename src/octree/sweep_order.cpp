@@ -10,16 +10,16 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t cached_buckets = 4096;  // for sets whose buckets should stay in the first cache
-constexpr std::size_t bucket_boxes = 4;       // in larger sets: fewer buckets would make windows look wide
-constexpr std::size_t few = 24;               // boxes: so many at most are sorted by comparison
-constexpr std::size_t sampled_rows = 16;
-constexpr std::size_t sampled_stride = 13;  // rows
+constexpr std::size_t most_buckets = 4096;  // so that they stay in the first cache
+constexpr std::size_t few = 24;             // boxes: so many at most are sorted by comparison
+constexpr std::size_t in_cache = 1 << 13;   // boxes: so many at most are sorted by buckets
+constexpr std::size_t most_sampled = 4096;  // boxes of a list that are looked at to measure it
+constexpr std::size_t sampled_rows = 16;    // each against all sampled columns
+constexpr std::size_t sampled_stride = 13;  // rows of a set that is laid out
 
-/// Bits that as integers are in the order of the numbers.
-std::uint32_t ordered_bits(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    return bits ^ (bits >> 31 != 0 ? ~0u : 0x80000000u);
+/// The boxes of a list that are looked at to measure it.
+Sample measured(const EntryList& list) {
+    return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, 256, 4096)};
 }
 
 }  // namespace
@@ -31,8 +31,7 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
         first = std::min(first, list[i].min[axis]);
         last = std::max(last, list[i].min[axis]);
     }
-    const std::size_t least = std::min(cached_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
-    const std::size_t count = std::max(least, std::bit_floor(list.size() / bucket_boxes));
+    const std::size_t count = std::min(most_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
     Buckets buckets;
     buckets.begin = first;
     buckets.last = std::uint32_t(count - 1);
@@ -42,72 +41,60 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
 }
 
 std::uint64_t SweepOrder::windows(const EntryList& rows, const EntryList& columns, unsigned axis) {
-    if (rows.size() == 0 || columns.size() == 0) return 0;
     throw_if_stopped(stop_);
-    const Buckets buckets = buckets_for(columns, axis);
-    throw_if_stopped(stop_);
-    counts_.assign(buckets.last + 2, 0);
-    for (std::size_t i = 0; i < columns.size(); ++i) ++counts_[buckets.of(columns[i].min[axis]) + 1];
-    for (std::size_t i = 1; i < counts_.size(); ++i) counts_[i] += counts_[i - 1];
-    throw_if_stopped(stop_);
+    const Sample column_sample = measured(columns), row_sample = measured(rows);
+    lows_.resize(column_sample.size());
+    for (std::size_t i = 0; i < lows_.size(); ++i) lows_[i] = columns[column_sample[i]].min[axis];
+    std::sort(lows_.begin(), lows_.end());
     std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Entry& row = rows[i];
-        if (row.max[axis] < buckets.begin) continue;
-        sum += counts_[buckets.of(row.max[axis]) + 1] - counts_[buckets.of(row.min[axis])];
+    for (std::size_t i = 0; i < row_sample.size(); ++i) {
+        const Entry& row = rows[row_sample[i]];
+        const auto first = std::lower_bound(lows_.begin(), lows_.end(), row.min[axis]);
+        sum += std::uint64_t(std::upper_bound(first, lows_.end(), row.max[axis]) - first);
     }
-    return sum;
+    return sum * column_sample.stride() * row_sample.stride();
 }
 
-std::span<const SortItem> SweepOrder::sort(const EntryList& list, unsigned axis, Executor& executor) {
-    items_.resize(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        const Entry& entry = list[i];
-        items_[i] = {entry.min[axis], entry.object, list.position(i)};
+std::span<const SortKey> SweepOrder::sort(const EntryList& list, unsigned axis, Executor& executor) {
+    if (list.size() <= in_cache) {
+        sort_in_cache(list, axis);
+    } else {
+        make_keys(list, axis);
+        radix_sort(keys_, scratch_, executor, stop_);
     }
-    throw_if_stopped(stop_);
-    executor.sort(items_);
-    throw_if_stopped(stop_);
-    return items_;
+    return keys_.span();
 }
 
 void SweepOrder::lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-    sort_keys(list, axis);
-    positions_.resize(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) positions_[i] = std::uint32_t(keys_[i]);
-    set.assign(list.entries, positions_, axis);
+    sort_in_cache(list, axis);
+    set.assign(list.entries, keys_.span(), axis);
+}
+
+void SweepOrder::make_keys(const EntryList& list, unsigned axis) {
+    keys_.resize_discard(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) keys_[i] = sort_key(list[i].min[axis], list.position(i));
 }
 
 /// Bucket sort: places by a prefix sum over buckets, then an insertion sort, which finds almost all in place; where
 /// some bucket is crowded, sorts by comparison.
-void SweepOrder::sort_keys(const EntryList& list, unsigned axis) {
-    const std::size_t size = list.size();
-    const auto key_of = [&](std::size_t i) {
-        return std::uint64_t(ordered_bits(list[i].min[axis])) << 32 | list.position(i);
-    };
-    keys_.resize(size);
-    bool crowded = size <= few;
-    if (!crowded) {
-        const Buckets buckets = buckets_for(list, axis);
-        counts_.assign(buckets.last + 2, 0);
-        buckets_.resize(size);
-        for (std::size_t i = 0; i < size; ++i) ++counts_[(buckets_[i] = buckets.of(list[i].min[axis])) + 1];
-        std::uint32_t most = 0;
-        for (std::size_t i = 1; i < counts_.size(); ++i) {
-            most = std::max(most, counts_[i]);
-            counts_[i] += counts_[i - 1];
-        }
-        for (std::size_t i = 0; i < size; ++i) keys_[counts_[buckets_[i]]++] = key_of(i);
-        crowded = most > few;
-    } else {
-        for (std::size_t i = 0; i < size; ++i) keys_[i] = key_of(i);
+void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
+    make_keys(list, axis);
+    if (list.size() <= few) return std::sort(keys_.data(), keys_.data() + keys_.size());
+    const Buckets buckets = buckets_for(list, axis);
+    counts_.assign(buckets.last + 2, 0);
+    buckets_.resize(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) ++counts_[(buckets_[i] = buckets.of(list[i].min[axis])) + 1];
+    std::uint32_t most = 0;
+    for (std::size_t i = 1; i < counts_.size(); ++i) {
+        most = std::max(most, counts_[i]);
+        counts_[i] += counts_[i - 1];
     }
-    if (crowded) {
-        std::sort(keys_.begin(), keys_.end());
-        return;
-    }
-    for (std::size_t i = 1; i < size; ++i) {
-        const std::uint64_t key = keys_[i];
+    if (most > few) return std::sort(keys_.data(), keys_.data() + keys_.size());
+    scratch_.resize_discard(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) scratch_[counts_[buckets_[i]]++] = keys_[i];
+    std::swap(keys_, scratch_);
+    for (std::size_t i = 1; i < keys_.size(); ++i) {
+        const SortKey key = keys_[i];
         std::size_t at = i;
         for (; at > 0 && keys_[at - 1] > key; --at) keys_[at] = keys_[at - 1];
         keys_[at] = key;
@@ -128,15 +115,17 @@ std::uint64_t sampled_windows(const Sweep& sweep) {
 }
 
 std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop) {
-    const std::size_t samples = std::min(sampled_rows, rows.size());
+    const Sample row_sample(rows.size(), 1, sampled_rows), column_sample = measured(columns);
     std::uint64_t hits = 0;
-    for (std::size_t s = 0; s < samples; ++s) {
+    for (std::size_t r = 0; r < row_sample.size(); ++r) {
         throw_if_stopped(stop);
-        const Entry& row = rows[s * rows.size() / samples];
-        for (std::size_t i = 0; i < columns.size(); ++i) hits += overlap(row, columns[i]) ? 1 : 0;
-        if (s == 3 && hits <= 4) return 0;  // no more than the rows themselves: certainly few
+        const Entry& row = rows[row_sample[r]];
+        for (std::size_t i = 0; i < column_sample.size(); ++i) {
+            hits += overlap(row, columns[column_sample[i]]) ? 1 : 0;
+        }
+        if (r == 3 && hits <= 4) return 0;  // no more than the rows themselves: certainly few
     }
-    return samples == 0 ? 0 : hits * rows.size() / samples;
+    return hits * row_sample.stride() * column_sample.stride();
 }
 
 }  // namespace octopair

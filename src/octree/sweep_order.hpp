@@ -12,6 +12,7 @@
 
 #include "geometry/entry.hpp"
 #include "octree/executor.hpp"
+#include "octree/sample.hpp"
 #include "octree/sweep.hpp"
 
 namespace octopair {
@@ -33,15 +34,14 @@ class SweepOrder {
 public:
     explicit SweepOrder(std::stop_token stop) : stop_(std::move(stop)) {}
 
-    /// An upper bound, close where the boxes are spread out, on the columns that a sweep along `axis` tests for all
-    /// rows.
+    /// About how many columns a sweep along `axis` tests for all rows.
     std::uint64_t windows(const EntryList& rows, const EntryList& columns, unsigned axis);
 
     /// Lays the list out in the order (min on the axis, position). For sets that stay in the cache.
     void lay_out(const EntryList& list, unsigned axis, SweepSet& set);
 
-    /// The list in the order (min on the axis, object). The span is valid until the next call.
-    std::span<const SortItem> sort(const EntryList& list, unsigned axis, Executor& executor);
+    /// The list in that order, whatever its size. The span is valid until the next call.
+    std::span<const SortKey> sort(const EntryList& list, unsigned axis, Executor& executor);
 
 private:
     struct Buckets {
@@ -55,14 +55,14 @@ private:
         }
     };
     static Buckets buckets_for(const EntryList& list, unsigned axis);
-    void sort_keys(const EntryList& list, unsigned axis);
+    void make_keys(const EntryList& list, unsigned axis);
+    void sort_in_cache(const EntryList& list, unsigned axis);
 
     std::stop_token stop_;
+    std::vector<float> lows_;
     std::vector<std::uint32_t> counts_;
     std::vector<std::uint32_t> buckets_;  // of each box
-    std::vector<std::uint64_t> keys_;     // min on the axis, as bits in its order, and position
-    std::vector<std::uint32_t> positions_;
-    std::vector<SortItem> items_;
+    Buffer<SortKey> keys_, scratch_;
 };
 
 /// About the columns that a sweep of laid out sets tests for all rows, from some rows at fixed places.

@@ -2,7 +2,6 @@
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
@@ -89,10 +88,6 @@ void TbbThreads::run_beside(unsigned helpers, const std::function<void()>& lead,
         lead();
         group.wait();
     });
-}
-
-void TbbThreads::sort(std::span<SortItem> items) {
-    arena_->arena.execute([&] { oneapi::tbb::parallel_sort(items.begin(), items.end()); });
 }
 
 }  // namespace octopair

@@ -7,11 +7,8 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 
 namespace octopair {
-
-struct SortItem;
 
 class TbbThreads {
 public:
@@ -23,7 +20,6 @@ public:
     /// Calls `lead` on this thread and `help` `helpers` times on others, as far as there are any; returns when all have
     /// returned. Neither may throw.
     void run_beside(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help);
-    void sort(std::span<SortItem> items);
 
 private:
     struct Arena;

@@ -53,10 +53,4 @@ void Team::with_helpers(const std::function<void()>& lead, const std::function<v
     if (failed) std::rethrow_exception(failed);
 }
 
-void Team::sort(std::span<SortItem> items) {
-    constexpr std::size_t worth_sharing = 1 << 15;
-    if (threads_ == 1 || items.size() < worth_sharing) return std::sort(items.begin(), items.end());
-    tbb_->sort(items);
-}
-
 }  // namespace octopair

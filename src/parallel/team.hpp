@@ -8,18 +8,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 
 namespace octopair {
-
-/// What sort_by_key orders: by key, then object, a total order where no object comes twice.
-struct SortItem {
-    float key;
-    std::uint32_t object;
-    std::uint32_t position;
-
-    bool operator<(const SortItem& other) const { return key != other.key ? key < other.key : object < other.object; }
-};
 
 class TbbThreads;
 
@@ -39,8 +29,6 @@ public:
     /// so `lead` must not wait for a helper to begin). Returns when all have; `help` must return soon after `lead`
     /// does.
     void with_helpers(const std::function<void()>& lead, const std::function<void()>& help);
-
-    void sort(std::span<SortItem> items);
 
 private:
     unsigned threads_;

@@ -30,8 +30,8 @@ std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::
 }
 
 SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
-    std::vector<SortItem> order(entries.size());
-    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = {entries[i].min[axis], entries[i].object, i};
+    std::vector<SortKey> order(entries.size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = sort_key(entries[i].min[axis], i);
     std::sort(order.begin(), order.end());
     SweepSet set;
     set.assign(entries, order, axis);

@@ -12,6 +12,7 @@
 
 #include "engine/pair_list.hpp"
 #include "octree/executor.hpp"
+#include "parallel/team.hpp"
 
 namespace octopair {
 
@@ -29,7 +30,6 @@ public:
     unsigned width() const override { return team_.threads(); }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
-    void sort(std::span<SortItem> items) override { team_.sort(items); }
 
 protected:
     Team& team() { return team_; }
