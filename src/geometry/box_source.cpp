@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "geometry/box_kernel.hpp"
@@ -169,6 +170,19 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
+void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
+    if (exact_ && !join()) {
+        const auto boxes = std::get<std::span<const Box3f>>(first_->boxes);
+        for (std::size_t i = 0; i < out.size(); ++i) std::memcpy(&out[i], &boxes[positions[i]], sizeof(Box3f));
+        return;
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        double padding = 0;
+        const Box3d wide = box(std::uint32_t(positions[i]), padding);
+        out[i] = rounded(wide, margin_ / 2 + padding);
+    }
+}
+
 std::optional<std::string> BoxSource::fault(const Objects& set, std::size_t index) const {
     const Box3d box = wide_box(set, index);
     const std::string which =
@@ -197,6 +211,10 @@ void BoxSource::refuse(std::size_t begin) const {
         if (found) throw Error(ErrorCode::bad_input, *found);
     }
     throw Error(ErrorCode::bad_input, "an object changed while it was read");
+}
+
+void EntrySpan::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = entries_[positions[i]];
 }
 
 bool EntrySpan::load(std::size_t begin, std::span<Entry> out) const {

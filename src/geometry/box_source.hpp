@@ -24,6 +24,8 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes entries [begin, begin + out.size()); false if one of them is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
+    /// Writes the bounds of the entries at `positions`, unchecked.
+    virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
 };
 
 class BoxSource final : public EntrySource {
@@ -33,6 +35,7 @@ public:
 
     std::size_t size() const override { return first_size_ + second_size_; }
     bool load(std::size_t begin, std::span<Entry> out) const override;
+    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
     bool join() const { return second_ != nullptr; }
     /// Objects of the second set of a join have indices from here on; otherwise 0.
@@ -71,6 +74,7 @@ public:
     explicit EntrySpan(std::span<const Entry> entries) : entries_(entries) {}
     std::size_t size() const override { return entries_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override;
+    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
 private:
     std::span<const Entry> entries_;

@@ -27,20 +27,15 @@ Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {
 
 }  // namespace
 
-/// What a subtree is grown from; lists are positions in `sample`.
+/// What all nodes are grown by.
 struct Directory::Growth {
-    std::span<const CellBox> sample;
     double weight;
     std::stop_token stop;
 
-    bool crowded(const Node& node, const std::vector<std::uint32_t>& inside) const;
-    using Lists = std::array<std::vector<std::uint32_t>, 8>;
-    /// The boxes, all of which touch `node`, by the children that they touch; returns how many entries that makes.
-    std::size_t divide(const Node& node, const std::vector<std::uint32_t>& boxes, Lists& children) const;
-    std::size_t beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const;
+    bool crowded(const Node& node, const Boxes& inside) const;
 };
 
-bool Directory::Growth::crowded(const Node& node, const std::vector<std::uint32_t>& inside) const {
+bool Directory::Growth::crowded(const Node& node, const Boxes& inside) const {
     const double objects = double(inside.size()) * weight;
     if (objects <= never_split) return false;
     if (objects > always_split) return true;
@@ -50,11 +45,11 @@ bool Directory::Growth::crowded(const Node& node, const std::vector<std::uint32_
         std::uint32_t last = 0;
         std::uint64_t extents = 0;
         const std::uint32_t end = node.lo[axis] + ((cells_per_axis >> node.level) - 1);
-        for (const std::uint32_t i : inside) {
-            const std::uint32_t lo = std::max(sample[i].lo[axis], node.lo[axis]);
+        for (const CellBox& box : inside) {
+            const std::uint32_t lo = std::max(box.lo[axis], node.lo[axis]);
             first = std::min(first, lo);
             last = std::max(last, lo);
-            extents += std::min(sample[i].hi[axis], end) - lo + 1;
+            extents += std::min(box.hi[axis], end) - lo + 1;
         }
         const double extent = double(extents) / double(inside.size());
         window = std::min(window, objects * extent / (double(last - first) + extent));
@@ -62,70 +57,73 @@ bool Directory::Growth::crowded(const Node& node, const std::vector<std::uint32_
     return window > crowded_window;
 }
 
-std::size_t Directory::Growth::divide(const Node& node, const std::vector<std::uint32_t>& boxes,
-                                      Lists& children) const {
+namespace {
+
+/// The boxes, all of which touch `node`, by the children that they touch; returns how many entries that makes.
+std::size_t divide(const Node& node, const Directory::Boxes& boxes, std::array<Directory::Boxes, 8>& children) {
     // Per axis the children, as bits, of the lower and of the upper half.
     constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
     const std::uint32_t half = (cells_per_axis >> node.level) / 2;
+    for (Directory::Boxes& child : children) child.reserve(boxes.size() / 6);
     std::size_t entries = 0;
-    for (const std::uint32_t i : boxes) {
+    for (const CellBox& box : boxes) {
         unsigned touched = 0xFF;
         for (unsigned axis = 0; axis < 3; ++axis) {
             const std::uint32_t middle = node.lo[axis] + half;
-            const unsigned lower = sample[i].lo[axis] < middle ? halves[axis][0] : 0;
-            const unsigned upper = sample[i].hi[axis] >= middle ? halves[axis][1] : 0;
+            const unsigned lower = box.lo[axis] < middle ? halves[axis][0] : 0;
+            const unsigned upper = box.hi[axis] >= middle ? halves[axis][1] : 0;
             touched &= lower | upper;
         }
         entries += std::size_t(std::popcount(touched));
-        for (; touched != 0; touched &= touched - 1) children[unsigned(std::countr_zero(touched))].push_back(i);
+        for (; touched != 0; touched &= touched - 1) children[unsigned(std::countr_zero(touched))].push_back(box);
     }
     return entries;
 }
 
-std::size_t Directory::Growth::beginning_in(const Node& node, const std::vector<std::uint32_t>& boxes) const {
-    return std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](std::uint32_t i) {
-        const Cell& lo = sample[i].lo;
-        return lo[0] >= node.lo[0] && lo[1] >= node.lo[1] && lo[2] >= node.lo[2];
+std::size_t beginning_in(const Node& node, const Directory::Boxes& boxes) {
+    return std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const CellBox& box) {
+        return box.lo[0] >= node.lo[0] && box.lo[1] >= node.lo[1] && box.lo[2] >= node.lo[2];
     }));
 }
 
-Directory::Directory(const Frame& frame, std::span<const CellBox> sample, double weight, std::stop_token stop) {
-    Growth growth{sample, weight, stop};
-    std::vector<std::uint32_t> all(sample.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+}  // namespace
+
+Directory::Directory(const Frame& frame, Boxes sample, double weight, std::stop_token stop) {
+    const Growth growth{weight, stop};
     const Node root{.lo = {}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
-    grow(growth, root, all, {});
+    grow(growth, root, std::move(sample), {});
     make_table(frame);
 }
 
 /// Appends `start` and its subtree. `sample`: what touches the octant and is not too large for its level; `handed`:
 /// what touches it and is kept above.
-NodeIndex Directory::grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
-                          const std::vector<std::uint32_t>& handed) {
+NodeIndex Directory::grow(const Growth& growth, const Node& start, Boxes sample, Boxes handed) {
     throw_if_stopped(growth.stop);
     const NodeIndex index = NodeIndex(nodes_.size());
     nodes_.push_back(start);
-    std::vector<std::uint32_t> kept = handed;
-    std::vector<std::uint32_t> inside;
-    for (const std::uint32_t i : sample) {
-        (natural_level(growth.sample[i]) > start.level ? inside : kept).push_back(i);
-    }
-    Growth::Lists inside_child, handed_child;
+    const auto kept = std::stable_partition(sample.begin(), sample.end(),
+                                            [&](const CellBox& box) { return natural_level(box) > start.level; });
+    handed.insert(handed.end(), kept, sample.end());
+    sample.erase(kept, sample.end());
+    std::array<Boxes, 8> inside_child, handed_child;
     const bool room = nodes_.size() + 8 * (deepest + 1) < most_nodes;  // for the siblings to come, too
-    bool split = room && start.level < deepest && growth.crowded(start, inside);
+    bool split = room && start.level < deepest && growth.crowded(start, sample);
     if (split) {
-        const std::size_t entries = growth.divide(start, inside, inside_child);
-        const std::size_t copies = growth.divide(start, kept, handed_child);
-        split = double(entries) <= ghost_growth * double(growth.beginning_in(start, inside)) &&
-                double(entries + copies) <= handed_growth * double(inside.size() + kept.size());
+        const std::size_t entries = divide(start, sample, inside_child);
+        const std::size_t copies = divide(start, handed, handed_child);
+        split = double(entries) <= ghost_growth * double(beginning_in(start, sample)) &&
+                double(entries + copies) <= handed_growth * double(sample.size() + handed.size());
     }
+    sample = {};
+    handed = {};
     if (split) {
         const std::uint32_t row = std::uint32_t(children_.size());
         nodes_[index].children = row;
         children_.emplace_back();
         for (unsigned digit = 0; digit < 8; ++digit) {
             const Node octant = child_octant(start, index, digit);
-            const NodeIndex child = grow(growth, octant, inside_child[digit], handed_child[digit]);
+            const NodeIndex child =
+                grow(growth, octant, std::move(inside_child[digit]), std::move(handed_child[digit]));
             children_[row][digit] = child;
         }
     }

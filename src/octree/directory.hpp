@@ -47,8 +47,9 @@ struct Node {
 
 class Directory {
 public:
+    using Boxes = std::vector<CellBox>;
     /// `weight`: how many objects one box of the sample stands for. Throws Error{cancelled}.
-    Directory(const Frame& frame, std::span<const CellBox> sample, double weight, std::stop_token stop);
+    Directory(const Frame& frame, Boxes sample, double weight, std::stop_token stop);
 
     std::span<const Node> nodes() const { return nodes_; }
     NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
@@ -87,8 +88,7 @@ public:
 
 private:
     struct Growth;
-    NodeIndex grow(Growth& growth, const Node& start, std::vector<std::uint32_t>& sample,
-                   const std::vector<std::uint32_t>& handed);
+    NodeIndex grow(const Growth& growth, const Node& start, Boxes sample, Boxes handed);
     void make_table(const Frame& frame);
     void fill_table(NodeIndex from, const Cell& first, std::array<std::uint32_t, 3> sizes, unsigned shift,
                     std::size_t begin);

@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t sample_stride = 16;        // one object of so many is sampled, but
+constexpr std::size_t sample_stride = 32;        // one object of so many is sampled, but
 constexpr std::size_t most_samples = 1 << 21;    // no more than these
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
@@ -143,18 +143,18 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
 void LinearOctree::plant(const EntrySource& source, std::stop_token stop) {
     const std::vector<Entry> sampled = sample(source);
     frame_ = Frame::fit(sampled, source.size());
-    std::vector<CellBox> cells(sampled.size());
+    Directory::Boxes cells(sampled.size());
     frame_.cells(sampled, cells);
     const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
-    directory_ = Directory(frame_, cells, weight, stop);
+    directory_ = Directory(frame_, std::move(cells), weight, stop);
 }
 
 std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
     const Sample sample(source.size(), sample_stride, most_samples);
+    std::vector<std::size_t> positions(sample.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
     std::vector<Entry> sampled(sample.size());
-    for (std::size_t i = 0; i < sampled.size(); ++i) {
-        (void)source.load(sample[i], {&sampled[i], 1});  // what is invalid is found by encode, with its position
-    }
+    source.pick(positions, sampled);  // what is invalid is found by encode, with its position
     return sampled;
 }
 

@@ -31,7 +31,6 @@ public:
         for (std::size_t i = count; i-- > 0;) body(i);
     }
     void for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) override {}
-    void sort(std::span<SortItem> items) override { std::sort(items.begin(), items.end()); }
 
 private:
     unsigned width_;
