@@ -55,20 +55,13 @@ Entry SweepSet::entry(std::size_t i) const {
     return entry;
 }
 
-void start_row(const Sweep& sweep, SweepCursor& cursor) {
-    if (cursor.in_row) return;
+void start_crossing_row(const Sweep& sweep, SweepCursor& cursor) {
     const auto& [rows, columns, kind] = sweep;
-    if (kind == SweepKind::self) {
-        cursor.column = cursor.row + 1;
-    } else {
-        const float begin = rows.low(0)[cursor.row];
-        const float* lows = columns.low(0);
-        std::size_t& first = cursor.first_column;
-        while (first < columns.size() && (kind == SweepKind::cross ? lows[first] < begin : lows[first] <= begin))
-            ++first;
-        cursor.column = first;
-    }
-    cursor.in_row = true;
+    const float begin = rows.low(0)[cursor.row];
+    const float* lows = columns.low(0);
+    std::size_t& first = cursor.first_column;
+    while (first < columns.size() && (kind == SweepKind::cross ? lows[first] < begin : lows[first] <= begin)) ++first;
+    cursor.column = first;
 }
 
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {

@@ -94,7 +94,17 @@ std::string sweep_instruction_set();
 /// For tests: allows only the baseline instruction set (or again all).
 void restrict_sweep_to_baseline(bool baseline_only);
 
+void start_crossing_row(const Sweep& sweep, SweepCursor& cursor);
+
 /// Moves `cursor` to the columns of its row, if it is not there yet. Shared by all versions.
-void start_row(const Sweep& sweep, SweepCursor& cursor);
+inline void start_row(const Sweep& sweep, SweepCursor& cursor) {
+    if (cursor.in_row) return;
+    if (sweep.kind == SweepKind::self) {
+        cursor.column = cursor.row + 1;
+    } else {
+        start_crossing_row(sweep, cursor);
+    }
+    cursor.in_row = true;
+}
 
 }  // namespace octopair

@@ -34,6 +34,8 @@ std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<H
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const std::size_t lanes = hn::Lanes(d);
+    const std::array<const float*, 6> row_bounds = {rows.low(0),  rows.low(1),  rows.low(2),
+                                                    rows.high(0), rows.high(1), rows.high(2)};
     const float* const low0 = columns.low(0);
     const float* const low1 = columns.low(1);
     const float* const low2 = columns.low(2);
@@ -41,24 +43,25 @@ std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<H
     const float* const high2 = columns.high(2);
     const std::uint32_t* const masks = columns.mask();
 
-    std::size_t written = 0;
-    std::size_t runs = 0;
+    HitMask* hit_at = hits.data();
+    HitMask* const hits_end = hits.data() + hits.size();
+    std::size_t runs_left = runs_per_call;
     for (; cursor.row < cursor.row_end; ++cursor.row, cursor.in_row = false) {
         start_row(sweep, cursor);
         const std::size_t row = cursor.row;
-        const float end = rows.high(0)[row];
+        const float end = row_bounds[3][row];
         const auto row_end = hn::Set(d, end);
-        const auto row_low1 = hn::Set(d, rows.low(1)[row]);
-        const auto row_low2 = hn::Set(d, rows.low(2)[row]);
-        const auto row_high1 = hn::Set(d, rows.high(1)[row]);
-        const auto row_high2 = hn::Set(d, rows.high(2)[row]);
+        const auto row_low1 = hn::Set(d, row_bounds[1][row]);
+        const auto row_low2 = hn::Set(d, row_bounds[2][row]);
+        const auto row_high1 = hn::Set(d, row_bounds[4][row]);
+        const auto row_high2 = hn::Set(d, row_bounds[5][row]);
         const auto row_mask = hn::Set(du, rows.mask()[row]);
         std::size_t column = cursor.column;
         // The padding's NaN ends the columns of a set; a run may read into it.
-        while (column < columns.size() && low0[column] <= end) {
-            if (written == hits.size() || ++runs > runs_per_call) {
+        for (; low0[column] <= end; column += lanes) {
+            if (hit_at == hits_end || --runs_left == 0) {
                 cursor.column = column;
-                return written;
+                return std::size_t(hit_at - hits.data());
             }
             const auto on0 = hn::Le(hn::LoadU(d, low0 + column), row_end);
             const auto on1 =
@@ -67,14 +70,12 @@ std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<H
                 hn::And(hn::Le(hn::LoadU(d, low2 + column), row_high2), hn::Ge(hn::LoadU(d, high2 + column), row_low2));
             const auto shared = hn::And(hn::LoadU(du, masks + column), row_mask);
             const auto apart = hn::RebindMask(d, hn::Eq(shared, hn::Zero(du)));
-            const auto hit = hn::And(hn::And(on0, on1), hn::And(on2, apart));
-            const std::uint32_t bits = bits_of(d, hit);
-            hits[written] = {std::uint32_t(row), std::uint32_t(column), bits};
-            written += bits != 0 ? 1 : 0;
-            column += lanes;
+            const std::uint32_t bits = bits_of(d, hn::And(hn::And(on0, on1), hn::And(on2, apart)));
+            *hit_at = {std::uint32_t(row), std::uint32_t(column), bits};
+            hit_at += bits != 0 ? 1 : 0;
         }
     }
-    return written;
+    return std::size_t(hit_at - hits.data());
 }
 
 /// For each set of lanes their numbers, ascending, and how many they are. (Highway's own table for this is copied on
