@@ -213,13 +213,4 @@ void BoxSource::refuse(std::size_t begin) const {
     throw Error(ErrorCode::bad_input, "an object changed while it was read");
 }
 
-void EntrySpan::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = entries_[positions[i]];
-}
-
-bool EntrySpan::load(std::size_t begin, std::span<Entry> out) const {
-    std::copy_n(entries_.begin() + std::ptrdiff_t(begin), out.size(), out.begin());
-    return true;
-}
-
 }  // namespace octopair

@@ -17,7 +17,7 @@
 
 namespace octopair {
 
-/// Where entries come from: the caller's boxes, or the entries of a crowded octant.
+/// Where entries come from: the caller's boxes, or the entries of a crowded octant (scan.cpp).
 class EntrySource {
 public:
     virtual ~EntrySource() = default;
@@ -66,18 +66,6 @@ private:
     double margin_;
     bool exact_;
     std::array<double, 3> origin_ = {0, 0, 0};
-};
-
-/// Entries already made, such as those of a crowded octant. Borrows them.
-class EntrySpan final : public EntrySource {
-public:
-    explicit EntrySpan(std::span<const Entry> entries) : entries_(entries) {}
-    std::size_t size() const override { return entries_.size(); }
-    bool load(std::size_t begin, std::span<Entry> out) const override;
-    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
-
-private:
-    std::span<const Entry> entries_;
 };
 
 }  // namespace octopair

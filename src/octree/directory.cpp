@@ -15,7 +15,7 @@ constexpr double never_split = 128;        // objects
 constexpr double crowded_window = 40;      // objects that a sweep tests for each object
 constexpr double ghost_growth = 1.6;       // entries below a node for each object that begins in it
 constexpr double handed_growth = 1.5;      // entries and boxes handed down, after a split against before
-constexpr std::uint64_t cells_a_node = 8;  // of the table from cells to leaves
+constexpr std::uint64_t cells_a_node = 4;  // of the table from cells to leaves
 
 /// The octant `digit` of `node`, as a leaf.
 Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {

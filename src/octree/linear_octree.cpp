@@ -135,7 +135,6 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
     seconds_.merge = seconds_since(clock);
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) { sort(source, blocks[i], stop); });
-    homes_ = {};  // its memory is better used by the scan
     seconds_.sort = seconds_since(clock);
 }
 

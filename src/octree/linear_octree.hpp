@@ -65,7 +65,7 @@ private:
     Directory directory_{Frame{}, {}, 0, {}};
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
-    Buffer<NodeIndex> homes_;  // of each object, while building
+    Buffer<NodeIndex> homes_;  // of each object; used while building
     BuildSeconds seconds_;
 };
 

@@ -79,6 +79,27 @@ private:
     std::vector<NodeIndex> owners_;
 };
 
+/// The entries of a join as those of a scene: rows, then columns.
+class EntriesOf final : public EntrySource {
+public:
+    explicit EntriesOf(const Join& join) : join_(join) {}
+    std::size_t size() const override { return join_.rows.size() + (join_.self ? 0 : join_.columns.size()); }
+    bool load(std::size_t begin, std::span<Entry> out) const override {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(begin + i);
+        return true;
+    }
+    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(positions[i]);
+    }
+
+private:
+    const Entry& at(std::size_t i) const {
+        return i < join_.rows.size() ? join_.rows[i] : join_.columns[i - join_.rows.size()];
+    }
+
+    const Join& join_;
+};
+
 /// Scans single nodes, keeping its memory from node to node. One thread at a time.
 class NodeScan {
 public:
@@ -171,17 +192,14 @@ private:
 
     /// Scans a linear octree of the join's own entries; false, with nothing done, where it would not thin them.
     bool split_afresh(const Join& join) {
-        std::vector<Entry> own;
-        for (std::size_t i = 0; i < join.rows.size(); ++i) own.push_back(join.rows[i]);
-        for (std::size_t i = 0; !join.self && i < join.columns.size(); ++i) own.push_back(join.columns[i]);
+        const EntriesOf entries(join);
         LinearOctree octree;
-        octree.build(EntrySpan(own), executor_, context_.stop);
+        octree.build(entries, executor_, context_.stop);
         std::size_t largest = 0;
         for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
             largest = std::max(largest, octree.entries(node).size());
         }
-        if (double(largest) > worth_splitting * double(own.size())) return false;
-        own = {};  // the octree has its copy
+        if (double(largest) > worth_splitting * double(entries.size())) return false;
         octopair::scan(octree, context_, executor_, {});
         return true;
     }

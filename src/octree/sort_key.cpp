@@ -44,8 +44,8 @@ bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shi
 
 }  // namespace
 
-void radix_sort(Buffer<SortKey>& keys, Buffer<SortKey>& scratch, Executor& executor, const std::stop_token& stop) {
-    scratch.resize_discard(keys.size());
+void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token& stop) {
+    Buffer<SortKey> scratch(keys.size());
     for (unsigned shift = 32; shift < 64; shift += digit_bits) {
         throw_if_stopped(stop);
         if (pass(keys.span(), scratch.span(), shift, executor)) std::swap(keys, scratch);

@@ -26,6 +26,7 @@ inline float low_of(SortKey key) {
 }
 
 /// Sorts keys that are ascending by position: an LSD radix sort whose passes are shared out. Throws Error{cancelled}.
-void radix_sort(Buffer<SortKey>& keys, Buffer<SortKey>& scratch, Executor& executor, const std::stop_token& stop);
+/// Takes as much memory again while it runs.
+void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token& stop);
 
 }  // namespace octopair

@@ -60,7 +60,7 @@ std::span<const SortKey> SweepOrder::sort(const EntryList& list, unsigned axis, 
         sort_in_cache(list, axis);
     } else {
         make_keys(list, axis);
-        radix_sort(keys_, scratch_, executor, stop_);
+        radix_sort(keys_, executor, stop_);
     }
     return keys_.span();
 }
