@@ -135,7 +135,16 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
     seconds_.merge = seconds_since(clock);
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) { sort(source, blocks[i], stop); });
+    if (crowded()) homes_ = {};  // the scan needs the memory more
     seconds_.sort = seconds_since(clock);
+}
+
+/// Whether one octant holds half of the entries.
+bool LinearOctree::crowded() const {
+    for (NodeIndex node = 0; node < nodes().size(); ++node) {
+        if (2 * entries(node).size() > entry_count()) return true;
+    }
+    return false;
 }
 
 /// Frame and directory, from a sample that is gone when the entries need the memory.

@@ -60,6 +60,7 @@ private:
     void encode(const EntrySource& source, Block& block, std::stop_token stop);
     void merge(std::span<Block> blocks);
     void sort(const EntrySource& source, Block& block, std::stop_token stop);
+    bool crowded() const;
 
     Frame frame_;
     Directory directory_{Frame{}, {}, 0, {}};

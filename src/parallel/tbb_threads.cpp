@@ -5,8 +5,12 @@
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
+#include <exception>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 
+#include "octopair/error.hpp"
 #include "parallel/team.hpp"
 
 #ifdef OCTOPAIR_THREAD_SANITIZER
@@ -65,6 +69,37 @@ private:
 #endif
 };
 
+/// The first exception of several tasks, apart from what oneTBB itself may throw.
+class FirstFailure {
+public:
+    template <typename Body>
+    void guard(Body&& body) {
+        try {
+            body();
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            if (!first_) first_ = std::current_exception();
+        }
+    }
+    void rethrow() const {
+        if (first_) std::rethrow_exception(first_);
+    }
+
+private:
+    std::mutex mutex_;
+    std::exception_ptr first_;
+};
+
+/// Calls what starts threads; oneTBB says in a runtime_error that the system has none to give.
+template <typename Body>
+void start(Body&& body) {
+    try {
+        body();
+    } catch (const std::runtime_error& error) {
+        throw Error(ErrorCode::resource_limit, std::string("cannot start threads: ") + error.what());
+    }
+}
+
 }  // namespace
 
 TbbThreads::TbbThreads(unsigned threads) {
@@ -76,17 +111,27 @@ TbbThreads::~TbbThreads() = default;
 
 void TbbThreads::run(unsigned count, const std::function<void(unsigned)>& body) {
     TaskOrder order;
-    const auto task = [&](unsigned i) { order.task([&] { body(i); }); };
-    arena_->arena.execute([&] { oneapi::tbb::parallel_for(0u, count, task, oneapi::tbb::simple_partitioner()); });
+    FirstFailure failure;
+    const auto task = [&](unsigned i) { order.task([&] { failure.guard([&] { body(i); }); }); };
+    start([&] {
+        arena_->arena.execute([&] { oneapi::tbb::parallel_for(0u, count, task, oneapi::tbb::simple_partitioner()); });
+    });
+    failure.rethrow();
 }
 
 void TbbThreads::run_beside(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help) {
     TaskOrder order;
-    arena_->arena.execute([&] {
-        oneapi::tbb::task_group group;
-        for (unsigned i = 0; i < helpers; ++i) group.run([&] { order.task(help); });
-        lead();
-        group.wait();
+    start([&] {
+        arena_->arena.execute([&] {
+            oneapi::tbb::task_group group;
+            try {
+                for (unsigned i = 0; i < helpers; ++i) group.run([&] { order.task(help); });
+            } catch (const std::runtime_error&) {
+                // No thread to be had: fewer helpers will do, and those that run wait for the lead.
+            }
+            lead();
+            group.wait();
+        });
     });
 }
 
