@@ -1,4 +1,4 @@
-// A box is six floats, read as two registers that overlap; compiled for each instruction set by Highway.
+// A box is six numbers, read as two registers that overlap; compiled for each instruction set by Highway.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/box_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -7,6 +7,7 @@
 #include <array>
 #include <cfloat>
 #include <cstring>
+#include <limits>
 
 #include "geometry/box_kernel.hpp"
 
@@ -50,6 +51,103 @@ bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
 
 #endif
 
+template <typename Real>
+Box3d wide(const Box<Real>& box) {
+    return {{double(box.min[0]), double(box.min[1]), double(box.min[2])},
+            {double(box.max[0]), double(box.max[1]), double(box.max[2])}};
+}
+
+/// The specification, a box at a time.
+template <typename Real>
+bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Entry& out) {
+    out = rounding.entry(wide(box), padding);
+    return is_box(box) && is_padding(padding);
+}
+
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+
+using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and the number beside it, of which nothing is kept
+
+hn::Vec<Doubles> load_wide(const float* numbers) {
+    return hn::PromoteTo(Doubles(), hn::LoadU(hn::FixedTag<float, 4>(), numbers));
+}
+hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
+
+/// round_up() of the specification.
+hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
+    const Doubles d;
+    const hn::FixedTag<float, 4> f;
+    const hn::FixedTag<std::int32_t, 4> i;
+    const auto most = hn::Set(d, double(FLT_MAX));
+    const auto clamped = hn::Min(hn::Max(value, hn::Neg(most)), most);
+    const auto nearest = hn::DemoteTo(f, clamped);
+    const auto below = hn::DemoteTo(f, hn::IfThenElseZero(hn::Lt(hn::PromoteTo(d, nearest), clamped), hn::Set(d, 1.0)));
+    const auto step = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(below, hn::Zero(f))));  // -1 where one up is asked
+    // The next float up is one more in the bits of a number >= 0 and one less of others; -0 counts as 0.
+    const auto bits = hn::BitCast(i, hn::Add(nearest, hn::Zero(f)));
+    const auto negative = hn::BroadcastSignBit(bits);
+    const auto up = hn::Sub(hn::Xor(step, negative), negative);
+    return hn::BitCast(f, hn::Sub(bits, up));
+}
+
+template <typename Real>
+bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
+                      const OutwardRounding& rounding, std::span<Entry> out) {
+    if (boxes.empty()) return true;
+    const Doubles d;
+    const hn::FixedTag<float, 4> f;
+    const auto origin = hn::LoadU(d, rounding.origin.data());
+    const auto largest = hn::Set(d, double(std::numeric_limits<Real>::max()));
+    const auto part = hn::Set(d, OutwardRounding::error_part);
+    const auto too_wide = hn::Set(d, OutwardRounding::most_widening);
+    const auto everything = hn::Set(d, double(FLT_MAX));
+    auto good = hn::MaskFromVec(hn::BitCast(d, hn::Set(hn::FixedTag<std::int64_t, 4>(), -1)));
+    bool paddings_good = true;
+    const std::size_t last = boxes.size() - 1;  // not in the loop, which reads a number beyond each box
+    for (std::size_t k = 0; k < last; ++k) {
+        const double own = padding.empty() ? 0 : padding[k];
+        paddings_good &= is_padding(own);
+        const auto widening = hn::Set(d, rounding.margin / 2 + own);
+        const auto low = load_wide(boxes[k].min);
+        const auto high = load_wide(boxes[k].max);
+        const auto finite = hn::And(hn::Le(hn::Abs(low), largest), hn::Le(hn::Abs(high), largest));
+        good = hn::And(good, hn::Or(hn::And(finite, hn::Le(low, high)), hn::Not(hn::FirstN(d, 3))));
+        const auto outward = [&](auto bound, auto moved) HWY_ATTR {
+            const auto error = hn::Mul(hn::Add(hn::Add(hn::Abs(bound), hn::Abs(origin)), widening), part);
+            const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
+            return round_up_simd(hn::IfThenElse(hn::Gt(widening, too_wide), everything, hn::Add(moved, extra)));
+        };
+        // Each store reaches one number too far: the second covers the first's, the caller the second's.
+        hn::StoreU(hn::Neg(outward(low, hn::Neg(hn::Sub(low, origin)))), f, out[k].min);
+        hn::StoreU(outward(high, hn::Sub(high, origin)), f, out[k].max);
+    }
+    const double own = padding.empty() ? 0 : padding[last];
+    return hn::AllTrue(d, good) && round_one(boxes[last], own, rounding, out[last]) && paddings_good;
+}
+
+#else
+
+template <typename Real>
+bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
+                      const OutwardRounding& rounding, std::span<Entry> out) {
+    bool good = true;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        good &= round_one(boxes[i], padding.empty() ? 0 : padding[i], rounding, out[i]);
+    }
+    return good;
+}
+
+#endif
+
+bool round_narrow_simd(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                       std::span<Entry> out) {
+    return round_boxes_simd(boxes, padding, rounding, out);
+}
+bool round_wide_simd(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                     std::span<Entry> out) {
+    return round_boxes_simd(boxes, padding, rounding, out);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace octopair
 HWY_AFTER_NAMESPACE();
@@ -62,6 +160,19 @@ HWY_EXPORT(copy_boxes_simd);
 
 bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out) {
     return HWY_DYNAMIC_DISPATCH(copy_boxes_simd)(boxes, out);
+}
+
+HWY_EXPORT(round_narrow_simd);
+HWY_EXPORT(round_wide_simd);
+
+bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Entry> out) {
+    return HWY_DYNAMIC_DISPATCH(round_narrow_simd)(boxes, padding, rounding, out);
+}
+
+bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Entry> out) {
+    return HWY_DYNAMIC_DISPATCH(round_wide_simd)(boxes, padding, rounding, out);
 }
 
 }  // namespace octopair

@@ -22,18 +22,6 @@ std::string number_text(double value) {
     return {text, end};
 }
 
-/// The largest float32 <= value, and no lower than the lowest finite one.
-float round_down(double value) {
-    if (value <= -double(FLT_MAX)) return -FLT_MAX;
-    if (value >= double(FLT_MAX)) return FLT_MAX;
-    const float nearest = float(value);
-    return double(nearest) > value ? std::nextafterf(nearest, -FLT_MAX) : nearest;
-}
-
-float round_up(double value) { return -round_down(-value); }
-
-bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
-
 bool holds_float32(const Objects& set) { return std::holds_alternative<std::span<const Box3f>>(set.boxes); }
 
 Box3d wide_box(const Objects& set, std::size_t index) {
@@ -52,11 +40,8 @@ Box3d wide_box(const Objects& set, std::size_t index) {
 }  // namespace
 
 BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
-    : first_(&first),
-      second_(second),
-      first_size_(first.size()),
-      second_size_(second != nullptr ? second->size() : 0),
-      margin_(margin) {
+    : first_(&first), second_(second), first_size_(first.size()), second_size_(second != nullptr ? second->size() : 0) {
+    rounding_.margin = margin;
     const auto plain = [](const Objects& set) { return holds_float32(set) && set.padding.empty(); };
     exact_ = margin == 0 && plain(first) && (second == nullptr || plain(*second));
     if (!exact_) choose_origin();
@@ -77,7 +62,7 @@ void BoxSource::choose_origin() {
         }
         if (used == 0) continue;
         std::nth_element(lows.begin(), lows.begin() + std::ptrdiff_t(used / 2), lows.begin() + std::ptrdiff_t(used));
-        origin_[std::size_t(axis)] = lows[used / 2];
+        rounding_.origin[std::size_t(axis)] = lows[used / 2];
     }
 }
 
@@ -94,7 +79,7 @@ bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);
     const Box3d box_b = box(b, padding_b);
-    const double reach = margin_ + (padding_a + padding_b);
+    const double reach = rounding_.margin + (padding_a + padding_b);
     for (int axis = 0; axis < 3; ++axis) {
         if (!(std::max(box_a.min[axis] - box_b.max[axis], box_b.min[axis] - box_a.max[axis]) <= reach)) return false;
     }
@@ -103,52 +88,22 @@ bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
 
 RoundingSlack BoxSource::slack() const {
     // A bound of an entry is off by at most 2^-23 of itself (rounding to float32) plus 2^-47 of the numbers it was made
-    // from (the widening's own error bound in rounded()); more than four times that separates real overlaps from made
+    // from (OutwardRounding::error_part); more than four times that separates real overlaps from made
     // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
     RoundingSlack slack;
-    for (unsigned axis = 0; axis < 3; ++axis) slack.base[axis] = round_up(std::abs(origin_[axis]) * 0x1p-44 + FLT_MIN);
+    for (unsigned axis = 0; axis < 3; ++axis)
+        slack.base[axis] = round_up(std::abs(rounding_.origin[axis]) * 0x1p-44 + FLT_MIN);
     return slack;
-}
-
-Entry BoxSource::rounded(const Box3d& box, double widening) const {
-    Entry entry{};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (widening > DBL_MAX / 4) {
-            // Two such sums may overflow in the rule, which then holds for any gap.
-            entry.min[axis] = -FLT_MAX;
-            entry.max[axis] = FLT_MAX;
-            continue;
-        }
-        const double origin = origin_[std::size_t(axis)];
-        // Without widening, subtraction and rounding are monotone and lose no pair. With it, the rule's own roundings and
-        // these must be covered: each is below 2^-52 of a number no larger than the sum of these.
-        double error = 0;
-        for (const double part : {box.min[axis], box.max[axis], origin, widening}) error += std::abs(part) * 0x1p-48;
-        const double extra = widening > 0 ? widening + error : 0;
-        entry.min[axis] = round_down((box.min[axis] - origin) - extra);
-        entry.max[axis] = round_up((box.max[axis] - origin) + extra);
-    }
-    return entry;
 }
 
 template <typename Real>
 bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
                          std::span<Entry> out) const {
+    const auto some = boxes.subspan(begin, out.size());
     if constexpr (std::is_same_v<Real, float>) {
-        if (exact_) return copy_boxes(boxes.subspan(begin, out.size()), out);
+        if (exact_) return copy_boxes(some, out);
     }
-    bool good = true;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const Box<Real>& box = boxes[begin + i];
-        good &= is_box(box);
-        const double own = padding.empty() ? 0 : padding[begin + i];
-        good &= is_padding(own);
-        Box3d wide;
-        std::copy_n(box.min, 3, wide.min);
-        std::copy_n(box.max, 3, wide.max);
-        out[i] = rounded(wide, margin_ / 2 + own);
-    }
-    return good;
+    return round_boxes(some, padding.empty() ? padding : padding.subspan(begin, out.size()), rounding_, out);
 }
 
 bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
@@ -179,7 +134,7 @@ void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> ou
     for (std::size_t i = 0; i < out.size(); ++i) {
         double padding = 0;
         const Box3d wide = box(std::uint32_t(positions[i]), padding);
-        out[i] = rounded(wide, margin_ / 2 + padding);
+        out[i] = rounding_.entry(wide, padding);
     }
 }
 

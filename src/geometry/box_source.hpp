@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 
+#include "geometry/box_kernel.hpp"
 #include "geometry/entry.hpp"
 #include "octopair/objects.hpp"
 
@@ -54,7 +55,6 @@ private:
     template <typename Real>
     bool load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
                   std::span<Entry> out) const;
-    Entry rounded(const Box3d& box, double widening) const;
     std::optional<std::string> fault(const Objects& set, std::size_t index) const;
     void choose_origin();
     Box3d box(std::uint32_t object, double& padding) const;
@@ -63,9 +63,8 @@ private:
     const Objects* second_;
     std::size_t first_size_;
     std::size_t second_size_;
-    double margin_;
     bool exact_;
-    std::array<double, 3> origin_ = {0, 0, 0};
+    OutwardRounding rounding_;
 };
 
 }  // namespace octopair

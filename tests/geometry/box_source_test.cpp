@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include "geometry/box_kernel.hpp"
@@ -51,6 +54,61 @@ TEST(BoxKernel, AgreesWithItsSpecification) {
     }
     EXPECT_GT(seen[0], 1000u);
     EXPECT_GT(seen[1], 1000u);
+}
+
+/// The kernel and the specification on boxes of special and of ordinary numbers.
+template <typename Real>
+void check_rounding(const OutwardRounding& rounding, bool padded) {
+    const Real most = std::numeric_limits<Real>::max();
+    const Real special[] = {0,     Real(-0.0),   1, -1, Real(1e-45), Real(1e-40), Real(1 + 1e-7), most,
+                            -most, Real(3.4e38), 7};
+    std::mt19937_64 random(std::uint64_t(rounding.margin) + padded);
+    std::uniform_real_distribution<double> place(-100, 100);
+    std::vector<Box<Real>> boxes(3000);
+    std::vector<double> padding(padded ? boxes.size() : 0);
+    for (Box<Real>& box : boxes) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const auto number = [&] {
+                return random() % 3 == 0 ? special[random() % std::size(special)] : Real(place(random));
+            };
+            std::tie(box.min[axis], box.max[axis]) = std::minmax({number(), number()});
+        }
+    }
+    for (double& one : padding) one = random() % 20 == 0 ? DBL_MAX : random() % 2 == 0 ? 0 : std::abs(place(random));
+    std::vector<Entry> entries(boxes.size());
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        Box3d wide;
+        std::copy_n(boxes[i].min, 3, wide.min);
+        std::copy_n(boxes[i].max, 3, wide.max);
+        const Entry expected = rounding.entry(wide, padded ? padding[i] : 0);
+        ASSERT_EQ(std::memcmp(&entries[i], &expected, 6 * sizeof(float)), 0) << i;
+    }
+    boxes.back().max[1] = std::numeric_limits<Real>::infinity();
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+    boxes.back().max[1] = boxes.back().min[1];
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    for (const double bad : {-1.0, double(nan), double(infinity)}) {
+        if (!padded) break;
+        padding[17] = bad;
+        EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries)) << bad;
+    }
+    padding.assign(padding.size(), 0);
+    std::swap(boxes[5].min[2], boxes[5].max[2]);
+    boxes[5].min[2] += Real(1);
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+}
+
+TEST(BoxKernel, RoundsAsSpecified) {
+    for (const double margin : {0.0, 1e-9, 3.0, DBL_MAX}) {
+        for (const double origin : {0.0, 12.345, -1e7}) {
+            for (const bool padded : {false, true}) {
+                const OutwardRounding rounding{{origin, -origin, 0, 0}, margin};
+                check_rounding<float>(rounding, padded);
+                check_rounding<double>(rounding, padded);
+            }
+        }
+    }
 }
 
 TEST(BoxSource, EntriesHoldTheirBoxes) {
