@@ -11,7 +11,7 @@ namespace {
 
 // Found by measurement on the scenes of docs/scenes.md; they change the shape of the tree, never the set of pairs.
 constexpr double always_split = 2048;      // objects: more would not stay in the cache while they are swept
-constexpr double never_split = 128;        // objects
+constexpr double never_split = 512;        // objects
 constexpr double crowded_window = 40;      // objects that a sweep tests for each object
 constexpr double ghost_growth = 1.6;       // entries below a node for each object that begins in it
 constexpr double handed_growth = 1.5;      // entries and boxes handed down, after a split against before

@@ -91,26 +91,28 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
 
 }  // namespace
 
-/// An entry of a box that crosses octants.
+/// An entry of a box that crosses octants. Those of a box stand together, boxes ascending.
 class Crossing {
 public:
-    Crossing(std::size_t position, NodeIndex node, unsigned begins)
-        : position_(std::uint32_t(position)), node_and_begins_(node << 3 | begins) {}
+    Crossing(NodeIndex node, unsigned begins) : packed_(node << 4 | begins) {}
 
-    std::size_t position() const { return position_; }
-    NodeIndex node() const { return node_and_begins_ >> 3; }
+    NodeIndex node() const { return packed_ >> 4; }
     /// The class bits.
-    unsigned begins() const { return node_and_begins_ & begins_before; }
+    unsigned begins() const { return packed_ & begins_before; }
+    /// Whether it is the last one of its box.
+    bool last() const { return (packed_ & last_bit) != 0; }
+    void set_last() { packed_ |= last_bit; }
 
 private:
-    std::uint32_t position_, node_and_begins_;
+    static constexpr std::uint32_t last_bit = 8;
+    std::uint32_t packed_;
 };
 
 /// A share of the objects.
 struct LinearOctree::Block {
     std::size_t begin = 0, end = 0;
     bool valid = true;
-    std::deque<Crossing> crossings;        // by position
+    std::deque<Crossing> crossings;
     std::vector<std::uint64_t> inside_at;  // per node: first the number of entries, after merge the next one's place
     std::vector<std::uint64_t> crossing_at;
 };
@@ -195,8 +197,9 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
         for (const std::uint32_t i : std::span(crossers).first(crossing)) {
             for_each_octant(directory_, cells[i], [&](NodeIndex node, unsigned begins) {
                 ++block.crossing_at[node];
-                block.crossings.emplace_back(begin + i, node, begins);
+                block.crossings.emplace_back(node, begins);
             });
+            block.crossings.back().set_last();
         }
     }
 }
@@ -218,11 +221,13 @@ void LinearOctree::merge(std::span<Block> blocks) {
 void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token stop) {
     const std::size_t outside = nodes().size();
     std::array<Entry, batch_size> batch;
+    std::array<std::uint32_t, batch_size> crossers;
     auto crossing = block.crossings.begin();
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
         if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
         (void)source.load(begin, entries);
+        std::size_t crossing_count = 0;
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const NodeIndex slot = homes_[begin + i];
             std::uint64_t& at = block.inside_at[slot];
@@ -231,11 +236,16 @@ void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token
                 entries_[std::size_t(at)].mask = mask_in(nodes()[slot], entries[i].mask, 0);
             }
             at += slot != outside ? 1 : 0;
+            crossers[crossing_count] = std::uint32_t(i);
+            crossing_count += slot != outside ? 0 : 1;
         }
-        for (; crossing != block.crossings.end() && crossing->position() < begin + entries.size(); ++crossing) {
-            Entry& entry = entries_[std::size_t(block.crossing_at[crossing->node()]++)];
-            entry = entries[crossing->position() - begin];
-            entry.mask = mask_in(nodes()[crossing->node()], entry.mask, crossing->begins());
+        for (const std::uint32_t i : std::span(crossers).first(crossing_count)) {
+            for (bool last = false; !last; ++crossing) {
+                last = crossing->last();
+                Entry& entry = entries_[std::size_t(block.crossing_at[crossing->node()]++)];
+                entry = entries[i];
+                entry.mask = mask_in(nodes()[crossing->node()], entry.mask, crossing->begins());
+            }
         }
     }
     block.crossings.clear();

@@ -106,59 +106,67 @@ public:
     NodeScan(const ScanContext& context, Executor& executor)
         : context_(context), executor_(executor), order_(context.stop) {}
 
+    /// Pairs of the octant's own entries, and of these with what was handed down.
     void scan(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
-        if (context_.source.join()) return scan_join(own, handed);
         const EntryList own_list{own}, handed_list{handed};
-        const bool small = own.size() <= hot_node;
-        if (small) order_.lay_out(own_list, axis, own_set_);
-        if (own.size() > 1 && !(small && swept({{own_set_, own_set_, SweepKind::self}}, own.size()))) {
+        const bool laid_out = lay_out(own_list, axis, own_set_);
+        if (own.size() > 1 && !(laid_out && swept({{own_set_, own_set_, SweepKind::self}}))) {
             crowded({own_list, own_list, true, {}});
         }
-        if (handed.empty()) return;
-        const bool both_small = small && handed.size() <= hot_node;
-        if (both_small) order_.lay_out(handed_list, axis, handed_set_);
-        if (!(both_small &&
-              swept({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}},
-                    own.size() + handed.size()))) {
+        if (!handed.empty() && !(laid_out && lay_out(handed_list, axis, handed_set_) && swept_between())) {
             crowded({handed_list, own_list, false, {}});
         }
     }
 
+    /// The same for pairs between the sets of a join: the sets are never swept against themselves.
+    void scan_join(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
+        const EntryList own_first = of_set(own, first_set, positions_[0]);
+        const EntryList own_second = of_set(own, second_set, positions_[1]);
+        join(own_first, own_second, axis);
+        join(of_set(handed, first_set, positions_[2]), own_second, axis);
+        join(of_set(handed, second_set, positions_[3]), own_first, axis);
+    }
+
 private:
-    /// Sweeps if that tests few boxes for each of `size`.
-    bool swept(std::initializer_list<Sweep> sweeps, std::size_t size) {
+    static EntryList of_set(std::span<const Entry> entries, std::uint32_t set, std::vector<std::uint32_t>& positions) {
+        positions.clear();
+        for (std::uint32_t i = 0; i < entries.size(); ++i) {
+            if (entries[i].mask & set) positions.push_back(i);
+        }
+        return {entries, positions, false};
+    }
+
+    void join(const EntryList& rows, const EntryList& columns, unsigned axis) {
+        if (rows.size() == 0 || columns.size() == 0) return;
+        if (lay_out(rows, axis, handed_set_) && lay_out(columns, axis, own_set_) && swept_between()) return;
+        crowded({rows, columns, false, {}});
+    }
+
+    bool lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
+        if (list.size() > hot_node) return false;
+        order_.lay_out(list, axis, set);
+        return true;
+    }
+
+    bool swept_between() {
+        return swept({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
+    }
+
+    /// Sweeps if that tests few boxes for each.
+    bool swept(std::initializer_list<Sweep> sweeps) {
         std::uint64_t tests = 0;
-        for (const Sweep& sweep : sweeps) tests += sampled_windows(sweep);
-        if (tests > good_window * size) return false;
+        std::size_t rows = 0;
+        for (const Sweep& sweep : sweeps) {
+            tests += sampled_windows(sweep);
+            rows += sweep.rows.size();
+        }
+        if (tests > good_window * rows) return false;
         executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
             PairMaker maker(context_, writer);
             for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
             maker.flush();
         });
         return true;
-    }
-
-    /// Pairs between the sets of a join only: the sets are never swept against themselves.
-    void scan_join(std::span<const Entry> own, std::span<const Entry> handed) {
-        const auto of_set = [](std::span<const Entry> entries, std::uint32_t set) {
-            std::vector<std::uint32_t> positions;
-            for (std::uint32_t i = 0; i < entries.size(); ++i) {
-                if (entries[i].mask & set) positions.push_back(i);
-            }
-            return positions;
-        };
-        const auto own_first = of_set(own, first_set);
-        const auto own_second = of_set(own, second_set);
-        const auto handed_first = of_set(handed, first_set);
-        const auto handed_second = of_set(handed, second_set);
-        if (!own_first.empty() && !own_second.empty()) {
-            crowded({{own, own_first, false}, {own, own_second, false}, false, {}});
-        }
-        for (const auto& [above, below] :
-             {std::pair{&handed_first, &own_second}, std::pair{&handed_second, &own_first}}) {
-            if (above->empty() || below->empty()) continue;
-            crowded({{handed, *above, false}, {own, *below, false}, false, {}});
-        }
     }
 
     /// A join too costly for the quick way. Parts of one shape are joined on their own: boxes as long as the octant
@@ -209,6 +217,7 @@ private:
     SweepOrder order_;
     SweepSet own_set_;
     SweepSet handed_set_;
+    std::array<std::vector<std::uint32_t>, 4> positions_;  // of a node's entries of each set
 };
 
 /// Runs of nodes in pre-order that make up one share each; a large node is a share alone.
@@ -246,7 +255,9 @@ void scan(const LinearOctree& octree, const ScanContext& context, Executor& exec
         for (NodeIndex node = share.begin; node < share.end; ++node) {
             const Handed& above = handed.at(node);
             const auto own = octree.entries(node);
-            if (!own.empty()) nodes.scan(own, above, octree.frame().long_axis());
+            if (own.empty()) continue;
+            const unsigned axis = octree.frame().long_axis();
+            context.source.join() ? nodes.scan_join(own, above, axis) : nodes.scan(own, above, axis);
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));

@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t most_buckets = 4096;  // so that they stay in the first cache
 constexpr std::size_t few = 24;             // boxes: so many at most are sorted by comparison
 constexpr std::size_t in_cache = 1 << 13;   // boxes: so many at most are sorted by buckets
-constexpr std::size_t most_sampled = 4096;  // boxes of a list that are looked at to measure it
 constexpr std::size_t sampled_rows = 16;    // each against all sampled columns
 constexpr std::size_t sampled_stride = 13;  // rows of a set that is laid out
 
