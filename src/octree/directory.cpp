@@ -131,6 +131,14 @@ NodeIndex Directory::grow(const Growth& growth, const Node& start, Boxes sample,
     return index;
 }
 
+/// A table of octants with 2^shift cells an axis, from `first` on; it begins at `begin` of table_.
+struct Directory::Table {
+    Cell first;
+    std::array<std::uint32_t, 3> sizes;
+    unsigned shift;
+    std::size_t begin;
+};
+
 void Directory::make_table(const Frame& frame) {
     unsigned depth = 0;
     for (const Node& node : nodes_) depth = std::max(depth, node.level);
@@ -143,19 +151,20 @@ void Directory::make_table(const Frame& frame) {
     table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};
     table_shift_ = deepest - level;
     table_.resize(std::size_t(table_size_[0]) * table_size_[1] * table_size_[2]);
-    fill_table(0, {}, table_size_, table_shift_, 0);
+    fill_table(0, {{}, table_size_, table_shift_, 0});
 }
 
-/// Fills the table of octants of 2^shift cells that begins at `begin`, within the node `from` at the cell `first`.
-void Directory::fill_table(NodeIndex from, const Cell& first, std::array<std::uint32_t, 3> sizes, unsigned shift,
-                           std::size_t begin) {
-    std::size_t at = begin;
-    for (std::uint32_t z = 0; z < sizes[2]; ++z) {
-        for (std::uint32_t y = 0; y < sizes[1]; ++y) {
-            for (std::uint32_t x = 0; x < sizes[0]; ++x, ++at) {
-                const Cell cell = {first[0] + (x << shift), first[1] + (y << shift), first[2] + (z << shift), 0};
+/// Fills a table all of which lies within the octant `from`, and further ones where needed.
+void Directory::fill_table(NodeIndex from, const Table& table) {
+    const unsigned level = deepest - table.shift;
+    std::size_t at = table.begin;
+    for (std::uint32_t z = 0; z < table.sizes[2]; ++z) {
+        for (std::uint32_t y = 0; y < table.sizes[1]; ++y) {
+            for (std::uint32_t x = 0; x < table.sizes[0]; ++x, ++at) {
+                const Cell cell = {table.first[0] + (x << table.shift), table.first[1] + (y << table.shift),
+                                   table.first[2] + (z << table.shift), 0};
                 NodeIndex node = from;
-                while (nodes_[node].level < deepest - shift && !nodes_[node].leaf()) {
+                while (nodes_[node].level < level && !nodes_[node].leaf()) {
                     node = child(nodes_[node], digit_at(cell, nodes_[node].level));
                 }
                 if (nodes_[node].leaf()) {
@@ -166,7 +175,7 @@ void Directory::fill_table(NodeIndex from, const Cell& first, std::array<std::ui
                 table_.resize(next + (std::size_t(1) << 3 * table_levels));
                 table_[at] = further + std::uint32_t(next);
                 constexpr std::uint32_t side = 1u << table_levels;
-                fill_table(node, cell, {side, side, side}, shift - std::min(shift, table_levels), next);
+                fill_table(node, {cell, {side, side, side}, table.shift - std::min(table.shift, table_levels), next});
             }
         }
     }

@@ -90,8 +90,8 @@ private:
     struct Growth;
     NodeIndex grow(const Growth& growth, const Node& start, Boxes sample, Boxes handed);
     void make_table(const Frame& frame);
-    void fill_table(NodeIndex from, const Cell& first, std::array<std::uint32_t, 3> sizes, unsigned shift,
-                    std::size_t begin);
+    struct Table;
+    void fill_table(NodeIndex from, const Table& table);
 
     std::vector<Node> nodes_;
     std::vector<std::array<NodeIndex, 8>> children_;
