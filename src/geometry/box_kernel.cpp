@@ -113,7 +113,8 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
         const auto finite = hn::And(hn::Le(hn::Abs(low), largest), hn::Le(hn::Abs(high), largest));
         good = hn::And(good, hn::Or(hn::And(finite, hn::Le(low, high)), hn::Not(hn::FirstN(d, 3))));
         const auto outward = [&](auto bound, auto moved) HWY_ATTR {
-            const auto error = hn::Mul(hn::Add(hn::Add(hn::Abs(bound), hn::Abs(origin)), widening), part);
+            const auto error = hn::Add(hn::Add(hn::Mul(hn::Abs(bound), part), hn::Mul(hn::Abs(origin), part)),
+                                       hn::Mul(widening, part));
             const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
             return round_up_simd(hn::IfThenElse(hn::Gt(widening, too_wide), everything, hn::Add(moved, extra)));
         };

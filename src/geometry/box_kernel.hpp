@@ -61,7 +61,8 @@ struct OutwardRounding {
 private:
     float outward(double sign, double bound, unsigned axis, double widening) const {
         if (widening > most_widening) return FLT_MAX;
-        const double error = (std::abs(bound) + std::abs(origin[axis]) + widening) * error_part;
+        // Each part on its own: their sum may be beyond float64.
+        const double error = std::abs(bound) * error_part + std::abs(origin[axis]) * error_part + widening * error_part;
         const double extra = widening > 0 ? widening + error : 0;
         return round_up(sign * (bound - origin[axis]) + extra);
     }
