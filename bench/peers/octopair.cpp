@@ -1,6 +1,8 @@
 // Ours: the timed call is find_pairs in octal order into a reused list; besides, ascending order and counting.
 #include "octopair/octopair.hpp"
 
+#include <algorithm>
+
 #include "peers/contender.hpp"
 
 namespace octopair::bench {
@@ -11,12 +13,15 @@ class Ours : public Contender {
 public:
     Ours(unsigned threads, Order order) : engine_(make_local_engine(threads)) { options_.order = order; }
 
-    void run(std::span<const Box3f> boxes) override { (void)engine_->find_pairs(Objects{boxes}, pairs_, options_); }
+    void run(std::span<const Box3f> boxes) override { find(Objects{boxes}); }
     Found found() const override {
         Found found;
         for (const auto chunk : pairs_.chunks()) add(found, chunk);
         return found;
     }
+
+protected:
+    void find(const Objects& objects) { (void)engine_->find_pairs(objects, pairs_, options_); }
 
 private:
     std::unique_ptr<Engine> engine_;
@@ -36,22 +41,18 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
-/// The same boxes in float64, converted before the run.
-class OursWide : public Contender {
+/// The same boxes in float64, converted on the first run.
+class OursWide : public Ours {
 public:
-    explicit OursWide(unsigned threads) : engine_(make_local_engine(threads)) { options_.order = Order::octal; }
+    explicit OursWide(unsigned threads) : Ours(threads, Order::octal) {}
     void run(std::span<const Box3f> boxes) override {
-        if (wide_.size() != boxes.size()) widen(boxes);
-        (void)engine_->find_pairs(Objects{std::span<const Box3d>(wide_)}, pairs_, options_);
-    }
-    Found found() const override {
-        Found found;
-        for (const auto chunk : pairs_.chunks()) add(found, chunk);
-        return found;
+        if (narrow_.data() != boxes.data() || narrow_.size() != boxes.size()) widen(boxes);
+        find(Objects{std::span<const Box3d>(wide_)});
     }
 
 private:
     void widen(std::span<const Box3f> boxes) {
+        narrow_ = boxes;
         wide_.resize(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             std::copy_n(boxes[i].min, 3, wide_[i].min);
@@ -59,9 +60,7 @@ private:
         }
     }
 
-    std::unique_ptr<Engine> engine_;
-    Options options_;
-    PairList pairs_;
+    std::span<const Box3f> narrow_;
     std::vector<Box3d> wide_;
 };
 

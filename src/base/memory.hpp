@@ -28,6 +28,7 @@ public:
     void resize_discard(std::size_t size) {
         if (size > capacity()) {
             memory_.reset();
+            size_ = 0;
             memory_ = {static_cast<T*>(allocate_pages(size * sizeof(T))), Free{size}};
         }
         size_ = size;

@@ -51,12 +51,6 @@ bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
 
 #endif
 
-template <typename Real>
-Box3d wide(const Box<Real>& box) {
-    return {{double(box.min[0]), double(box.min[1]), double(box.min[2])},
-            {double(box.max[0]), double(box.max[1]), double(box.max[2])}};
-}
-
 /// The specification, a box at a time.
 template <typename Real>
 bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Entry& out) {

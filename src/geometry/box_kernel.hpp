@@ -25,6 +25,12 @@ bool is_box(const Box<Real>& box) {
     return good;
 }
 
+template <typename Real>
+Box3d wide(const Box<Real>& box) {
+    return {{double(box.min[0]), double(box.min[1]), double(box.min[2])},
+            {double(box.max[0]), double(box.max[1]), double(box.max[2])}};
+}
+
 inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
 
 /// The smallest float32 >= value, and no higher than the highest finite one; 0 has no sign.

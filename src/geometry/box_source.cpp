@@ -25,16 +25,7 @@ std::string number_text(double value) {
 bool holds_float32(const Objects& set) { return std::holds_alternative<std::span<const Box3f>>(set.boxes); }
 
 Box3d wide_box(const Objects& set, std::size_t index) {
-    return std::visit(
-        [&](auto boxes) {
-            Box3d wide;
-            for (int axis = 0; axis < 3; ++axis) {
-                wide.min[axis] = double(boxes[index].min[axis]);
-                wide.max[axis] = double(boxes[index].max[axis]);
-            }
-            return wide;
-        },
-        set.boxes);
+    return std::visit([&](auto boxes) { return wide(boxes[index]); }, set.boxes);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_samples = 4096;
+constexpr std::size_t most_samples = 4096;  // of the sample: enough for quantiles
 
 /// How far the bulk of the objects reaches on one axis, and how long a typical one is.
 struct AxisFit {

@@ -21,6 +21,14 @@ bool oriented(const Entry& row, const Entry& column, const Orientation& orientat
     return true;
 }
 
+/// Clears the bits of hits for which keep(hit, column) is false.
+template <typename Keep>
+void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
+    for (; asked != 0; asked &= asked - 1) {
+        if (!keep(hit.first + unsigned(std::countr_zero(asked)))) hit.bits &= ~(asked & -asked);
+    }
+}
+
 }  // namespace
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
@@ -34,18 +42,6 @@ void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
         if (cursor.row < cursor.row_end) throw_if_stopped(context_.stop);
     }
 }
-
-namespace {
-
-/// Clears the bits of hits for which keep(hit, column) is false.
-template <typename Keep>
-void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
-    for (; asked != 0; asked &= asked - 1) {
-        if (!keep(hit.first + unsigned(std::countr_zero(asked)))) hit.bits &= ~(asked & -asked);
-    }
-}
-
-}  // namespace
 
 void PairMaker::drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation) {
     for (HitMask& hit : hits) {

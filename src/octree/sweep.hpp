@@ -19,7 +19,8 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "geometry/box_source.hpp"
+#include "geometry/entry.hpp"
+#include "octopair/objects.hpp"
 #include "octree/sort_key.hpp"
 
 namespace octopair {

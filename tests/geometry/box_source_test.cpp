@@ -78,10 +78,7 @@ void check_rounding(const OutwardRounding& rounding, bool padded) {
     std::vector<Entry> entries(boxes.size());
     ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        Box3d wide;
-        std::copy_n(boxes[i].min, 3, wide.min);
-        std::copy_n(boxes[i].max, 3, wide.max);
-        const Entry expected = rounding.entry(wide, padded ? padding[i] : 0);
+        const Entry expected = rounding.entry(wide(boxes[i]), padded ? padding[i] : 0);
         ASSERT_EQ(std::memcmp(&entries[i], &expected, 6 * sizeof(float)), 0) << i;
     }
     boxes.back().max[1] = std::numeric_limits<Real>::infinity();

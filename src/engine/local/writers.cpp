@@ -1,8 +1,6 @@
 #include "engine/local/writers.hpp"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "octopair/error.hpp"
 
