@@ -116,9 +116,13 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
+std::span<const Box3f> BoxSource::plain(std::size_t begin, std::size_t count) const {
+    if (!exact_ || join()) return {};
+    return std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count);
+}
+
 void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
-    if (exact_ && !join()) {
-        const auto boxes = std::get<std::span<const Box3f>>(first_->boxes);
+    if (const auto boxes = plain(0, size()); !boxes.empty()) {
         for (std::size_t i = 0; i < out.size(); ++i) std::memcpy(&out[i], &boxes[positions[i]], sizeof(Box3f));
         return;
     }

@@ -25,6 +25,11 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes entries [begin, begin + out.size()); false if one of them is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
+    /// The boxes [begin, begin + count), unchecked, if the entries have their bounds as they are; otherwise empty.
+    virtual std::span<const Box3f> plain(std::size_t begin, std::size_t count) const {
+        (void)begin, (void)count;
+        return {};
+    }
     /// Writes the bounds of the entries at `positions`, unchecked.
     virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
 };
@@ -36,6 +41,7 @@ public:
 
     std::size_t size() const override { return first_size_ + second_size_; }
     bool load(std::size_t begin, std::span<Entry> out) const override;
+    std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override;
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
     bool join() const { return second_ != nullptr; }

@@ -131,6 +131,33 @@ NodeIndex Directory::grow(const Growth& growth, const Node& start, Boxes sample,
     return index;
 }
 
+void Directory::leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const {
+    // One table after the other for all boxes, so that no box waits for another's and none is mispredicted.
+    std::array<std::uint32_t, 256> waiting;
+    for (std::size_t begin = 0; begin < boxes.size(); begin += waiting.size()) {
+        const auto some = boxes.subspan(begin, std::min(waiting.size(), boxes.size() - begin));
+        Leaf* const out = leaves.data() + begin;
+        std::size_t count = 0;
+        for (std::uint32_t i = 0; i < some.size(); ++i) {
+            out[i] = Leaf(first_element(some[i].lo));
+            waiting[count] = i;
+            count += out[i].element_ >= further ? 1 : 0;
+        }
+        for (unsigned shift = table_shift_; count > 0;) {
+            unsigned below = shift;
+            std::size_t left = 0;
+            for (const std::uint32_t i : std::span(waiting).first(count)) {
+                below = shift;
+                out[i] = Leaf(further_element(out[i].element_, some[i].lo, below));
+                waiting[left] = i;
+                left += out[i].element_ >= further ? 1 : 0;
+            }
+            shift = below;
+            count = left;
+        }
+    }
+}
+
 /// A table of octants with 2^shift cells an axis, from `first` on; it begins at `begin` of table_.
 struct Directory::Table {
     Cell first;

@@ -55,28 +55,30 @@ public:
     NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
 
     /// A leaf and its level.
-    struct Leaf {
-        NodeIndex node;
-        unsigned level;
+    class Leaf {
+    public:
+        Leaf() = default;
+        NodeIndex node() const { return element_ & most_nodes; }
+        unsigned level() const { return element_ >> node_bits; }
+
+    private:
+        friend Directory;
+        explicit Leaf(std::uint32_t element) : element_(element) {}
+        std::uint32_t element_;
     };
     /// The leaf that holds the cell.
     Leaf leaf(const Cell& cell) const {
         unsigned shift = table_shift_;
-        std::uint32_t found =
-            table_[((cell[2] >> shift) * table_size_[1] + (cell[1] >> shift)) * table_size_[0] + (cell[0] >> shift)];
-        while (found >= further) {
-            const unsigned bits = std::min(shift, table_levels);
-            const unsigned mask = (1u << bits) - 1;
-            shift -= bits;
-            const Cell at = {cell[0] >> shift & mask, cell[1] >> shift & mask, cell[2] >> shift & mask, 0};
-            found = table_[found - further + ((at[2] << table_levels | at[1]) << table_levels | at[0])];
-        }
-        return {found & most_nodes, found >> node_bits};
+        std::uint32_t found = first_element(cell);
+        while (found >= further) found = further_element(found, cell, shift);
+        return Leaf(found);
     }
+    /// Of many at once: the leaf that each box begins in.
+    void leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const;
     /// The leaf itself, or the octant of `level` that holds it.
     NodeIndex at_most(const Leaf& leaf, unsigned level) const {
-        NodeIndex node = leaf.node;
-        for (unsigned at = leaf.level; at > level; --at) node = nodes_[node].parent;
+        NodeIndex node = leaf.node();
+        for (unsigned at = leaf.level(); at > level; --at) node = nodes_[node].parent;
         return node;
     }
 
@@ -102,6 +104,18 @@ private:
     static constexpr unsigned node_bits = 26;
     static constexpr std::uint32_t most_nodes = (std::uint32_t(1) << node_bits) - 1;
     static constexpr std::uint32_t further = (deepest + 1) << node_bits;
+    std::uint32_t first_element(const Cell& cell) const {
+        const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;
+        return table_[(z * table_size_[1] + y) * table_size_[0] + x];
+    }
+    /// In the table that `element` tells, whose octants have 2^shift cells an axis afterwards.
+    std::uint32_t further_element(std::uint32_t element, const Cell& cell, unsigned& shift) const {
+        const unsigned bits = std::min(shift, table_levels);
+        const unsigned mask = (1u << bits) - 1;
+        shift -= bits;
+        const std::uint32_t x = cell[0] >> shift & mask, y = cell[1] >> shift & mask, z = cell[2] >> shift & mask;
+        return table_[element - further + ((z << table_levels | y) << table_levels | x)];
+    }
     std::vector<std::uint32_t> table_;
     std::array<std::uint32_t, 3> table_size_ = {1, 1, 1};
     unsigned table_shift_ = deepest;

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "geometry/entry.hpp"
+#include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
 
 namespace octopair {
@@ -40,6 +41,7 @@ inline unsigned natural_level(const CellBox& box) {
 /// The map: the specification of what the kernel does with many boxes at once.
 struct FrameMap {
     static constexpr float end = float(cells_per_axis - 1);
+    static constexpr float whole = 0x1p23f;  // from here on numbers are whole: adding it rounds, and shows the digits
     std::array<float, 4> origin = {0, 0, 0, 0};
     std::array<float, 4> scale = {1, 1, 1, 0};
     std::array<float, 4> last = {end, end, end, 0};
@@ -48,7 +50,8 @@ struct FrameMap {
         // Clamped before the conversion: infinity (of an overflowing difference) is a border cell like any far value.
         const float scaled = (coordinate - origin[axis]) * scale[axis];
         const float below = scaled > 0.0f ? scaled : 0.0f;
-        return std::uint32_t(below < last[axis] ? below : last[axis]);
+        const float clamped = below < last[axis] ? below : last[axis];
+        return std::bit_cast<std::uint32_t>(clamped + whole) & (cells_per_axis - 1);
     }
 };
 
@@ -60,11 +63,12 @@ public:
 
     CellBox cells(const Entry& entry) const {
         CellBox box;
-        cells({&entry, 1}, {&box, 1});
+        cells(std::span(&entry, 1), {&box, 1});
         return box;
     }
-    /// Of many at once; entries must be valid boxes (frame_kernel.cpp).
+    /// Of many at once (frame_kernel.cpp). Of what is not a valid box, some cells with lo <= hi.
     void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
+    void cells(std::span<const Box3f> bounds, std::span<CellBox> boxes) const;
 
     const FrameMap& map() const { return map_; }
     /// The axis that octants are long on and are swept along first.

@@ -1,5 +1,7 @@
 #include "octree/linear_octree.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,6 +20,8 @@ constexpr std::size_t most_samples = 1 << 21;    // no more than these
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
 constexpr std::size_t batch_size = 256;          // objects loaded at a time: they stay in the first cache
+constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
+constexpr std::ptrdiff_t prefetched_ghosts = 8;  // and ghosts
 
 /// Whether a box lies within the octant of `level` that its low corner lies in.
 bool within(const CellBox& box, unsigned level) {
@@ -50,24 +54,24 @@ Cell corner_of(const CellBox& box, unsigned corner) {
     return cell;
 }
 
-/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants. At its natural level
-/// and above, the corners of a box reach all octants that it touches; where several lie in one coarser leaf, the lowest
-/// counts.
+/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
+/// begins in; `home` is the leaf it begins in. At its natural level and above, the corners of a box reach all octants that
+/// it touches; where several lie in one coarser leaf, the lowest counts.
 template <typename Place>
-void for_each_octant(const Directory& directory, const CellBox& box, Place&& place) {
+void for_each_octant(const Directory& directory, const CellBox& box, Directory::Leaf home, Place&& place) {
     const unsigned natural = natural_level(box);
     std::array<std::pair<unsigned, NodeIndex>, 8> corners;
     std::size_t count = 0;
     // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
-    unsigned level = std::min(natural, directory.leaf(box.lo).level);
+    unsigned level = std::min(natural, home.level());
     for (bool again = true; again;) {
         const unsigned crossed = crossed_axes(box, level);
         unsigned finest = level;
         unsigned corner = 0;
         count = 0;
         do {
-            const Directory::Leaf leaf = directory.leaf(corner_of(box, corner));
-            finest = std::max(finest, std::min(natural, leaf.level));
+            const Directory::Leaf leaf = corner == 0 ? home : directory.leaf(corner_of(box, corner));
+            finest = std::max(finest, std::min(natural, leaf.level()));
             corners[count++] = {corner, directory.at_most(leaf, natural)};
             corner = (corner - crossed) & crossed;  // the next subset of `crossed`
         } while (corner != 0);
@@ -91,10 +95,10 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
 
 }  // namespace
 
-/// An entry of a box that crosses octants. Those of a box stand together, boxes ascending.
-class Crossing {
+/// An entry of a box beyond the one in its home. Those of a box stand together, boxes ascending.
+class Ghost {
 public:
-    Crossing(NodeIndex node, unsigned begins) : packed_(node << 4 | begins) {}
+    Ghost(NodeIndex node, unsigned begins) : packed_(node << 4 | begins) {}
 
     NodeIndex node() const { return packed_ >> 4; }
     /// The class bits.
@@ -112,9 +116,9 @@ private:
 struct LinearOctree::Block {
     std::size_t begin = 0, end = 0;
     bool valid = true;
-    std::deque<Crossing> crossings;
-    std::vector<std::uint64_t> inside_at;  // per node: first the number of entries, after merge the next one's place
-    std::vector<std::uint64_t> crossing_at;
+    std::deque<Ghost> ghosts;
+    std::vector<std::uint64_t> home_at;  // per node: first the number of entries, after merge the next one's place
+    std::vector<std::uint64_t> ghost_at;
 };
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
@@ -130,13 +134,12 @@ void LinearOctree::build(const EntrySource& source, Executor& executor, std::sto
     }
     executor.for_each(blocks.size(), [&](std::size_t i) { encode(source, blocks[i], stop); });
     seconds_.encode = seconds_since(clock);
-    const auto invalid = std::find_if(blocks.begin(), blocks.end(), [](const Block& block) { return !block.valid; });
-    if (invalid != blocks.end()) throw Invalid{invalid->begin};
-
     merge(blocks);
     seconds_.merge = seconds_since(clock);
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) { sort(source, blocks[i], stop); });
+    const auto invalid = std::find_if(blocks.begin(), blocks.end(), [](const Block& block) { return !block.valid; });
+    if (invalid != blocks.end()) throw Invalid{invalid->begin};
     if (crowded()) homes_ = {};  // the scan needs the memory more
     seconds_.sort = seconds_since(clock);
 }
@@ -164,42 +167,47 @@ std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
     std::vector<std::size_t> positions(sample.size());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
     std::vector<Entry> sampled(sample.size());
-    source.pick(positions, sampled);  // what is invalid is found by encode, with its position
+    source.pick(positions, sampled);  // what is invalid is found by sort, with its position
     return sampled;
 }
 
 void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_token stop) {
-    const std::size_t node_count = nodes().size();
-    block.inside_at.assign(node_count + 1, 0);  // the last one counts the boxes that cross, which are not inside any
-    block.crossing_at.assign(node_count, 0);
+    const auto above = NodeIndex(nodes().size());
+    block.home_at.assign(above + 1, 0);  // the last one counts the boxes too large for the leaf they begin in
+    block.ghost_at.assign(above, 0);
     std::array<Entry, batch_size> batch;
     std::array<CellBox, batch_size> cells;
+    std::array<Directory::Leaf, batch_size> leaves;
     std::array<std::uint32_t, batch_size> crossers;
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
         if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
-        const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
-        if (!source.load(begin, entries)) {
-            block.valid = false;
-            return;
+        const std::size_t count = std::min(batch_size, block.end - begin);
+        if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
+            frame_.cells(boxes, cells);
+        } else {
+            const std::span<Entry> entries = std::span(batch).first(count);
+            (void)source.load(begin, entries);
+            frame_.cells(entries, cells);
         }
-        frame_.cells(entries, cells);
+        directory_.leaves(std::span(cells).first(count), leaves);
         std::size_t crossing = 0;
-        for (std::size_t i = 0; i < entries.size(); ++i) {
-            const Directory::Leaf home = directory_.leaf(cells[i].lo);
+        for (std::size_t i = 0; i < count; ++i) {
             // No branch on whether a box crosses: mispredicting it cost more than everything else here.
-            const bool inside = within(cells[i], home.level);
-            const NodeIndex slot = inside ? home.node : NodeIndex(node_count);
-            homes_[begin + i] = slot;
-            ++block.inside_at[slot];
+            const bool crosses = !within(cells[i], leaves[i].level());
+            const NodeIndex node = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].node();
+            homes_[begin + i] = Home(node, crosses);
+            ++block.home_at[node];
             crossers[crossing] = std::uint32_t(i);
-            crossing += inside ? 0 : 1;
+            crossing += crosses ? 1 : 0;
         }
         for (const std::uint32_t i : std::span(crossers).first(crossing)) {
-            for_each_octant(directory_, cells[i], [&](NodeIndex node, unsigned begins) {
-                ++block.crossing_at[node];
-                block.crossings.emplace_back(node, begins);
+            const NodeIndex home = homes_[begin + i].node();
+            for_each_octant(directory_, cells[i], leaves[i], [&](NodeIndex node, unsigned begins) {
+                if (node == home) return;
+                ++block.ghost_at[node];
+                block.ghosts.emplace_back(node, begins);
             });
-            block.crossings.back().set_last();
+            block.ghosts.back().set_last();
         }
     }
 }
@@ -210,45 +218,54 @@ void LinearOctree::merge(std::span<Block> blocks) {
     const auto place = [&](std::uint64_t& count) { at += std::exchange(count, at); };
     for (std::size_t node = 0; node < nodes().size(); ++node) {
         begins_[node] = at;
-        for (Block& block : blocks) place(block.inside_at[node]);
-        for (Block& block : blocks) place(block.crossing_at[node]);
+        for (Block& block : blocks) place(block.home_at[node]);
+        for (Block& block : blocks) place(block.ghost_at[node]);
     }
     begins_.back() = at;
-    // Beyond the entries each block has one to write those to that are not inside an octant.
-    for (Block& block : blocks) block.inside_at.back() = at++;
+    // Beyond the entries each block has one to write the boxes to that are too large for a leaf.
+    for (Block& block : blocks) block.home_at.back() = at++;
 }
 
 void LinearOctree::sort(const EntrySource& source, Block& block, std::stop_token stop) {
-    const std::size_t outside = nodes().size();
+    const auto above = NodeIndex(nodes().size());
     std::array<Entry, batch_size> batch;
     std::array<std::uint32_t, batch_size> crossers;
-    auto crossing = block.crossings.begin();
+    auto ghost = block.ghosts.begin();
     for (std::size_t begin = block.begin; begin < block.end; begin += batch_size) {
         if ((begin - block.begin) % check_interval == 0) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, block.end - begin));
-        (void)source.load(begin, entries);
-        std::size_t crossing_count = 0;
-        for (std::size_t i = 0; i < entries.size(); ++i) {
-            const NodeIndex slot = homes_[begin + i];
-            std::uint64_t& at = block.inside_at[slot];
-            entries_[std::size_t(at)] = entries[i];
-            if ((entries[i].mask & begins_before) != 0 && slot != outside) {
-                entries_[std::size_t(at)].mask = mask_in(nodes()[slot], entries[i].mask, 0);
-            }
-            at += slot != outside ? 1 : 0;
-            crossers[crossing_count] = std::uint32_t(i);
-            crossing_count += slot != outside ? 0 : 1;
+        if (!source.load(begin, entries)) {
+            block.valid = false;
+            return;
         }
-        for (const std::uint32_t i : std::span(crossers).first(crossing_count)) {
-            for (bool last = false; !last; ++crossing) {
-                last = crossing->last();
-                Entry& entry = entries_[std::size_t(block.crossing_at[crossing->node()]++)];
+        const auto homes = homes_.span().subspan(begin, entries.size());
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const Home soon = homes[std::min(i + prefetched, homes.size() - 1)];
+            hwy::Prefetch(&entries_[std::size_t(block.home_at[soon.node()])]);
+            const NodeIndex node = homes[i].node();
+            std::uint64_t& at = block.home_at[node];
+            entries_[std::size_t(at)] = entries[i];
+            if ((entries[i].mask & begins_before) != 0 && node != above) {
+                entries_[std::size_t(at)].mask = mask_in(nodes()[node], entries[i].mask, 0);
+            }
+            at += node != above ? 1 : 0;
+            crossers[crossing] = std::uint32_t(i);
+            crossing += homes[i].crosses() ? 1 : 0;
+        }
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            for (bool last = false; !last; ++ghost) {
+                last = ghost->last();
+                if (block.ghosts.end() - ghost > prefetched_ghosts) {
+                    hwy::Prefetch(&entries_[std::size_t(block.ghost_at[ghost[prefetched_ghosts].node()])]);
+                }
+                Entry& entry = entries_[std::size_t(block.ghost_at[ghost->node()]++)];
                 entry = entries[i];
-                entry.mask = mask_in(nodes()[crossing->node()], entry.mask, crossing->begins());
+                entry.mask = mask_in(nodes()[ghost->node()], entry.mask, ghost->begins());
             }
         }
     }
-    block.crossings.clear();
+    block.ghosts.clear();
 }
 
 }  // namespace octopair

@@ -3,8 +3,8 @@
 // Invariants
 //   Every octant that a box touches has an entry of it, in a leaf or, where the box is too large for at most eight
 //   smaller octants, in the octant above (its natural level): what is stored there occupies all below.
-//   entries(node) lists first the boxes that lie within the octant, then those that cross its border, each ascending by
-//   object; class bits are set as entry.hpp says.
+//   entries(node) lists first the boxes whose home it is, the leaf that they begin in, then the ghosts of those that reach
+//   into it or are too large for a leaf, each ascending by object; class bits are set as entry.hpp says.
 //   All of it is a function of the source alone; blocks of objects are only the shares of work.
 //
 // Steps (each over ranges, so that threads, processes and ranks can share them out)
@@ -30,6 +30,18 @@ namespace octopair {
 
 struct BuildSeconds {
     double encode = 0, sort = 0, merge = 0;
+};
+
+/// The leaf that a box begins in, or none if it is too large for it, and whether it reaches into further ones.
+class Home {
+public:
+    Home() = default;
+    Home(NodeIndex node, bool crosses) : packed_(node << 1 | unsigned(crosses)) {}
+    NodeIndex node() const { return packed_ >> 1; }
+    bool crosses() const { return (packed_ & 1) != 0; }
+
+private:
+    std::uint32_t packed_;
 };
 
 class LinearOctree {
@@ -66,7 +78,7 @@ private:
     Directory directory_{Frame{}, {}, 0, {}};
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
-    Buffer<NodeIndex> homes_;  // of each object; used while building
+    Buffer<Home> homes_;  // of each object; used while building
     BuildSeconds seconds_;
 };
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -179,12 +181,35 @@ TEST(Frame, TheKernelFollowsTheMap) {
         entry.mask = 0;
     }
     const Frame frame = Frame::fit(std::span(entries).first(50), 1000);
-    std::vector<CellBox> boxes(entries.size());
+    std::vector<Box3f> plain(entries.size());
+    for (std::size_t i = 0; i < plain.size(); ++i) std::memcpy(&plain[i], &entries[i], sizeof(Box3f));
+    std::vector<CellBox> boxes(entries.size()), plain_boxes(entries.size());
     frame.cells(entries, boxes);
+    frame.cells(plain, plain_boxes);
     for (std::size_t i = 0; i < entries.size(); ++i) {
         for (unsigned axis = 0; axis < 3; ++axis) {
             ASSERT_EQ(boxes[i].lo[axis], frame.map().cell(entries[i].min[axis], axis));
             ASSERT_EQ(boxes[i].hi[axis], frame.map().cell(entries[i].max[axis], axis));
+        }
+        ASSERT_EQ(plain_boxes[i].lo, boxes[i].lo);
+        ASSERT_EQ(plain_boxes[i].hi, boxes[i].hi);
+    }
+}
+
+TEST(Frame, WhatIsNoBoxHasCellsInOrder) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::array<float, 5> numbers = {nan, -infinity, infinity, 0.2f, 0.7f};
+    const Frame frame = Frame::fit(std::vector<Entry>{{{0, 0, 0}, {1, 1, 1}, 0, 0}}, 100);
+    for (const float low : numbers) {
+        for (const float high : numbers) {
+            const Box3f box{{low, low, low}, {high, high, high}};
+            CellBox cells;
+            frame.cells(std::span(&box, 1), {&cells, 1});
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                EXPECT_LE(cells.lo[axis], cells.hi[axis]);
+                EXPECT_LE(cells.hi[axis], frame.last_cell(axis));
+            }
         }
     }
 }
