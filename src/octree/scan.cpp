@@ -188,7 +188,9 @@ private:
 
     void crowded_part(const Join& join, bool same_shape) {
         if (join.rows.size() == 0 || join.columns.size() == 0 || swept(join)) return;
-        if (same_shape && split_afresh(join)) return;
+        // An octree tells apart the two sets of the caller's join, but not others.
+        const bool separable = join.self || context_.source.join();
+        if (same_shape && separable && split_afresh(join)) return;
         recursive_sweep(context_, join, executor_);
     }
 
