@@ -21,11 +21,11 @@ bool oriented(const Entry& row, const Entry& column, const Orientation& orientat
     return true;
 }
 
-/// Clears the bits of hits for which keep(hit, column) is false.
+/// Clears those of the bits `asked` for which keep(row, column) is false.
 template <typename Keep>
 void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
     for (; asked != 0; asked &= asked - 1) {
-        if (!keep(hit.first + unsigned(std::countr_zero(asked)))) hit.bits &= ~(asked & -asked);
+        if (!keep(hit.first_row() + unsigned(std::countr_zero(asked)), hit.column())) hit.keep(~(asked & -asked));
     }
 }
 
@@ -33,20 +33,19 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
-    cursor.row_end = sweep.rows.size();
-    while (cursor.row < cursor.row_end) {
+    while (cursor.row < sweep.rows.size()) {
         const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, hits_));
         if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
         if (!context_.source.exact()) drop_rounded(sweep, hits);
         drain(sweep, hits);
-        if (cursor.row < cursor.row_end) throw_if_stopped(context_.stop);
+        if (cursor.row < sweep.rows.size()) throw_if_stopped(context_.stop);
     }
 }
 
 void PairMaker::drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation) {
     for (HitMask& hit : hits) {
-        filter(hit, hit.bits, [&](std::size_t column) {
-            return oriented(sweep.rows.entry(hit.row), sweep.columns.entry(column), orientation);
+        filter(hit, hit.bits(), [&](std::size_t row, std::size_t column) {
+            return oriented(sweep.rows.entry(row), sweep.columns.entry(column), orientation);
         });
     }
 }
@@ -56,8 +55,8 @@ void PairMaker::drop_rounded(const Sweep& sweep, std::span<HitMask> hits) {
     std::copy(hits.begin(), hits.end(), certain.begin());
     keep_certain(sweep, slack_, certain);
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        filter(hits[i], hits[i].bits & ~certain[i].bits, [&](std::size_t column) {
-            return context_.source.counts(sweep.rows.object()[hits[i].row], sweep.columns.object()[column]);
+        filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
+            return context_.source.counts(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
     }
 }
@@ -65,7 +64,7 @@ void PairMaker::drop_rounded(const Sweep& sweep, std::span<HitMask> hits) {
 void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
     if (writer_.counting()) {
         std::uint64_t pairs = 0;
-        for (const HitMask& hit : hits) pairs += std::uint64_t(std::popcount(hit.bits));
+        for (const HitMask& hit : hits) pairs += std::uint64_t(std::popcount(hit.bits()));
         writer_.write_count(pairs);
         return;
     }

@@ -1,20 +1,23 @@
 #include "octree/sweep.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t tests_per_call = std::size_t(1) << 22;  // a few milliseconds: then the caller looks for a stop
-
-bool hit(const SweepSet& rows, std::size_t row, const SweepSet& columns, std::size_t column) {
+/// Whether `column` begins where a sweep of this kind looks for it, and overlaps the row.
+bool hit(const Sweep& sweep, std::size_t row, std::size_t column) {
+    const auto& [rows, columns, kind] = sweep;
+    if (kind == SweepKind::self && column <= row) return false;
+    if (kind == SweepKind::cross && !(columns.low(0)[column] >= rows.low(0)[row])) return false;
+    if (kind == SweepKind::cross_strict && !(columns.low(0)[column] > rows.low(0)[row])) return false;
+    bool hits = columns.low(0)[column] <= rows.high(0)[row] && (rows.mask()[row] & columns.mask()[column]) == 0;
     for (unsigned axis = 1; axis < 3; ++axis) {
-        if (!(rows.low(axis)[row] <= columns.high(axis)[column] && columns.low(axis)[column] <= rows.high(axis)[row])) {
-            return false;
-        }
+        hits &= rows.low(axis)[row] <= columns.high(axis)[column] && columns.low(axis)[column] <= rows.high(axis)[row];
     }
-    return (rows.mask()[row] & columns.mask()[column]) == 0;
+    return hits;
 }
 
 }  // namespace
@@ -27,19 +30,19 @@ void SweepSet::assign(std::span<const Entry> entries, std::span<const SortKey> o
     words_.resize_discard(2 * stride_);
     float* const numbers = numbers_.data();
     std::uint32_t* const words = words_.data();
-    for (std::size_t i = 0; i < size_; ++i) {
-        const Entry& entry = entries[position_of(order[i])];
-        for (unsigned k = 0; k < 3; ++k) {
-            numbers[k * stride_ + i] = entry.min[axes_[k]];
-            numbers[(3 + k) * stride_ + i] = entry.max[axes_[k]];
-        }
-        words[i] = entry.mask;
-        words[stride_ + i] = entry.object;
+    EntryArrays arrays{};
+    for (unsigned k = 0; k < 3; ++k) {
+        arrays[axes_[k]] = reinterpret_cast<std::uint32_t*>(numbers + k * stride_);
+        arrays[3 + axes_[k]] = reinterpret_cast<std::uint32_t*>(numbers + (3 + k) * stride_);
     }
-    // NaN compares false with everything: neither ends a row's columns late nor hits.
+    arrays[6] = words + stride_;
+    arrays[7] = words;
+    split_entries(entries, order, arrays);
+    // NaN compares false with everything: it neither ends a row's columns late nor hits. Where rows end on the axis is
+    // taken together for a block of them.
     for (std::size_t k = 0; k < 6; ++k) {
-        for (std::size_t i = size_; i < stride_; ++i)
-            numbers[k * stride_ + i] = std::numeric_limits<float>::quiet_NaN();
+        const float none = k == 3 ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+        std::fill(numbers + k * stride_ + size_, numbers + (k + 1) * stride_, none);
     }
     for (std::size_t i = size_; i < stride_; ++i) words[i] = words[stride_ + i] = 0;
 }
@@ -55,26 +58,30 @@ Entry SweepSet::entry(std::size_t i) const {
     return entry;
 }
 
-void start_crossing_row(const Sweep& sweep, SweepCursor& cursor) {
+void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor) {
     const auto& [rows, columns, kind] = sweep;
     const float begin = rows.low(0)[cursor.row];
     const float* lows = columns.low(0);
     std::size_t& first = cursor.first_column;
     while (first < columns.size() && (kind == SweepKind::cross ? lows[first] < begin : lows[first] <= begin)) ++first;
-    cursor.column = first;
+    cursor.column = first / most_columns * most_columns;  // where registers are loaded from
 }
 
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
     const SweepSet& rows = sweep.rows;
     const SweepSet& columns = sweep.columns;
     std::size_t written = 0;
-    for (std::size_t tests = 0; cursor.row < cursor.row_end; ++cursor.row, cursor.in_row = false) {
-        start_row(sweep, cursor);
-        const float end = rows.high(0)[cursor.row];
-        for (; cursor.column < columns.size() && columns.low(0)[cursor.column] <= end; ++cursor.column) {
+    for (std::size_t tests = 0; cursor.row < rows.size(); cursor.row += block_size, cursor.in_row = false) {
+        start_rows(sweep, cursor);
+        const std::size_t rows_end = std::min(cursor.row + block_size, rows.size());
+        const float reach = *std::max_element(rows.high(0) + cursor.row, rows.high(0) + rows_end);
+        for (; cursor.column < columns.size() && columns.low(0)[cursor.column] <= reach; ++cursor.column) {
             if (written == hits.size() || ++tests > tests_per_call) return written;
-            if (!hit(rows, cursor.row, columns, cursor.column)) continue;
-            hits[written++] = {std::uint32_t(cursor.row), std::uint32_t(cursor.column), 1};
+            std::uint32_t bits = 0;
+            for (std::size_t row = cursor.row; row < rows_end; ++row) {
+                bits |= std::uint32_t(hit(sweep, row, cursor.column)) << (row - cursor.row);
+            }
+            if (bits != 0) hits[written++] = HitMask(std::uint32_t(cursor.column), cursor.row, bits);
         }
     }
     return written;

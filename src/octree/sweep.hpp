@@ -5,10 +5,10 @@
 //   self   row i against the columns i + 1, i + 2, ... of the same set
 //   cross  row against the columns of another set that do not begin before it (`strict`: that begin after it); crossing
 //          both ways, once strictly, finds each pair of two sets once
-// Hits come out as bit masks over runs of columns, in row order, columns ascending; the bits are the same whatever the
-// width of the registers.
+// Rows are taken in blocks of 8, which pass together over the columns that begin within one of them. Hits come out as a
+// bit mask over the rows for each column: block by block, columns ascending, whatever the width of the registers.
 //
-// Three layers: row_hits_scalar is the specification; sweep_rows is its SIMD version, chosen for the processor at run
+// Three layers: sweep_rows_scalar is the specification; sweep_rows is its SIMD version, chosen for the processor at run
 // time (sweep_kernel.cpp); the drivers are in scan.cpp. Source: the sweep and prune of the paper's section 2.3.1.
 #pragma once
 
@@ -51,17 +51,39 @@ private:
     std::array<unsigned, 3> axes_ = {0, 1, 2};
 };
 
-/// Bit k: the row hits column `first + k`.
-struct HitMask {
-    std::uint32_t row;
-    std::uint32_t first;
-    std::uint32_t bits;
+/// Where the numbers of an Entry go, in its order.
+using EntryArrays = std::array<std::uint32_t*, sizeof(Entry) / sizeof(std::uint32_t)>;
+
+/// Writes the numbers of the entries at the keys' positions to arrays, each aligned to 16 bytes and with room for 3 more.
+void split_entries(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays);
+
+/// Rows that are tested together.
+inline constexpr std::size_t block_size = 8;
+
+/// A column and the rows of one block that hit it.
+class HitMask {
+public:
+    HitMask() = default;
+    /// `first_row`: of the block, below 2^24; bit k of `bits`: row first_row + k.
+    HitMask(std::uint32_t column, std::size_t first_row, std::uint32_t bits)
+        : column_(column), rows_(std::uint32_t(first_row) << block_size | bits) {}
+
+    std::uint32_t column() const { return column_; }
+    std::uint32_t first_row() const { return rows_ >> block_size; }
+    std::uint32_t bits() const { return rows_ & ((1u << block_size) - 1); }
+    void keep(std::uint32_t bits) { rows_ &= bits | ~((1u << block_size) - 1); }
+
+private:
+    std::uint32_t column_;
+    std::uint32_t rows_;
 };
 
-/// Where a sweep stands: the next row and column to test. Rows before `row` are done.
+/// Blocks of rows times columns that are tested in a few milliseconds: then the caller looks for a stop.
+inline constexpr std::size_t tests_per_call = std::size_t(1) << 20;
+
+/// Where a sweep stands: the next block of rows, and the next column for it. Rows before `row` are done.
 struct SweepCursor {
     std::size_t row = 0;
-    std::size_t row_end = 0;
     std::size_t column = 0;
     std::size_t first_column = 0;  // cross: the first column that does not begin before `row`
     bool in_row = false;           // `column` is set for `row`
@@ -75,8 +97,12 @@ struct Sweep {
     SweepKind kind;
 };
 
-/// Fills `hits` from the cursor on; returns how many masks it wrote. It stops early when `hits` is full or after a
-/// bounded number of tests, with the cursor where it stopped; done when cursor.row == cursor.row_end.
+/// Columns that are tested together, at most.
+inline constexpr std::size_t most_columns = 8;
+
+/// Fills `hits`, with room for at least most_columns, from the cursor on; returns how many masks it wrote. It stops early
+/// when `hits` is full or after a bounded number of tests, with the cursor where it stopped; done when cursor.row reaches
+/// the rows' end.
 std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
 /// The specification: the same contract, a column at a time.
@@ -85,7 +111,7 @@ std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span
 /// Writes the pairs of hits, in order, as (lower object, higher object - `second_begin`); returns how many. `pairs` must
 /// have room for `most_hits` of each mask.
 std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
-inline constexpr std::size_t most_hits = 16;  // of a HitMask
+inline constexpr std::size_t most_hits = block_size;  // of a HitMask
 
 /// Keeps of each mask what certain() of the entries says is certain.
 void keep_certain(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits);
@@ -95,15 +121,15 @@ std::string sweep_instruction_set();
 /// For tests: allows only the baseline instruction set (or again all).
 void restrict_sweep_to_baseline(bool baseline_only);
 
-void start_crossing_row(const Sweep& sweep, SweepCursor& cursor);
+void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor);
 
-/// Moves `cursor` to the columns of its row, if it is not there yet. Shared by all versions.
-inline void start_row(const Sweep& sweep, SweepCursor& cursor) {
+/// Moves `cursor` to the columns of its rows, if it is not there yet. Shared by all versions.
+inline void start_rows(const Sweep& sweep, SweepCursor& cursor) {
     if (cursor.in_row) return;
     if (sweep.kind == SweepKind::self) {
-        cursor.column = cursor.row + 1;
+        cursor.column = cursor.row;
     } else {
-        start_crossing_row(sweep, cursor);
+        start_crossing_rows(sweep, cursor);
     }
     cursor.in_row = true;
 }

@@ -14,7 +14,8 @@ constexpr std::size_t most_buckets = 4096;  // so that they stay in the first ca
 constexpr std::size_t few = 24;             // boxes: so many at most are sorted by comparison
 constexpr std::size_t in_cache = 1 << 13;   // boxes: so many at most are sorted by buckets
 constexpr std::size_t sampled_rows = 16;    // each against all sampled columns
-constexpr std::size_t sampled_stride = 13;  // rows of a set that is laid out
+constexpr std::size_t sampled_stride = 13;  // rows of a set that is laid out, at least, and
+constexpr std::size_t most_sampled = 24;    // so many of them at most
 
 /// The boxes of a list that are looked at to measure it.
 Sample measured(const EntryList& list) {
@@ -106,7 +107,8 @@ std::uint64_t sampled_windows(const Sweep& sweep) {
     const float* const end = lows + columns.size();
     std::uint64_t sum = 0;
     std::size_t samples = 0;
-    for (std::size_t i = 0; i < rows.size(); i += sampled_stride, ++samples) {
+    const std::size_t stride = std::max(sampled_stride, rows.size() / most_sampled);
+    for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
         const float* const first = kind == SweepKind::self ? lows + i + 1 : std::lower_bound(lows, end, rows.low(0)[i]);
         sum += std::uint64_t(std::upper_bound(first, end, rows.high(0)[i]) - first);
     }
