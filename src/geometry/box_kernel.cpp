@@ -62,13 +62,13 @@ bool round_one(const Box<Real>& box, double padding, const OutwardRounding& roun
 
 using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and the number beside it, of which nothing is kept
 
-hn::Vec<Doubles> load_wide(const float* numbers) {
+HWY_INLINE hn::Vec<Doubles> load_wide(const float* numbers) {
     return hn::PromoteTo(Doubles(), hn::LoadU(hn::FixedTag<float, 4>(), numbers));
 }
-hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
+HWY_INLINE hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
 
 /// round_up() of the specification.
-hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
+HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
     const Doubles d;
     const hn::FixedTag<float, 4> f;
     const hn::FixedTag<std::int32_t, 4> i;
@@ -84,9 +84,10 @@ hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
     return hn::BitCast(f, hn::Sub(bits, up));
 }
 
-template <typename Real>
-bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
-                      const OutwardRounding& rounding, std::span<Entry> out) {
+/// `widened`: there is a margin or padding.
+template <bool widened, typename Real>
+bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                    std::span<Entry> out) {
     if (boxes.empty()) return true;
     const Doubles d;
     const hn::FixedTag<float, 4> f;
@@ -107,6 +108,7 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
         const auto finite = hn::And(hn::Le(hn::Abs(low), largest), hn::Le(hn::Abs(high), largest));
         good = hn::And(good, hn::Or(hn::And(finite, hn::Le(low, high)), hn::Not(hn::FirstN(d, 3))));
         const auto outward = [&](auto bound, auto moved) HWY_ATTR {
+            if constexpr (!widened) return round_up_simd(moved);
             const auto error = hn::Add(hn::Add(hn::Mul(hn::Abs(bound), part), hn::Mul(hn::Abs(origin), part)),
                                        hn::Mul(widening, part));
             const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
@@ -118,6 +120,13 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
     }
     const double own = padding.empty() ? 0 : padding[last];
     return hn::AllTrue(d, good) && round_one(boxes[last], own, rounding, out[last]) && paddings_good;
+}
+
+template <typename Real>
+bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
+                      const OutwardRounding& rounding, std::span<Entry> out) {
+    return rounding.margin > 0 || !padding.empty() ? round_boxes_of<true>(boxes, padding, rounding, out)
+                                                   : round_boxes_of<false>(boxes, padding, rounding, out);
 }
 
 #else

@@ -49,7 +49,7 @@ public:
     std::uint32_t second_begin() const { return join() ? std::uint32_t(first_size_) : 0; }
     /// True if overlapping entries are a pair, without a further test.
     bool exact() const { return exact_; }
-    /// For certain(): a hit of which that is not true counts only if counts() says so.
+    /// A hit that is no deeper than this says counts only if counts() says so.
     RoundingSlack slack() const;
     /// The rule of objects.hpp, in float64, on the caller's numbers.
     bool counts(std::uint32_t a, std::uint32_t b) const;

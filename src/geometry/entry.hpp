@@ -40,20 +40,23 @@ inline bool overlap(const Entry& a, const Entry& b) {
     return true;
 }
 
+/// A length on each axis.
+using Depths = std::array<float, 3>;
+
 /// What rounding may have added to entries, on each axis: `part` of the coordinates, and `base` whatever they are.
 struct RoundingSlack {
     static constexpr float part = 0x1p-20f;
-    std::array<float, 3> base = {0, 0, 0};
+    Depths base = {0, 0, 0};
+
+    /// Boxes whose coordinates are at most `largest`, without their sign, and that overlap deeper than this, overlapped
+    /// before rounding. Infinite at the end of float32's range: a bound there says nothing of where the box ends.
+    float depth(unsigned axis, float largest) const { return (largest + largest) * part + base[axis]; }
 };
 
-/// True if the hit is deep enough that rounding cannot have made it: the specification of the kernel's keep_certain.
-inline bool certain(const Entry& a, const Entry& b, const RoundingSlack& slack) {
+/// True if the boxes overlap by more than `depths`: the specification of the kernel's keep_deep.
+inline bool deep(const Entry& a, const Entry& b, const Depths& depths) {
     for (unsigned axis = 0; axis < 3; ++axis) {
-        const float size = std::max(std::abs(a.min[axis]), std::abs(a.max[axis])) +
-                           std::max(std::abs(b.min[axis]), std::abs(b.max[axis]));
-        const float depth = std::min(a.max[axis] - b.min[axis], b.max[axis] - a.min[axis]);
-        // A bound at the end of float32's range says nothing of where the box ends.
-        if (!(depth > size * RoundingSlack::part + slack.base[axis] && size < FLT_MAX)) return false;
+        if (!(std::min(a.max[axis] - b.min[axis], b.max[axis] - a.min[axis]) > depths[axis])) return false;
     }
     return true;
 }

@@ -33,10 +33,11 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
+    const Depths depths = context_.source.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {
         const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, hits_));
         if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
-        if (!context_.source.exact()) drop_rounded(sweep, hits);
+        if (!context_.source.exact()) drop_rounded(sweep, depths, hits);
         drain(sweep, hits);
         if (cursor.row < sweep.rows.size()) throw_if_stopped(context_.stop);
     }
@@ -50,10 +51,10 @@ void PairMaker::drop_turned(const Sweep& sweep, std::span<HitMask> hits, const O
     }
 }
 
-void PairMaker::drop_rounded(const Sweep& sweep, std::span<HitMask> hits) {
+void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits) {
     const std::span<HitMask> certain = std::span(certain_).first(hits.size());
     std::copy(hits.begin(), hits.end(), certain.begin());
-    keep_certain(sweep, slack_, certain);
+    keep_deep(sweep, depths, certain);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
             return context_.source.counts(sweep.rows.object()[row], sweep.columns.object()[column]);

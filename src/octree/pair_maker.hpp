@@ -41,7 +41,7 @@ public:
 
 private:
     void drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation);
-    void drop_rounded(const Sweep& sweep, std::span<HitMask> hits);
+    void drop_rounded(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits);
     void drain(const Sweep& sweep, std::span<const HitMask> hits);
 
     const ScanContext& context_;

@@ -113,8 +113,11 @@ std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span
 std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
 inline constexpr std::size_t most_hits = block_size;  // of a HitMask
 
-/// Keeps of each mask what certain() of the entries says is certain.
-void keep_certain(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits);
+/// How deep a hit of the sweep must be, so that rounding cannot have made it.
+Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack);
+
+/// Keeps of each mask the hits that are deep() (entry.hpp).
+void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits);
 
 /// The instruction set that sweep_rows uses here, such as "AVX2".
 std::string sweep_instruction_set();

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -240,24 +241,41 @@ std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits
     return std::size_t(at - begin) / 2;
 }
 
-void keep_certain_simd(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits) {
+/// The largest of the numbers, without their sign.
+float largest_of(std::span<const float> numbers) {
     const hn::CappedTag<float, block_size> d;
-    const auto part = hn::Set(d, RoundingSlack::part);
-    const auto largest = hn::Set(d, std::numeric_limits<float>::max());
+    auto most = hn::Zero(d);
+    std::size_t i = 0;
+    for (; i + hn::Lanes(d) <= numbers.size(); i += hn::Lanes(d)) {
+        most = hn::Max(most, hn::Abs(hn::LoadU(d, numbers.data() + i)));
+    }
+    float largest = hn::GetLane(hn::MaxOfLanes(d, most));
+    for (; i < numbers.size(); ++i) largest = std::max(largest, std::abs(numbers[i]));
+    return largest;
+}
+
+/// Of a set's bounds, on each axis of the sweep.
+Depths largest_bounds_simd(const SweepSet& set) {
+    Depths largest;
+    for (unsigned k = 0; k < 3; ++k) {
+        largest[k] = std::max(largest_of({set.low(k), set.size()}), largest_of({set.high(k), set.size()}));
+    }
+    return largest;
+}
+
+void keep_deep_simd(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits) {
+    const hn::CappedTag<float, block_size> d;
     for (HitMask& hit : hits) {
         std::uint32_t bits = 0;
         for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+            const std::size_t row = hit.first_row() + lane;
             auto deep = hn::FirstN(d, hn::Lanes(d));
             for (unsigned k = 0; k < 3; ++k) {
-                const auto column_low = hn::Set(d, sweep.columns.low(k)[hit.column()]);
-                const auto column_high = hn::Set(d, sweep.columns.high(k)[hit.column()]);
-                const auto low = hn::LoadU(d, sweep.rows.low(k) + hit.first_row() + lane);
-                const auto high = hn::LoadU(d, sweep.rows.high(k) + hit.first_row() + lane);
-                const auto size =
-                    hn::Add(hn::Max(hn::Abs(column_low), hn::Abs(column_high)), hn::Max(hn::Abs(low), hn::Abs(high)));
-                const auto depth = hn::Min(hn::Sub(column_high, low), hn::Sub(high, column_low));
-                const auto needed = hn::Add(hn::Mul(size, part), hn::Set(d, slack.base[sweep.rows.axis(k)]));
-                deep = hn::And(deep, hn::And(hn::Gt(depth, needed), hn::Lt(size, largest)));
+                const auto low = hn::Set(d, sweep.columns.low(k)[hit.column()]);
+                const auto high = hn::Set(d, sweep.columns.high(k)[hit.column()]);
+                const auto depth = hn::Min(hn::Sub(high, hn::LoadU(d, sweep.rows.low(k) + row)),
+                                           hn::Sub(hn::LoadU(d, sweep.rows.high(k) + row), low));
+                deep = hn::And(deep, hn::Gt(depth, hn::Set(d, depths[sweep.rows.axis(k)])));
             }
             bits |= bits_of(d, deep) << lane;
         }
@@ -316,7 +334,8 @@ namespace octopair {
 
 HWY_EXPORT(sweep_rows_simd);
 HWY_EXPORT(pairs_of_hits_simd);
-HWY_EXPORT(keep_certain_simd);
+HWY_EXPORT(largest_bounds_simd);
+HWY_EXPORT(keep_deep_simd);
 HWY_EXPORT(split_entries_simd);
 
 std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
@@ -327,8 +346,20 @@ std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std
     return HWY_DYNAMIC_DISPATCH(pairs_of_hits_simd)(sweep, hits, second_begin, pairs);
 }
 
-void keep_certain(const Sweep& sweep, const RoundingSlack& slack, std::span<HitMask> hits) {
-    HWY_DYNAMIC_DISPATCH(keep_certain_simd)(sweep, slack, hits);
+Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack) {
+    const Depths rows = HWY_DYNAMIC_DISPATCH(largest_bounds_simd)(sweep.rows);
+    const Depths columns =
+        sweep.kind == SweepKind::self ? rows : HWY_DYNAMIC_DISPATCH(largest_bounds_simd)(sweep.columns);
+    Depths depths;
+    for (unsigned k = 0; k < 3; ++k) {
+        const unsigned axis = sweep.rows.axis(k);
+        depths[axis] = slack.depth(axis, std::max(rows[k], columns[k]));
+    }
+    return depths;
+}
+
+void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits) {
+    HWY_DYNAMIC_DISPATCH(keep_deep_simd)(sweep, depths, hits);
 }
 
 void split_entries(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -122,7 +123,7 @@ TEST(Sweep, HitsBecomePairsInOrder) {
     }
 }
 
-TEST(Sweep, KernelAndSpecificationAgreeOnWhatIsCertain) {
+TEST(Sweep, KernelAndSpecificationAgreeOnWhatIsDeep) {
     std::mt19937 random(5);
     std::vector<Entry> entries = random_entries(random, 500, 0);
     for (Entry& entry : entries) {
@@ -132,22 +133,36 @@ TEST(Sweep, KernelAndSpecificationAgreeOnWhatIsCertain) {
     }
     const SweepSet set = sorted_set(entries, 1);
     const Sweep sweep{set, set, SweepKind::self};
-    const RoundingSlack slack{{0, 1e-6f, 1}};
+    const Depths depths = {0, 1e-6f, 1};
     std::vector<HitMask> hits(100'000);
     SweepCursor cursor;
     hits.resize(sweep_rows(sweep, cursor, hits));
     std::vector<HitMask> kept = hits;
-    keep_certain(sweep, slack, kept);
+    keep_deep(sweep, depths, kept);
     std::array<std::size_t, 2> seen{};
     for (std::size_t i = 0; i < hits.size(); ++i) {
         for_each_bit(hits[i], [&](std::uint32_t row) {
-            const bool expected = certain(set.entry(row), set.entry(hits[i].column()), slack);
+            const bool expected = deep(set.entry(row), set.entry(hits[i].column()), depths);
             ASSERT_EQ((kept[i].bits() >> (row - hits[i].first_row()) & 1u) != 0, expected);
             ++seen[expected ? 1 : 0];
         });
     }
     EXPECT_GT(seen[0], 100u);
     EXPECT_GT(seen[1], 100u);
+}
+
+TEST(Sweep, HitsMustBeDeeperTheLargerTheNumbers) {
+    std::vector<Entry> entries(33);
+    for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = {{0, 1, 2}, {3, 3, 3}, std::uint32_t(i), 0};
+    entries[20].min[0] = -0x1p20f;
+    entries[32].max[1] = 3.40282347e38f;
+    const SweepSet set = sorted_set(entries, 2);
+    const Depths depths = certain_depths({set, set, SweepKind::self}, {{0, 1, 0.5f}});
+    EXPECT_EQ(depths[0], 2.0f);
+    EXPECT_EQ(depths[1], std::numeric_limits<float>::infinity());
+    EXPECT_EQ(depths[2], 0.5f + 6 * 0x1p-20f);
+    const SweepSet other = sorted_set({entries[0]}, 2);
+    EXPECT_EQ(certain_depths({other, set, SweepKind::cross}, {{0, 1, 0.5f}}), depths);
 }
 
 TEST(SweepOrder, LaysOutByLowEndThenPosition) {
