@@ -43,11 +43,16 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// What a slave sorts its entries by: the library's sort, as the paper does by qsort, or the radix sort of octopair. The
+/// order is the same.
+enum class PaperSort : std::uint8_t { standard, radix };
+
 /// How the paper's algorithm is run: `machines` times `slaves_per_machine` slaves, each a thread.
 struct PaperSettings {
     unsigned level = 0;  ///< the fixed depth of the octree, at most 21; 0: about one octant per object
     unsigned machines = 1;
     unsigned slaves_per_machine = 1;
+    PaperSort sort = PaperSort::standard;
 };
 
 /// Wall-clock seconds of its components: the slowest slave or machine where several work side by side.
@@ -65,6 +70,8 @@ struct PaperResult {
 /// The paper's algorithm as published (section 3.3). Objects larger than an octant have many codes there: that is its
 /// nature, and its cost.
 PaperResult paper_pairs(std::span<const Box3f> boxes, const PaperSettings& settings = {});
+/// The fixed depth at which that is fastest, of those about one octant an object: one run with each.
+unsigned best_paper_level(std::span<const Box3f> boxes, PaperSettings settings = {});
 
 /// A binary bounding volume hierarchy over the Morton order, half traversed: each leaf starts from its own escape link.
 /// At most 2^31 - 1 boxes; `threads` >= 1.

@@ -8,10 +8,10 @@
 #include <iterator>
 #include <limits>
 #include <thread>
-#include <utility>
 
 #include "baselines/baselines.hpp"
 #include "baselines/overlap.hpp"
+#include "baselines/paper_sort.hpp"
 #include "octopair/octal_code.hpp"
 
 namespace octopair::baselines {
@@ -19,8 +19,7 @@ namespace octopair::baselines {
 namespace {
 
 using Cube = Box3d;
-using Entry = std::pair<OctalCode, std::uint32_t>;
-using EntryList = std::vector<Entry>;
+using EntryList = std::vector<PaperEntry>;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -106,6 +105,7 @@ struct SlaveTask {
     std::uint32_t first_index;  // of boxes[0] among all
     Cube root;
     unsigned level;
+    PaperSort sort;
 };
 
 /// Steps 2 and 3.
@@ -117,7 +117,7 @@ void run_slave(const SlaveTask& task, SlaveResult& result) {
     }
     result.octal_codes = seconds_since(start);
     start = Clock::now();
-    std::sort(result.entries.begin(), result.entries.end());
+    sort_entries(result.entries, task.sort, task.level);
     result.sort = seconds_since(start);
 }
 
@@ -151,7 +151,8 @@ std::vector<EntryList> run_slaves(std::span<const Box3f> boxes, const PaperSetti
     std::vector<SlaveResult> results(slaves);
     run_side_by_side(slaves, [&](std::size_t slave) {
         const std::size_t first = boxes.size() * slave / slaves, last = boxes.size() * (slave + 1) / slaves;
-        run_slave({boxes.subspan(first, last - first), std::uint32_t(first), root, settings.level}, results[slave]);
+        run_slave({boxes.subspan(first, last - first), std::uint32_t(first), root, settings.level, settings.sort},
+                  results[slave]);
     });
     std::vector<EntryList> lists;
     for (SlaveResult& result : results) {

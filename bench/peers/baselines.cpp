@@ -1,11 +1,6 @@
 // The project's own baselines (baselines/baselines.hpp).
 #include "baselines/baselines.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <chrono>
-#include <limits>
-
 #include "peers/contender.hpp"
 
 namespace octopair::bench {
@@ -27,27 +22,11 @@ public:
     explicit Paper(unsigned threads) { settings_.slaves_per_machine = threads; }
 
     void run(std::span<const Box3f> boxes) override {
-        if (settings_.level == 0) settings_.level = best_level(boxes);
+        if (settings_.level == 0) settings_.level = baselines::best_paper_level(boxes, settings_);
         pairs_ = baselines::paper_pairs(boxes, settings_).pairs;
     }
 
 private:
-    unsigned best_level(std::span<const Box3f> boxes) {
-        const unsigned middle = std::max(2u, unsigned(std::bit_width(boxes.size())) / 3);
-        double least = std::numeric_limits<double>::infinity();
-        unsigned best = middle;
-        for (unsigned level = middle - 1; level <= middle + 1; ++level) {
-            baselines::PaperSettings settings = settings_;
-            settings.level = level;
-            const auto begin = std::chrono::steady_clock::now();
-            (void)baselines::paper_pairs(boxes, settings);
-            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-            if (seconds < least) best = level;
-            least = std::min(least, seconds);
-        }
-        return best;
-    }
-
     baselines::PaperSettings settings_;
 };
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "baselines/paper_sort.hpp"
+#include "samples/random.hpp"
 #include "samples/scenes.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
@@ -47,7 +50,7 @@ TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
         const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), seed % 100, seed);
         const Objects objects{std::span<const Box3f>(boxes)};
         const PaperSettings settings{unsigned(seed >> 8) % 5, 1 + unsigned(seed >> 16) % 3,
-                                     1 + unsigned(seed >> 24) % 3};
+                                     1 + unsigned(seed >> 24) % 3, PaperSort(seed >> 32 & 1)};
         const PaperResult result = paper_pairs(boxes, settings);
         EXPECT_TRUE(same_pairs(result.pairs, oracle_pairs(objects), {objects}));
         EXPECT_GE(result.entries, boxes.size());
@@ -66,6 +69,48 @@ TEST(BaselinesPaper, EntriesDoNotDependOnTheSlaves) {
         EXPECT_EQ(result.candidates, alone.candidates);
         EXPECT_TRUE(testing::same_bytes(result.pairs, alone.pairs));
     }
+}
+
+TEST(BaselinesPaper, BothSortsGiveTheSame) {
+    for (const char* kind : {"uniform", "mixed", "world10"}) {
+        const auto boxes = samples::make_scene(kind, 2000, 1);
+        for (const unsigned level : {1u, 4u, 5u}) {
+            const PaperResult standard = paper_pairs(boxes, {level, 2, 2, PaperSort::standard});
+            const PaperResult radix = paper_pairs(boxes, {level, 2, 2, PaperSort::radix});
+            EXPECT_EQ(radix.entries, standard.entries) << kind << ", level " << level;
+            EXPECT_EQ(radix.candidates, standard.candidates) << kind << ", level " << level;
+            EXPECT_TRUE(testing::same_bytes(radix.pairs, standard.pairs)) << kind << ", level " << level;
+        }
+    }
+}
+
+/// Entries as a slave makes them, of codes on all levels up to `level`.
+std::vector<PaperEntry> random_entries(unsigned level) {
+    samples::RandomStream random(1, level);
+    std::vector<PaperEntry> entries;
+    for (std::uint32_t object = 0; object < 2000; ++object) {
+        const auto cell = [&] { return std::uint32_t(random.below(1u << OctalCode::max_level)); };
+        entries.emplace_back(OctalCode::from_cell({cell(), cell(), cell()}, unsigned(random.below(level + 1))), object);
+    }
+    return entries;
+}
+
+TEST(BaselinesPaper, BothSortsAgreeOnEveryLevel) {
+    for (unsigned level = 0; level <= OctalCode::max_level; ++level) {
+        std::vector<PaperEntry> standard = random_entries(level);
+        std::vector<PaperEntry> radix = standard;
+        sort_entries(standard, PaperSort::standard, level);
+        sort_entries(radix, PaperSort::radix, level);
+        EXPECT_EQ(radix, standard) << "level " << level;
+        EXPECT_TRUE(std::is_sorted(radix.begin(), radix.end())) << "level " << level;
+    }
+}
+
+TEST(BaselinesPaper, TheBestLevelIsOneOfTheUsual) {
+    const auto boxes = samples::make_scene("uniform", 3000, 1);
+    const unsigned level = best_paper_level(boxes, {});
+    EXPECT_GE(level, 3u);
+    EXPECT_LE(level, 5u);
 }
 
 TEST(BaselinesPaper, AnObjectThatFillsTheWorldHasOneCode) {

@@ -1,0 +1,48 @@
+#include "baselines/paper_sort.hpp"
+
+#include <algorithm>
+
+#include "octree/sort_key.hpp"
+
+namespace octopair::baselines {
+
+namespace {
+
+/// For a sort that writes no pairs.
+class NoPairs final : public PairWriter {
+public:
+    bool counting() const override { return true; }
+    void write(std::span<const Pair>) override {}
+    void write_count(std::uint64_t) override {}
+};
+
+constexpr unsigned bits_of_level = 4;
+constexpr unsigned most_level = (32 - bits_of_level) / 3;
+
+/// Path, then level, above the entry's position: a radix sort keeps the order of equal codes, which is that of objects.
+void radix_sort_entries(std::vector<PaperEntry>& entries, unsigned level) {
+    Buffer<SortKey> keys(entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const OctalCode code = entries[i].first;
+        const std::uint64_t path = code.key() >> (3 * (OctalCode::max_level - level));
+        keys[i] = (path << bits_of_level | code.level()) << 32 | i;
+    }
+    NoPairs none;
+    SerialExecutor alone(none);
+    radix_sort(keys, alone, {});
+    std::vector<PaperEntry> sorted(entries.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = entries[position_of(keys[i])];
+    entries = std::move(sorted);
+}
+
+}  // namespace
+
+void sort_entries(std::vector<PaperEntry>& entries, PaperSort sort, unsigned level) {
+    if (sort == PaperSort::radix && level <= most_level && entries.size() <= std::uint32_t(-1)) {
+        radix_sort_entries(entries, level);
+    } else {
+        std::sort(entries.begin(), entries.end());
+    }
+}
+
+}  // namespace octopair::baselines
