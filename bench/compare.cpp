@@ -20,8 +20,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "bench_build.hpp"
 #include "io/scene_reader.hpp"
+#include "machine/machine.hpp"
 #include "peers/contender.hpp"
 #include "samples/scenes.hpp"
 
@@ -192,14 +192,6 @@ nlohmann::ordered_json json_of(const Scene& scene, const std::vector<Row>& rows,
     return {{"scene", scene.name}, {"objects", scene.boxes.size()}, {"threads", request.threads}, {"rows", list}};
 }
 
-std::string processor() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    }
-    return "unknown";
-}
-
 /// Three quarters of the machine's memory at most: what needs more fails, where it would else bring all to a halt.
 void limit_memory() {
     const rlim_t bytes = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGESIZE)) / 4 * 3;
@@ -218,10 +210,8 @@ int run(const Request& request) {
         for (const Row& row : rows) agree = agree && (row.limit || row.failed || row.agrees);
     }
     if (!request.json.empty()) {
-        const nlohmann::ordered_json all = {{"commit", OCTOPAIR_COMMIT},
-                                            {"compiler", OCTOPAIR_COMPILER},
-                                            {"processor", processor()},
-                                            {"results", results}};
+        nlohmann::ordered_json all = machine_json();
+        all["results"] = results;
         std::ofstream file(request.json);
         file << all.dump(1) << '\n';
         if (!file.flush()) throw std::runtime_error("cannot write " + request.json);

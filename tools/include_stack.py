@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that includes run one way: each folder of src/ uses only those below it in the stack.
+"""Checks that includes run one way: each folder of src/ uses only those below it in the stack, and so do the folders of
+bench/ that the program is built with.
 
     include_stack.py [--print] [ROOT]     ROOT: the project's directory, default the one this file lies in
 
@@ -16,20 +17,25 @@ CORE = ["base", "parallel", "geometry", "octree", "pipeline", "engine", "scene",
 USES = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
 USES["samples"] = {"base", "geometry"}
 USES["io"] = {"base", "geometry"}
-USES["cli"] = set(CORE) | {"samples", "io"}
+BENCH = ["baselines", "machine", "paper"]
+USES["baselines"] = {"base", "octree"}
+USES["machine"] = set()
+USES["paper"] = {"baselines", "machine", "samples"}
+USES["cli"] = set(CORE) | {"samples", "io", "paper"}
 
 PURPOSE = {
     "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
     "geometry": "boxes and how they are judged", "octree": "octal codes, encode, sort, merge, scan",
     "pipeline": "filters and their composition", "engine": "where and how pairs are found",
     "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
-    "io": "scene and result files", "cli": "the program",
+    "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
+    "paper": "the paper's section 5 again", "cli": "the program",
 }
 
 # First part of a third-party include: the folders that may use it.
 THIRD_PARTY = {
-    "tbb": {"parallel"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree"}, "assimp": {"io"}, "CLI": {"cli"},
-    "fmt": {"io", "cli"}, "nlohmann": {"io", "cli"},
+    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree"}, "assimp": {"io"},
+    "CLI": {"cli"}, "fmt": {"io", "paper", "cli"}, "nlohmann": {"io", "machine", "paper", "cli"},
 }
 SYSTEM = {"sys", "linux", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
@@ -45,7 +51,7 @@ def complaint_quoted(folder, part, name):
     """What is wrong with a file of `folder` (and engine part) including the project's `name`, or None."""
     target, _, rest = name.partition("/")
     if not rest:
-        return "includes are written from src/ or include/"
+        return "includes are written from src/, bench/ or include/"
     if target == "octopair":
         return None
     if folder == "public":
@@ -74,9 +80,10 @@ def check(root):
     """Complaints as text, and for each folder the folders and libraries it uses."""
     complaints, used = [], {}
     files = [(p, "public", "") for p in sorted((root / "include").rglob("*.hpp"))]
-    for path in sorted((root / "src").rglob("*.[ch]pp")):
-        parts = path.relative_to(root / "src").parts
-        files.append((path, parts[0], parts[1] if len(parts) > 2 else ""))
+    for top in [root / "src", *(root / "bench" / folder for folder in BENCH)]:
+        for path in sorted(top.rglob("*.[ch]pp")):
+            parts = path.relative_to(root).parts[1:]
+            files.append((path, parts[0], parts[1] if len(parts) > 2 else ""))
     for path, folder, part in files:
         where = path.relative_to(root)
         if folder != "public" and folder not in USES:
@@ -95,7 +102,7 @@ def check(root):
 
 def print_stack(used):
     order = [f for f in ["base", "parallel", "geometry", "samples", "io", "octree", "pipeline", "engine", "scene",
-                         "service", "cli"] if f in used]
+                         "service", *BENCH, "cli"] if f in used]
     for folder in reversed(order):
         names = sorted(used[folder] - {"octopair"}, key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
         print(f"    {folder:<9} {PURPOSE[folder]:<40} uses {' '.join(names) or '-'}")

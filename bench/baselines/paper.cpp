@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "baselines/baselines.hpp"
 #include "baselines/overlap.hpp"

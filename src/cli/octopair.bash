@@ -1,15 +1,21 @@
 # Completion of octopair's command line for bash.
 
+# The kinds of scenes, asked of the program.
+_octopair_kinds() {
+    "$1" generate --help 2>/dev/null | sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p'
+}
+
 _octopair() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local subcommand=${COMP_WORDS[1]}
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "detect generate info --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "bench detect generate info --help --version" -- "$current")
         return
     fi
     case $previous in
+        --scene) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current"); return ;;
         --stage) mapfile -t COMPREPLY < <(compgen -W "pairs" -- "$current"); return ;;
         --objects)
             if [[ $subcommand == detect ]]; then
@@ -18,10 +24,16 @@ _octopair() {
             return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
         --engine) mapfile -t COMPREPLY < <(compgen -W "local" -- "$current"); return ;;
-        --margin | --limit | --threads | --seed | --frames) return ;;
-        --against | --padding | --output | --stats) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+        --margin | --limit | --threads | --seed | --frames | --rounds) return ;;
+        --against | --json | --padding | --output | --stats) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
+        bench)
+            if ((COMP_CWORD == 2)); then
+                mapfile -t COMPREPLY < <(compgen -W "paper" -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --json --quiet --help" -- "$current")
+            fi ;;
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
@@ -31,8 +43,7 @@ _octopair() {
             fi ;;
         generate)
             if ((COMP_CWORD == 2)); then
-                mapfile -t COMPREPLY < <(compgen -W "$("$1" generate --help 2>/dev/null |
-                    sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p')" -- "$current")
+                mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -W "--objects --seed --frames --output --quiet --help" -- "$current")
             fi ;;

@@ -9,6 +9,7 @@ namespace octopair::cli {
 
 using Action = std::function<int()>;
 
+void add_bench(CLI::App& app, Action& action);
 void add_detect(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

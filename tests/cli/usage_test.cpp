@@ -7,7 +7,8 @@ namespace {
 class Usage : public ProgramTest {};
 
 TEST_F(Usage, HelpAndVersionAreAnswers) {
-    for (const std::string what : {"--help", "detect --help", "generate --help", "--version", "info"}) {
+    for (const std::string what :
+         {"--help", "detect --help", "generate --help", "bench --help", "bench paper --help", "--version", "info"}) {
         const Outcome outcome = run(what);
         EXPECT_EQ(outcome.status, 0) << what;
         EXPECT_NE(outcome.out, "") << what;
@@ -60,6 +61,15 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "generate uniform --objects 5 --frames 2 --output p.npy",
         "generate uniform --objects 5 --output p.csv",
         "bench",
+        "bench nothing",
+        "bench paper --objects",
+        "bench paper --objects 1",
+        "bench paper --objects 1000 many",
+        "bench paper --objects 4294967296",
+        "bench paper --threads 1025",
+        "bench paper --rounds 0",
+        "bench paper --scene nothing",
+        "bench paper a.npy",
         "serve",
     };
     for (const std::string& arguments : wrong) {

@@ -1,0 +1,124 @@
+// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/subcommands.hpp"
+#include "io/atomic_file.hpp"
+#include "octopair/error.hpp"
+#include "paper/json.hpp"
+#include "paper/study.hpp"
+#include "paper/tables.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+struct BenchRequest {
+    paper::StudyPlan plan = {"uniform", {100'000, 250'000, 500'000, 1'000'000, 1'500'000, 2'000'000}, 0, 7, 20};
+    std::string json;  // a file, or empty
+    bool quiet = false;
+};
+
+struct Bounds {
+    std::uint64_t least, most;
+};
+
+/// A whole number within `bounds`. Throws Error{usage} that names `option`.
+std::uint64_t parse_between(std::string_view option, const std::string& text, const Bounds& bounds) {
+    const std::uint64_t number = parse_count(option, text, bounds.most);
+    if (number >= bounds.least) return number;
+    throw Error(ErrorCode::usage, fmt::format("{}: {} is less than {}", option, number, bounds.least));
+}
+
+std::vector<std::uint64_t> parse_objects(const std::vector<std::string>& texts) {
+    std::vector<std::uint64_t> objects;
+    objects.reserve(texts.size());
+    for (const std::string& text : texts) {
+        objects.push_back(parse_between("--objects", text, {2, std::numeric_limits<std::uint32_t>::max()}));
+    }
+    std::sort(objects.begin(), objects.end());
+    objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+    return objects;
+}
+
+int run_paper(BenchRequest request) {
+    const Interrupt interrupt;
+    std::optional<io::AtomicFile> json;
+    if (!request.json.empty()) json.emplace(request.json);
+    if (request.plan.threads == 0) request.plan.threads = std::max(1u, std::thread::hardware_concurrency());
+    ProgressLine progress(!request.quiet);
+    const auto show = [&](std::string_view activity, double done) { progress.show(activity, done); };
+    const paper::Study study = paper::measure(request.plan, show, interrupt.token());
+    progress.clear();
+    io::StandardOutput out(interrupt.token());
+    out.write(paper::study_text(study));
+    out.commit();
+    if (json) {
+        json->write(paper::study_json(study));
+        json->commit();
+    }
+    return 0;
+}
+
+void add_numbers(CLI::App& command, BenchRequest& request) {
+    constexpr unsigned most_threads = 1024, most_rounds = 1000;
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--objects",
+            [&request](const std::vector<std::string>& texts) { request.plan.objects = parse_objects(texts); },
+            "how many, several times (default 100000 250000 500000 1000000 1500000 2000000)")
+        ->type_name("N");
+    command
+        .add_option_function<std::string>(
+            "--threads",
+            [&request](const std::string& text) {
+                request.plan.threads = unsigned(parse_count("--threads", text, most_threads));
+            },
+            "on 1 to K processors (default 0: all cores)")
+        ->type_name("K");
+    command
+        .add_option_function<std::string>(
+            "--rounds",
+            [&request](const std::string& text) {
+                request.plan.rounds = unsigned(parse_between("--rounds", text, {1, most_rounds}));
+            },
+            "runs of each, of which the median counts (default 7)")
+        ->type_name("R");
+}
+
+void add_paper(CLI::App& bench, Action& action) {
+    CLI::App* command = bench.add_subcommand("paper", "the figure and the tables of the paper's section 5");
+    const auto request = std::make_shared<BenchRequest>();
+    command
+        ->add_option_function<std::string>(
+            "--scene",
+            [request](const std::string& kind) {
+                (void)samples::scene_description(kind);
+                request->plan.scene = kind;
+            },
+            "a kind of octopair generate (default uniform)")
+        ->type_name("KIND");
+    add_numbers(*command, *request);
+    command->add_option("--json", request->json, "write every time measured as JSON")->type_name("FILE");
+    command->add_flag("--quiet", request->quiet, "no progress on standard error");
+    command->callback([request, &action] { action = [request] { return run_paper(*request); }; });
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("bench", "measure");
+    command->require_subcommand(1);
+    add_paper(*command, action);
+}
+
+}  // namespace octopair::cli

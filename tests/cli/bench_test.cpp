@@ -1,0 +1,55 @@
+// octopair bench: a short run of each study.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Bench : public ProgramTest {};
+
+TEST_F(Bench, PaperSaysItInTextAndInJson) {
+    const Outcome outcome = run("bench paper --objects 2000 1000 --rounds 3 --threads 2 --json f");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_NE(outcome.out.find("Figure 5: run time in milliseconds, uniform"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("Run time in microseconds, 2,000 objects"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("holds better"), std::string::npos) << outcome.out;
+    const auto json = nlohmann::json::parse(content("f"));
+    EXPECT_EQ(json["scene"], "uniform");
+    EXPECT_TRUE(json.contains("commit") && json.contains("processor") && json.contains("cores"));
+    ASSERT_EQ(json["series"].size(), 5u);
+    for (const auto& series : json["series"]) {
+        for (const auto& point : series["points"]) {
+            EXPECT_EQ(point["seconds"].size(), 3u);
+            EXPECT_GT(point["median_seconds"], 0);
+            EXPECT_EQ(point["pairs"], json["series"][0]["points"][point["objects"] == 1000 ? 0 : 1]["pairs"]);
+        }
+    }
+    EXPECT_EQ(json["series"][0]["points"][0]["objects"], 1000);
+    EXPECT_EQ(json["published"]["tables"][0]["times"][0]["microseconds"], 29'537'415);
+}
+
+TEST_F(Bench, PaperTakesAnyScene) {
+    const Outcome outcome = run("bench paper --scene clustered --objects 500 --rounds 1 --threads 1 --quiet");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(", clustered\n"), std::string::npos) << outcome.out;
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{});
+}
+
+TEST_F(Bench, AResultThatCannotBeWrittenIsKnownBefore) {
+    const Outcome outcome = run("bench paper --json none/f");
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(Bench, Interrupted) {
+    const Outcome outcome = shell(
+        "\"$P\" bench paper --objects 100000 --rounds 1000 --threads 1 --json f & sleep 1; kill -INT $!; wait $!");
+    EXPECT_EQ(outcome.status, 130) << outcome.err;
+    EXPECT_EQ(outcome.err, "octopair: interrupted\n");
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace octopair::test
