@@ -26,6 +26,9 @@ public:
         const btBroadphasePairArray& found = cache.getOverlappingPairArray();
         for (int i = 0; i < found.size(); ++i)
             pairs_.push_back({object(found[i].m_pProxy0), object(found[i].m_pProxy1)});
+        // Each proxy that goes has the cache looked through for its pairs: in all n times the pairs, of no use to anyone.
+        btNullPairCache empty;
+        broadphase.m_paircache = &empty;
         for (btBroadphaseProxy* proxy : proxies) broadphase.destroyProxy(proxy, nullptr);
     }
 
