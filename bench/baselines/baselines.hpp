@@ -71,9 +71,10 @@ struct PaperResult {
 /// The paper's algorithm as published (section 3.3). Objects larger than an octant have many codes there: that is its
 /// nature, and its cost.
 PaperResult paper_pairs(std::span<const Box3f> boxes, const PaperSettings& settings = {});
-/// The fixed depth at which that is fastest, of those about one octant an object: one run with each. After a stop
-/// request, of those tried.
-unsigned best_paper_level(std::span<const Box3f> boxes, PaperSettings settings = {}, const std::stop_token& stop = {});
+/// The fixed depth at which that is fastest, with `settings` else: from about one octant an object up or down while it gets
+/// faster, one run with each. After a stop request, of those tried.
+unsigned best_paper_level(std::span<const Box3f> boxes, const PaperSettings& settings = {},
+                          const std::stop_token& stop = {});
 
 /// A binary bounding volume hierarchy over the Morton order, half traversed: each leaf starts from its own escape link.
 /// At most 2^31 - 1 boxes; `threads` >= 1.

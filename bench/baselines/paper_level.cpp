@@ -2,22 +2,38 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <limits>
 
 #include "baselines/baselines.hpp"
+#include "octopair/octal_code.hpp"
 
 namespace octopair::baselines {
 
-unsigned best_paper_level(std::span<const Box3f> boxes, PaperSettings settings, const std::stop_token& stop) {
-    const unsigned middle = std::max(2u, unsigned(std::bit_width(boxes.size())) / 3);
-    double least = std::numeric_limits<double>::infinity();
-    unsigned best = middle;
-    for (settings.level = middle - 1; settings.level <= middle + 1 && !stop.stop_requested(); ++settings.level) {
-        const auto begin = std::chrono::steady_clock::now();
-        (void)paper_pairs(boxes, settings);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        if (seconds < least) best = settings.level;
-        least = std::min(least, seconds);
+namespace {
+
+double seconds_at(unsigned level, std::span<const Box3f> boxes, PaperSettings settings) {
+    settings.level = level;
+    const auto begin = std::chrono::steady_clock::now();
+    (void)paper_pairs(boxes, settings);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+unsigned best_paper_level(std::span<const Box3f> boxes, const PaperSettings& settings, const std::stop_token& stop) {
+    unsigned best = std::max(2u, unsigned(std::bit_width(boxes.size())) / 3);
+    double least = seconds_at(best, boxes, settings);
+    const auto improves = [&](unsigned level) {
+        if (stop.stop_requested()) return false;
+        const double seconds = seconds_at(level, boxes, settings);
+        if (seconds >= least) return false;
+        least = seconds;
+        best = level;
+        return true;
+    };
+    const unsigned usual = best;
+    while (best < OctalCode::max_level && improves(best + 1)) {
+    }
+    while (best <= usual && best > 1 && improves(best - 1)) {
     }
     return best;
 }
