@@ -16,15 +16,15 @@ private:
     unsigned threads_;
 };
 
-/// At its best fixed depth for the scene, found on the first run by trying those about one octant an object.
+/// At its best fixed depth for the scene.
 class Paper : public CollectingContender {
 public:
     explicit Paper(unsigned threads) { settings_.slaves_per_machine = threads; }
 
-    void run(std::span<const Box3f> boxes) override {
-        if (settings_.level == 0) settings_.level = baselines::best_paper_level(boxes, settings_);
-        pairs_ = baselines::paper_pairs(boxes, settings_).pairs;
+    void prepare(std::span<const Box3f> boxes) override {
+        settings_.level = baselines::best_paper_level(boxes, settings_);
     }
+    void run(std::span<const Box3f> boxes) override { pairs_ = baselines::paper_pairs(boxes, settings_).pairs; }
 
 private:
     baselines::PaperSettings settings_;
@@ -42,7 +42,7 @@ std::vector<ContenderKind> baseline_contenders() {
         {"LBVH", true, false, [](unsigned k) -> std::unique_ptr<Contender> { return std::make_unique<Lbvh>(k); }},
         {"paper", true, false, [](unsigned k) -> std::unique_ptr<Contender> { return std::make_unique<Paper>(k); }},
         {"sweep and prune", false, false,
-         [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<SweepAndPrune>(); }},
+         [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<SweepAndPrune>(); }, 200'000},
     };
 }
 

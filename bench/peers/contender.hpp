@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -31,6 +32,8 @@ public:
     Contender& operator=(const Contender&) = delete;
     virtual ~Contender() = default;
 
+    /// Chooses what suits the boxes best, before the first run with them; not timed.
+    virtual void prepare(std::span<const Box3f>) {}
     /// What is timed: from boxes in memory to pairs in memory.
     virtual void run(std::span<const Box3f> boxes) = 0;
     /// What the last run found.
@@ -46,11 +49,14 @@ protected:
     std::vector<Pair> pairs_;
 };
 
+inline constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
+
 struct ContenderKind {
     std::string name;
     bool threads;  ///< can use more than one
     bool limit;    ///< what the hardware allows: finds nothing
     std::unique_ptr<Contender> (*make)(unsigned threads);
+    std::uint64_t most_objects = any_number;  ///< with more it takes minutes: run only where it is asked for by name
 };
 
 /// Ours, the baselines, and every peer that this build has.

@@ -59,7 +59,8 @@ std::vector<ContenderKind> fcl_contenders() {
              return std::make_unique<Fcl<fcl::DynamicAABBTreeCollisionManager_Arrayd>>();
          }},
         {"FCL sweep and prune", false, false,
-         [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Fcl<fcl::SaPCollisionManagerd>>(); }},
+         [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Fcl<fcl::SaPCollisionManagerd>>(); },
+         100'000},
     };
 }
 
