@@ -1,0 +1,193 @@
+#!/usr/bin/python3
+"""Draws what was measured, as SVG.
+
+    bench/plot.py FOLDER [--paper FILE] [--peers FILE...]
+
+FILE: the JSON of `octopair bench paper`, and of octopair_compare. Written to FOLDER: figure-5.svg and components.svg from
+the first, peers-1m.svg from the comparisons of a million objects on one thread. The same files give the same bytes. Needs
+Matplotlib (scripts/setup bench), which Debian has for its own Python.
+"""
+import argparse
+import json
+import math
+import pathlib
+
+import matplotlib
+
+matplotlib.use("svg")
+from matplotlib import pyplot, ticker  # noqa: E402 (the backend comes first)
+
+# The palette of Okabe and Ito: told apart by all kinds of eyes.
+BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
+    "#000000", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
+LINES = [BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK]
+GREY = "#555555"
+PEERS = {"LBVH": GREEN, "Embree Morton": BLUE, "Embree SAH": SKY, "CGAL cutoff 1000": PURPLE, "Boost R-tree": YELLOW,
+         "FCL AABB tree": ORANGE, "Bullet dbvt": RED, "paper": BLACK}
+MILLION = 1_000_000
+STYLE = {
+    "svg.hashsalt": "octopair", "svg.fonttype": "none", "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"], "font.size": 10, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.grid": True, "axes.axisbelow": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "figure.facecolor": "white",
+    "axes.titlesize": 11, "legend.frameon": False, "legend.fontsize": 9,
+}
+
+
+def save(figure, folder, name):
+    """On a white ground of its own, so that it is read as well where the page is dark."""
+    figure.savefig(folder / name, facecolor="white", metadata={"Date": None, "Creator": None})
+    pyplot.close(figure)
+
+
+def setup_text(series):
+    """On how many processors."""
+    count, machines = series["processors"], series["machines"]
+    if machines > 1:
+        return f"{machines} x {count // machines} processors"
+    return f"{count} processor{'s' if count > 1 else ''}"
+
+
+def fit_curve(fits, objects):
+    """The fit with the smaller residual: its name, and its milliseconds at each number of objects."""
+    linear, log = fits["n"], fits["n_log2_n"]
+    if linear["residual"] <= log["residual"]:
+        return "a n", [1e3 * linear["a"] * n for n in objects]
+    return "a n log n", [1e3 * log["a"] * n * math.log2(n) for n in objects]
+
+
+def draw_lines(axes, all_series):
+    """Time against objects: a line for each number of processors, and its fit, dashed."""
+    for series, color in zip(all_series, LINES):
+        points = series["points"]
+        millions = [point["objects"] / MILLION for point in points]
+        axes.plot(millions, [point["median_seconds"] * 1e3 for point in points], "o-", color=color, markersize=4,
+                  label=setup_text(series))
+        largest = points[-1]["objects"]
+        objects = [largest * i / 60 for i in range(1, 61)]
+        name, curve = fit_curve(series["fits"], objects)
+        what = "either fit; drawn" if series["fits"]["holds_better"] == "cannot tell" else "fit"
+        axes.plot([n / MILLION for n in objects], curve, "--", color=color, linewidth=1, label=f"{what}: {name}")
+    axes.set_xlabel("million objects")
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    axes.yaxis.set_major_formatter(ticker.StrMethodFormatter("{x:,.0f}"))
+    axes.legend(loc="upper left")
+
+
+def figure_5(study, folder):
+    """The paper's figure 5, here: its algorithm and octopair, each on a scale of its own."""
+    figure, panels = pyplot.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    titles = {"paper": "the paper's algorithm", "octopair": "octopair"}
+    for axes, (finder, title) in zip(panels, titles.items()):
+        draw_lines(axes, [series for series in study["series"] if series["finder"] == finder])
+        axes.set_title(title)
+    panels[0].set_ylabel("milliseconds")
+    save(figure, folder, "figure-5.svg")
+
+
+STEPS = [("octal codes (encode)", BLUE, "octal_codes", "encode"), ("sort", ORANGE, "sort", "sort"),
+         ("merge", GREEN, "merge_machine", "merge"), ("merge at the master", PURPLE, "merge_master", None),
+         ("scan", SKY, "scan", "scan")]
+
+
+def component_bars(study):
+    """(label, seconds by step) of each bar."""
+    published = study["published"]["components"]
+    bars = [(f"as published, on\n{published['processors']}; no scan given",
+             [published.get(paper, 0) / 1e6 for _, _, paper, _ in STEPS])]
+    most = max(series["processors"] for series in study["series"])
+    labels = {"paper": "the paper's here,\nradix sort", "paper, std::sort": "the paper's here,\nstd::sort",
+              "octopair": "octopair"}
+    for finder, label in labels.items():
+        for series in study["series"]:
+            if series["finder"] == finder and series["processors"] == most and series["machines"] == 1:
+                steps = series["points"][-1]["median_steps"]
+                bars.append((label, [steps.get(ours if finder == "octopair" else paper, 0)
+                                     for _, _, paper, ours in STEPS]))
+    return bars
+
+
+def components(study, folder):
+    """Each step's share of the steps' time, one bar for each way; the sum stands beside it."""
+    bars = component_bars(study)
+    figure, axes = pyplot.subplots(figsize=(9, 3.2), layout="constrained")
+    left = [0.0] * len(bars)
+    for i, (name, color, _, _) in enumerate(STEPS):
+        shares = [100 * seconds[i] / sum(seconds) for _, seconds in bars]
+        axes.barh(range(len(bars)), shares, left=left, color=color, label=name, height=0.62)
+        for row, share in enumerate(shares):
+            if share >= 5:
+                axes.text(left[row] + share / 2, row, f"{share:.0f}%", ha="center", va="center", fontsize=9,
+                          color="white" if color in (BLUE, GREEN) else "black")
+        left = [a + b for a, b in zip(left, shares)]
+    for row, (_, seconds) in enumerate(bars):
+        axes.text(101, row, f"{sum(seconds) * 1e3:,.0f} ms", va="center", fontsize=9)
+    axes.set_yticks(range(len(bars)), [label for label, _ in bars])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 110)
+    axes.set_xticks(range(0, 101, 20))
+    axes.set_xlabel("% of the time of all steps")
+    axes.grid(False, axis="y")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(STEPS))
+    save(figure, folder, "components.svg")
+
+
+def slower_by(result):
+    """How many times slower than octopair each peer is in a scene."""
+    seconds = {row["contender"]: row["median_seconds"] for row in result["rows"]
+               if not row.get("out_of_memory") and "median_seconds" in row}
+    return {name: seconds[name] / seconds["octopair"] for name in PEERS if name in seconds}
+
+
+def draw_peers(axes, results):
+    """Groups of bars, a group for each scene."""
+    width = 0.86 / len(PEERS)
+    for i, (name, color) in enumerate(PEERS.items()):
+        bars = [(scene + (i - (len(PEERS) - 1) / 2) * width, slower_by(result).get(name))
+                for scene, result in enumerate(results)]
+        bars = [(x, ratio) for x, ratio in bars if ratio]
+        label = "the paper's algorithm" if name == "paper" else name
+        axes.bar([x for x, _ in bars], [ratio - 1 for _, ratio in bars], width, bottom=1, color=color, label=label,
+                 edgecolor="white", linewidth=0.4)
+        for x, ratio in bars:
+            axes.text(x, ratio * 1.05, f"{ratio:.0f}" if ratio >= 9.5 else f"{ratio:.1f}", ha="center", va="bottom",
+                      fontsize=6.5, color=GREY)
+
+
+def peers(results, folder):
+    """Times slower than octopair, on a logarithmic scale."""
+    chosen = [r for r in results if r["objects"] == MILLION and r["threads"] == 1]
+    if not chosen:
+        return
+    figure, axes = pyplot.subplots(figsize=(10, 4.2), layout="constrained")
+    draw_peers(axes, chosen)
+    axes.set_yscale("log")
+    axes.set_ylim(bottom=min(1, *(0.8 * ratio for result in chosen for ratio in slower_by(result).values())))
+    axes.set_xlim(-0.5, len(chosen) - 0.5)
+    axes.yaxis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+    axes.set_ylabel("times slower than octopair")
+    axes.set_xticks(range(len(chosen)), [result["scene"] for result in chosen])
+    axes.tick_params(axis="x", length=0)
+    axes.grid(False, axis="x")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    save(figure, folder, "peers-1m.svg")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--paper", type=pathlib.Path, metavar="FILE")
+    parser.add_argument("--peers", type=pathlib.Path, nargs="+", default=[], metavar="FILE")
+    request = parser.parse_args()
+    request.folder.mkdir(parents=True, exist_ok=True)
+    pyplot.rcParams.update(STYLE)
+    if request.paper:
+        study = json.loads(request.paper.read_text(encoding="utf-8"))
+        figure_5(study, request.folder)
+        components(study, request.folder)
+    peers([result for path in request.peers for result in json.loads(path.read_text(encoding="utf-8"))["results"]],
+          request.folder)
+
+
+if __name__ == "__main__":
+    main()
