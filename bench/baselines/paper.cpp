@@ -5,6 +5,7 @@
 // end.
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <iterator>
 #include <limits>
 #include <thread>
@@ -137,12 +138,27 @@ EntryList merge_sorted_lists(std::vector<EntryList> lists) {
     return lists.empty() ? EntryList() : std::move(lists.front());
 }
 
-/// Runs `work(i)` for i below `count`, each on a thread of its own.
+/// Runs `work(i)` for i below `count`, each on a thread of its own. What one throws (there may be too many octants for the
+/// memory) reaches the caller.
 template <typename Work>
 void run_side_by_side(std::size_t count, const Work& work) {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < count; ++i) threads.emplace_back([&work, i] { work(i); });
-    if (count > 0) work(0);
+    std::vector<std::exception_ptr> failures(count);
+    const auto guarded_work = [&](std::size_t i) {
+        try {
+            work(i);
+        } catch (...) {
+            failures[i] = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> threads;
+        threads.reserve(count);
+        for (std::size_t i = 1; i < count; ++i) threads.emplace_back(guarded_work, i);
+        if (count > 0) guarded_work(0);
+    }
+    for (const std::exception_ptr& failure : failures) {
+        if (failure) std::rethrow_exception(failure);
+    }
 }
 
 /// Steps 1 to 3 on all slaves: equal shares of the objects.
