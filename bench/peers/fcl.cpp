@@ -60,7 +60,7 @@ std::vector<ContenderKind> fcl_contenders() {
          }},
         {"FCL sweep and prune", false, false,
          [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Fcl<fcl::SaPCollisionManagerd>>(); },
-         100'000},
+         50'000},
     };
 }
 

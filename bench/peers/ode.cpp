@@ -60,7 +60,7 @@ private:
 
 std::vector<ContenderKind> ode_contenders() {
     return {{"ODE hash space", false, false,
-             [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Ode>(); }, 100'000}};
+             [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Ode>(); }, 50'000}};
 }
 
 }  // namespace octopair::bench
