@@ -15,7 +15,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t sample_stride = 32;        // one object of so many is sampled, but
+constexpr std::size_t sample_stride = 64;        // one object of so many is sampled, but
 constexpr std::size_t most_samples = 1 << 21;    // no more than these
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t blocks_per_thread = 2;     // each counts entries per octant
