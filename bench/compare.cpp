@@ -13,10 +13,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "io/atomic_file.hpp"
 #include "machine/machine.hpp"
 #include "peers/comparison.hpp"
 
@@ -81,15 +82,16 @@ void limit_memory() {
     ::setrlimit(RLIMIT_AS, &limit);
 }
 
-void save(const std::string& path, const nlohmann::ordered_json& results) {
+void save(io::AtomicFile& file, const nlohmann::ordered_json& results) {
     nlohmann::ordered_json all = machine_json();
     all["results"] = results;
-    std::ofstream file(path);
-    file << all.dump(1) << '\n';
-    if (!file.flush()) throw std::runtime_error("cannot write " + path);
+    file.write(all.dump(1) + '\n');
+    file.commit();
 }
 
 int run(const Request& request) {
+    std::optional<io::AtomicFile> json;
+    if (!request.json.empty()) json.emplace(request.json);
     nlohmann::ordered_json results = nlohmann::json::array();
     bool agree = true;
     for_each_scene(request.scenes, [&](const Scene& scene) {
@@ -102,7 +104,7 @@ int run(const Request& request) {
         results.push_back(scene_json(scene, rows, request.plan.threads));
         agree = agree && std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.agrees; });
     });
-    if (!request.json.empty()) save(request.json, results);
+    if (json) save(*json, results);
     return agree ? 0 : 1;
 }
 

@@ -22,9 +22,11 @@ def load(path):
 
 def machine(results):
     """What measured."""
-    said = load(results / "paper.json")
+    files = [load(path) for path in [results / "paper.json", *sorted(results.glob("peers_*.json"))]]
+    said = files[0]
+    commits = sorted({file["commit"] for file in files})
     return (f"Measured on {said['processor']}, {said['cores']} cores, with {said['compiler']}; octopair "
-            f"{said['version']}, commit {said['commit']}.")
+            f"{said['version']}, commit{'s' if len(commits) > 1 else ''} {', '.join(commits)}.")
 
 
 def seconds_at(study, finder, processors, objects):

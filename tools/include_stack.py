@@ -20,7 +20,7 @@ USES["io"] = {"base", "geometry"}
 BENCH = ["baselines", "machine", "paper"]
 USES["baselines"] = {"base", "octree"}
 USES["machine"] = set()
-USES["paper"] = {"baselines", "machine", "samples"}
+USES["paper"] = {"base", "baselines", "machine", "samples"}
 USES["cli"] = set(CORE) | {"samples", "io", "paper"}
 
 PURPOSE = {

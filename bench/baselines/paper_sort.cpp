@@ -8,14 +8,6 @@ namespace octopair::baselines {
 
 namespace {
 
-/// For a sort that writes no pairs.
-class NoPairs final : public PairWriter {
-public:
-    bool counting() const override { return true; }
-    void write(std::span<const Pair>) override {}
-    void write_count(std::uint64_t) override {}
-};
-
 constexpr unsigned bits_of_level = 4;
 constexpr unsigned most_level = (32 - bits_of_level) / 3;
 

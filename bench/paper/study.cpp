@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "base/stop.hpp"
 #include "baselines/baselines.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
@@ -23,10 +24,6 @@ using baselines::PaperSort;
 constexpr unsigned least_rounds = 3;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-void throw_if_stopped(const std::stop_token& stop) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
-}
 
 struct Outcome {
     Run run;

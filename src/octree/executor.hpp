@@ -34,6 +34,14 @@ public:
     virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) = 0;
 };
 
+/// For steps that write no pairs.
+class NoPairs final : public PairWriter {
+public:
+    bool counting() const override { return true; }
+    void write(std::span<const Pair>) override {}
+    void write_count(std::uint64_t) override {}
+};
+
 /// Runs all shares on the calling thread, pairs to one writer: how a share runs steps within itself.
 class SerialExecutor final : public Executor {
 public:

@@ -17,13 +17,6 @@
 namespace octopair {
 namespace {
 
-class NoPairs final : public PairWriter {
-public:
-    bool counting() const override { return true; }
-    void write(std::span<const Pair>) override {}
-    void write_count(std::uint64_t) override {}
-};
-
 /// Pretends to be many threads, and runs the shares last to first.
 class BackwardExecutor final : public Executor {
 public:
