@@ -25,10 +25,13 @@ struct Box {
 using Box3f = Box<float>;
 using Box3d = Box<double>;
 
+/// Boxes of either precision, borrowed.
+using Boxes = std::variant<std::span<const Box3f>, std::span<const Box3d>>;
+
 /// The objects of a call, borrowed: the arrays must outlive it. At most 2^32 - 1 objects (in a join, both sets
 /// together).
 struct Objects {
-    std::variant<std::span<const Box3f>, std::span<const Box3d>> boxes;
+    Boxes boxes;
     std::span<const double> padding = {};  ///< empty, or one clearance per object; finite, >= 0
 
     std::uint64_t size() const noexcept {

@@ -70,11 +70,7 @@ bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);
     const Box3d box_b = box(b, padding_b);
-    const double reach = rounding_.margin + (padding_a + padding_b);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::max(box_a.min[axis] - box_b.max[axis], box_b.min[axis] - box_a.max[axis]) <= reach)) return false;
-    }
-    return true;
+    return within_reach(box_a, box_b, rounding_.margin + (padding_a + padding_b));
 }
 
 RoundingSlack BoxSource::slack() const {

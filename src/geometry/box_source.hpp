@@ -14,6 +14,7 @@
 
 #include "geometry/box_kernel.hpp"
 #include "geometry/entry.hpp"
+#include "geometry/pair_rule.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -34,7 +35,7 @@ public:
     virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
 };
 
-class BoxSource final : public EntrySource {
+class BoxSource final : public EntrySource, public PairRule {
 public:
     /// `second` may be null (pairs within `first`). Borrows both.
     BoxSource(const Objects& first, const Objects* second, double margin);
@@ -44,15 +45,15 @@ public:
     std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override;
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
-    bool join() const { return second_ != nullptr; }
-    /// Objects of the second set of a join have indices from here on; otherwise 0.
-    std::uint32_t second_begin() const { return join() ? std::uint32_t(first_size_) : 0; }
-    /// True if overlapping entries are a pair, without a further test.
-    bool exact() const { return exact_; }
-    /// A hit that is no deeper than this says counts only if counts() says so.
-    RoundingSlack slack() const;
-    /// The rule of objects.hpp, in float64, on the caller's numbers.
-    bool counts(std::uint32_t a, std::uint32_t b) const;
+    bool join() const override { return second_ != nullptr; }
+    std::uint32_t second_begin() const override { return join() ? std::uint32_t(first_size_) : 0; }
+    bool exact() const override { return exact_; }
+    RoundingSlack slack() const override;
+    /// The rule of objects.hpp, in float64.
+    bool counts(std::uint32_t a, std::uint32_t b) const override;
+
+    /// How boxes become entries, unless exact().
+    const OutwardRounding& rounding() const { return rounding_; }
 
     /// Throws Error{bad_input} that names the first object from `begin` on which is not a box, and its value.
     [[noreturn]] void refuse(std::size_t begin) const;

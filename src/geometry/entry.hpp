@@ -10,6 +10,7 @@
 //              exactly if on each axis at least one of them begins there, so each pair is reported by one octant only
 //              (the entry classes of Tsitsigkos et al., arXiv 2307.09256).
 //   bit 3, 4   the object belongs to the first, the second set of a join: pairs within a set do not count.
+//   bit 5      the object is a fixed one of a scene: likewise.
 #pragma once
 
 #include <algorithm>
@@ -31,6 +32,7 @@ static_assert(sizeof(Entry) == 32);
 inline constexpr std::uint32_t begins_before = 7;  ///< the three class bits
 inline constexpr std::uint32_t first_set = 8;
 inline constexpr std::uint32_t second_set = 16;
+inline constexpr std::uint32_t fixed_object = 32;  ///< of a scene
 
 /// True if the closed boxes overlap: the specification of what the sweep kernels compute.
 inline bool overlap(const Entry& a, const Entry& b) {

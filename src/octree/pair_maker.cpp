@@ -33,11 +33,11 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
-    const Depths depths = context_.source.exact() ? Depths{} : certain_depths(sweep, slack_);
+    const Depths depths = context_.rule.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {
         const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, hits_));
         if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
-        if (!context_.source.exact()) drop_rounded(sweep, depths, hits);
+        if (!context_.rule.exact()) drop_rounded(sweep, depths, hits);
         drain(sweep, hits);
         if (cursor.row < sweep.rows.size()) throw_if_stopped(context_.stop);
     }
@@ -57,7 +57,7 @@ void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span
     keep_deep(sweep, depths, certain);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
-            return context_.source.counts(sweep.rows.object()[row], sweep.columns.object()[column]);
+            return context_.rule.counts(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
     }
 }
@@ -72,7 +72,7 @@ void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
     while (!hits.empty()) {
         const std::size_t room = (pairs_.size() - held_) / most_hits;
         const auto some = hits.first(std::min(hits.size(), room));
-        held_ += pairs_of_hits(sweep, some, context_.source.second_begin(), pairs_.data() + held_);
+        held_ += pairs_of_hits(sweep, some, context_.rule.second_begin(), pairs_.data() + held_);
         hits = hits.subspan(some.size());
         if (!hits.empty()) flush();
     }

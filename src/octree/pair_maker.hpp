@@ -9,7 +9,7 @@
 #include <span>
 #include <stop_token>
 
-#include "geometry/box_source.hpp"
+#include "geometry/pair_rule.hpp"
 #include "octree/executor.hpp"
 #include "octree/sweep.hpp"
 
@@ -25,14 +25,14 @@ inline Orientation reversed(Orientation orientation) {
 
 /// What every share of a scan needs to know.
 struct ScanContext {
-    const BoxSource& source;
+    const PairRule& rule;
     std::stop_token stop;
 };
 
 class PairMaker {
 public:
     PairMaker(const ScanContext& context, PairWriter& writer)
-        : context_(context), slack_(context.source.slack()), writer_(writer) {}
+        : context_(context), slack_(context.rule.slack()), writer_(writer) {}
 
     /// Runs a sweep to its end. Throws Error{cancelled}.
     void sweep(const Sweep& sweep, const Orientation& orientation);

@@ -189,7 +189,7 @@ private:
     void crowded_part(const Join& join, bool same_shape) {
         if (join.rows.size() == 0 || join.columns.size() == 0 || swept(join)) return;
         // An octree tells apart the two sets of the caller's join, but not others.
-        const bool separable = join.self || context_.source.join();
+        const bool separable = join.self || context_.rule.join();
         if (same_shape && separable && split_afresh(join)) return;
         recursive_sweep(context_, join, executor_);
     }
@@ -259,7 +259,7 @@ void scan(const LinearOctree& octree, const ScanContext& context, Executor& exec
             const auto own = octree.entries(node);
             if (own.empty()) continue;
             const unsigned axis = octree.frame().long_axis();
-            context.source.join() ? nodes.scan_join(own, above, axis) : nodes.scan(own, above, axis);
+            context.rule.join() ? nodes.scan_join(own, above, axis) : nodes.scan(own, above, axis);
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/radix_sort.hpp"
 #include "base/stop.hpp"
 #include "engine/local/pair_pages.hpp"
 
@@ -18,8 +19,6 @@ constexpr unsigned most_bucket_bits = 10;
 constexpr unsigned objects_a_bucket_bits = 12;   // unless that makes too many buckets
 constexpr unsigned split_bits = 6;               // of a bucket too large to be sorted at once
 constexpr std::size_t sorted_at_once = 1 << 18;  // pairs
-constexpr std::size_t radix_from = 512;          // pairs
-constexpr unsigned digit_bits = 11;
 
 /// Pairs as numbers in the same order, of as few bits as the rows and columns need.
 class PairKeys {
@@ -38,41 +37,6 @@ public:
 private:
     std::uint64_t first_, count_;
     unsigned b_bits_;
-};
-
-/// Sorts by the lowest bits of keys that agree above them; keeps its memory from call to call.
-template <typename Key>
-class RadixSort {
-public:
-    std::span<Key> take(std::size_t size) {
-        keys_.resize_discard(size);
-        return keys_.span();
-    }
-
-    /// What take() gave, in order.
-    std::span<const Key> sort(unsigned bits) {
-        if (keys_.size() < radix_from) {
-            std::sort(keys_.span().begin(), keys_.span().end());
-            return keys_.span();
-        }
-        other_.resize_discard(keys_.size());
-        for (unsigned shift = 0; shift < bits; shift += digit_bits) {
-            pass(shift);
-            std::swap(keys_, other_);
-        }
-        return keys_.span();
-    }
-
-private:
-    void pass(unsigned shift) {
-        constexpr Key digit_mask = (Key(1) << digit_bits) - 1;
-        std::array<std::uint32_t, (1u << digit_bits) + 1> at{};
-        for (const Key key : keys_.span()) ++at[(key >> shift & digit_mask) + 1];
-        for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
-        for (const Key key : keys_.span()) other_[at[key >> shift & digit_mask]++] = key;
-    }
-
-    Buffer<Key> keys_, other_;
 };
 
 /// What one thread needs.
@@ -137,7 +101,7 @@ private:
             }
         }
         const std::uint64_t above = keys_.key(*pages[0]) >> (sizeof(Key) * 8 - 1) >> 1 << (sizeof(Key) * 8 - 1) << 1;
-        write(radix.sort(bits), above, pages);
+        write(radix.sort(0, bits), above, pages);
     }
 
     /// Back over the pages that they came from; what remains free is given back.

@@ -1,0 +1,51 @@
+// GrowingArray: a vector of plain data in a Buffer, so that a large one lies on huge pages: where single elements of tens
+// of megabytes are read, looking up small pages costs as much as the memory.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include "base/memory.hpp"
+
+namespace octopair {
+
+template <typename T>
+class GrowingArray {
+public:
+    /// Grows by half at least, so that what is added one by one is not copied each time. Throws std::bad_alloc.
+    void reserve(std::size_t size) {
+        if (size <= memory_.size()) return;
+        Buffer<T> larger(std::max(size, memory_.size() + memory_.size() / 2));
+        if (size_ > 0) std::memcpy(larger.data(), memory_.data(), size_ * sizeof(T));
+        memory_ = std::move(larger);
+    }
+    void resize(std::size_t size, const T& fresh) {
+        reserve(size);
+        std::fill(memory_.data() + std::min(size, size_), memory_.data() + size, fresh);
+        size_ = size;
+    }
+    /// One more, within what was reserved, and not initialised.
+    void grow() { ++size_; }
+    /// Keeps its memory.
+    void clear() { size_ = 0; }
+    void push_back(const T& element) {
+        const T copy = element;  // which may be one of this
+        reserve(size_ + 1);
+        memory_[size_++] = copy;
+    }
+
+    bool empty() const { return size_ == 0; }
+    std::size_t size() const { return size_; }
+    std::span<const T> span() const { return {memory_.data(), size_}; }
+    T& operator[](std::size_t i) { return memory_[i]; }
+    const T& operator[](std::size_t i) const { return memory_[i]; }
+
+private:
+    Buffer<T> memory_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace octopair

@@ -1,0 +1,54 @@
+// RadixSort: integers in order, by their lowest bits.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "base/memory.hpp"
+
+namespace octopair {
+
+/// Keeps its memory from call to call.
+template <typename Key>
+class RadixSort {
+public:
+    std::span<Key> take(std::size_t size) {
+        keys_.resize_discard(size);
+        return keys_.span();
+    }
+
+    /// What take() gave, in order, where keys agree in the bits from `end_bit` on and are in order of those below
+    /// `first_bit`.
+    std::span<const Key> sort(unsigned first_bit, unsigned end_bit) {
+        if (keys_.size() < radix_from) {
+            std::sort(keys_.span().begin(), keys_.span().end());
+            return keys_.span();
+        }
+        other_.resize_discard(keys_.size());
+        for (unsigned shift = first_bit; shift < end_bit; shift += digit_bits) {
+            pass(shift);
+            std::swap(keys_, other_);
+        }
+        return keys_.span();
+    }
+
+private:
+    static constexpr std::size_t radix_from = 512;  // keys
+    static constexpr unsigned digit_bits = 11;
+
+    void pass(unsigned shift) {
+        constexpr Key digit_mask = (Key(1) << digit_bits) - 1;
+        std::array<std::uint32_t, (1u << digit_bits) + 1> at{};
+        for (const Key key : keys_.span()) ++at[(key >> shift & digit_mask) + 1];
+        for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
+        for (const Key key : keys_.span()) other_[at[key >> shift & digit_mask]++] = key;
+    }
+
+    Buffer<Key> keys_, other_;
+};
+
+}  // namespace octopair
