@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace octopair {
@@ -89,6 +90,23 @@ Frame Frame::fit(std::span<const Entry> sample, std::uint64_t objects) {
         frame.map_.last[axis] = float(frame.map_.cell(float(axes[axis].end), axis));
     }
     return frame;
+}
+
+Box3d Frame::bounds(const CellBox& cells) const {
+    // A cell more on each side for the rounding to cells, and what float32 may round beside that.
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double roundings = 0x1p-21;
+    Box3d bounds;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double origin = double(map_.origin[axis]), cell = 1 / double(map_.scale[axis]);
+        // The map's difference overflows to its last cell.
+        const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
+        const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
+        bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));
+        bounds.max[axis] =
+            cells.hi[axis] >= last_cell(axis) ? infinity : hi + roundings * (std::abs(origin) + std::abs(hi));
+    }
+    return bounds;
 }
 
 }  // namespace octopair

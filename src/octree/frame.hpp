@@ -70,6 +70,9 @@ public:
     void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
     void cells(std::span<const Box3f> bounds, std::span<CellBox> boxes) const;
 
+    /// At least all coordinates that these cells stand for; infinite at the border.
+    Box3d bounds(const CellBox& cells) const;
+
     const FrameMap& map() const { return map_; }
     /// The axis that octants are long on and are swept along first.
     unsigned long_axis() const { return long_axis_; }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "octree/octants_of.hpp"
 #include "octree/sample.hpp"
 
 namespace octopair {
@@ -23,67 +24,12 @@ constexpr std::size_t batch_size = 256;          // objects loaded at a time: th
 constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
 constexpr std::ptrdiff_t prefetched_ghosts = 8;  // and ghosts
 
-/// Whether a box lies within the octant of `level` that its low corner lies in.
-bool within(const CellBox& box, unsigned level) {
-    return ((box.lo[0] ^ box.hi[0]) | (box.lo[1] ^ box.hi[1]) | (box.lo[2] ^ box.hi[2])) >> (deepest - level) == 0;
-}
-
 /// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the
 /// frame's low border (the box then begins before the octant that this frame was made within).
 std::uint32_t mask_in(const Node& node, std::uint32_t brought, std::uint32_t begins) {
     std::uint32_t border = 0;
     for (unsigned axis = 0; axis < 3; ++axis) border |= std::uint32_t(node.lo[axis] == 0) << axis;
     return (brought & ~begins_before) | begins | (brought & border);
-}
-
-/// The axes, as bits, on which a box reaches into further octants of `level`.
-unsigned crossed_axes(const CellBox& box, unsigned level) {
-    const unsigned shift = deepest - level;
-    unsigned crossed = 0;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        crossed |= unsigned(box.lo[axis] >> shift != box.hi[axis] >> shift) << axis;
-    }
-    return crossed;
-}
-
-Cell corner_of(const CellBox& box, unsigned corner) {
-    Cell cell = box.lo;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        if (corner >> axis & 1u) cell[axis] = box.hi[axis];
-    }
-    return cell;
-}
-
-/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
-/// begins in; `home` is the leaf it begins in. At its natural level and above, the corners of a box reach all octants that
-/// it touches; where several lie in one coarser leaf, the lowest counts.
-template <typename Place>
-void for_each_octant(const Directory& directory, const CellBox& box, Directory::Leaf home, Place&& place) {
-    const unsigned natural = natural_level(box);
-    std::array<std::pair<unsigned, NodeIndex>, 8> corners;
-    std::size_t count = 0;
-    // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
-    unsigned level = std::min(natural, home.level());
-    for (bool again = true; again;) {
-        const unsigned crossed = crossed_axes(box, level);
-        unsigned finest = level;
-        unsigned corner = 0;
-        count = 0;
-        do {
-            const Directory::Leaf leaf = corner == 0 ? home : directory.leaf(corner_of(box, corner));
-            finest = std::max(finest, std::min(natural, leaf.level()));
-            corners[count++] = {corner, directory.at_most(leaf, natural)};
-            corner = (corner - crossed) & crossed;  // the next subset of `crossed`
-        } while (corner != 0);
-        again = finest != level;
-        level = finest;
-    }
-    for (const auto& [corner, node] : std::span(corners).first(count)) {
-        const Cell& first = directory.nodes()[node].lo;
-        unsigned begins = 0;
-        for (unsigned axis = 0; axis < 3; ++axis) begins |= unsigned(box.lo[axis] < first[axis]) << axis;
-        if ((corner & ~begins) == 0) place(node, begins);
-    }
 }
 
 double seconds_since(std::chrono::steady_clock::time_point& last) {
@@ -202,7 +148,7 @@ void LinearOctree::encode(const EntrySource& source, Block& block, std::stop_tok
         }
         for (const std::uint32_t i : std::span(crossers).first(crossing)) {
             const NodeIndex home = homes_[begin + i].node();
-            for_each_octant(directory_, cells[i], leaves[i], [&](NodeIndex node, unsigned begins) {
+            for_each_octant_of(cells[i], directory_, leaves[i], [&](NodeIndex node, unsigned begins) {
                 if (node == home) return;
                 ++block.ghost_at[node];
                 block.ghosts.emplace_back(node, begins);

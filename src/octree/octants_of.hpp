@@ -1,0 +1,69 @@
+// Which octants of a linear octree get an entry of a box.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "octree/directory.hpp"
+
+namespace octopair {
+
+/// Whether a box lies within the octant of `level` that its low corner lies in.
+inline bool within(const CellBox& box, unsigned level) {
+    return ((box.lo[0] ^ box.hi[0]) | (box.lo[1] ^ box.hi[1]) | (box.lo[2] ^ box.hi[2])) >> (deepest - level) == 0;
+}
+
+/// The axes, as bits, on which a box reaches into further octants of `level`.
+inline unsigned crossed_axes(const CellBox& box, unsigned level) {
+    const unsigned shift = deepest - level;
+    unsigned crossed = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        crossed |= unsigned(box.lo[axis] >> shift != box.hi[axis] >> shift) << axis;
+    }
+    return crossed;
+}
+
+inline Cell corner_of(const CellBox& box, unsigned corner) {
+    Cell cell = box.lo;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1u) cell[axis] = box.hi[axis];
+    }
+    return cell;
+}
+
+/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
+/// begins in; `home` is the leaf it begins in. At its natural level and above, the corners of a box reach all octants that
+/// it touches; where several lie in one coarser leaf, the lowest counts.
+template <typename Place>
+void for_each_octant_of(const CellBox& box, const Directory& directory, Directory::Leaf home, Place&& place) {
+    const unsigned natural = natural_level(box);
+    std::array<std::pair<unsigned, NodeIndex>, 8> corners;
+    std::size_t count = 0;
+    // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
+    unsigned level = std::min(natural, home.level());
+    for (bool again = true; again;) {
+        const unsigned crossed = crossed_axes(box, level);
+        unsigned finest = level;
+        unsigned corner = 0;
+        count = 0;
+        do {
+            const Directory::Leaf leaf = corner == 0 ? home : directory.leaf(corner_of(box, corner));
+            finest = std::max(finest, std::min(natural, leaf.level()));
+            corners[count++] = {corner, directory.at_most(leaf, natural)};
+            corner = (corner - crossed) & crossed;  // the next subset of `crossed`
+        } while (corner != 0);
+        again = finest != level;
+        level = finest;
+    }
+    for (const auto& [corner, node] : std::span(corners).first(count)) {
+        const Cell& first = directory.nodes()[node].lo;
+        unsigned begins = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) begins |= unsigned(box.lo[axis] < first[axis]) << axis;
+        if ((corner & ~begins) == 0) place(node, begins);
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,115 @@
+// The octree that changes against brute force over cells: nothing that overlaps is missed, and nothing comes twice.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "geometry/box_source.hpp"
+#include "octree/linear_octree.hpp"
+#include "octree/mutable_octree.hpp"
+#include "support/kinds.hpp"
+
+namespace octopair {
+namespace {
+
+bool overlap(const CellBox& a, const CellBox& b) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (a.lo[axis] > b.hi[axis] || b.lo[axis] > a.hi[axis]) return false;
+    }
+    return true;
+}
+
+/// An octree, and the cells of what is in it.
+class Changing {
+public:
+    explicit Changing(const std::vector<Box3f>& boxes) {
+        const Objects objects{std::span<const Box3f>(boxes)};
+        const BoxSource source(objects, nullptr, 0);
+        NoPairs none;
+        SerialExecutor executor(none);
+        LinearOctree linear;
+        linear.build(source, executor, {});
+        octree_.build(linear, {});
+        cells_.resize(boxes.size());
+        octree_.frame().cells(boxes, cells_);
+        here_.assign(boxes.size(), true);
+    }
+
+    void erase(std::uint32_t object) {
+        octree_.erase(object, cells_[object]);
+        here_[object] = false;
+    }
+
+    void insert(std::uint32_t object, const Box3f& box) {
+        octree_.frame().cells(std::span(&box, 1), {&cells_[object], 1});
+        octree_.insert(object, cells_[object]);
+        here_[object] = true;
+    }
+
+    bool here(std::uint32_t object) const { return here_[object]; }
+
+    void expect_found(const Box3f& box) const {
+        CellBox cells;
+        octree_.frame().cells(std::span(&box, 1), {&cells, 1});
+        std::vector<std::uint32_t> found;
+        octree_.search(cells, found);
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "twice";
+        for (std::uint32_t object = 0; object < cells_.size(); ++object) {
+            const bool is_found = std::binary_search(found.begin(), found.end(), object);
+            if (!here_[object]) {
+                ASSERT_FALSE(is_found) << "object " << object << " is not there";
+            } else if (overlap(cells_[object], cells)) {
+                ASSERT_TRUE(is_found) << "object " << object << " is missing";
+            }
+        }
+    }
+
+private:
+    MutableOctree octree_;
+    std::vector<CellBox> cells_;
+    std::vector<bool> here_;
+};
+
+class MutableOctreeTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(MutableOctreeTest, FindsAllOnce) {
+    for (const std::uint64_t objects : {1u, 40u, 3000u}) {
+        const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 7);
+        const std::vector<Box3f> others = testing::make_boxes(GetParam(), objects, 8);
+        Changing octree(boxes);
+        for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / 60) {
+            octree.expect_found(boxes[i]);
+            octree.expect_found(others[i]);
+        }
+    }
+}
+
+TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
+    constexpr std::uint32_t objects = 1500;
+    const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 9);
+    const std::vector<Box3f> others = testing::make_boxes(GetParam(), objects, 10);
+    Changing octree(boxes);
+    std::mt19937 random(11);
+    const std::uint32_t size = std::uint32_t(std::min(boxes.size(), others.size()));
+    for (int round = 0; round < 4000; ++round) {
+        const std::uint32_t object = std::uint32_t(random() % size);
+        octree.here(object) ? octree.erase(object) : octree.insert(object, others[random() % size]);
+    }
+    for (std::uint32_t i = 0; i < size; i += 30) {
+        octree.expect_found(boxes[i]);
+        octree.expect_found(others[i]);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+
+TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
+    MutableOctree octree;
+    std::vector<std::uint32_t> found;
+    octree.search({}, found);
+    EXPECT_TRUE(found.empty());
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,90 @@
+// The kernel that searches a block against its specification; and boxes in the numbers of a unit.
+#include "octree/small_block.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "octree/plot.hpp"
+
+namespace octopair {
+namespace {
+
+SmallBox random_box(std::mt19937& random, std::uint32_t numbers) {
+    SmallBox box;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const std::uint32_t a = std::uint32_t(random()) % numbers, b = std::uint32_t(random()) % numbers;
+        box.set(axis, std::min(a, b), std::max({a, b, 1u}));
+    }
+    return box;
+}
+
+TEST(SmallBlock, KernelFindsWhatTheSpecificationDoes) {
+    std::mt19937 random(1);
+    std::size_t found = 0;
+    for (int round = 0; round < 20000; ++round) {
+        // Few numbers make many that touch, or begin before the unit.
+        const std::uint32_t numbers = round % 2 == 0 ? 4 : 256;
+        SmallBlock block{};
+        block.count = std::uint32_t(random()) % (SmallBlock::capacity + 1);
+        for (std::size_t i = 0; i < SmallBlock::capacity; ++i) {
+            block.set(i, random_box(random, numbers), std::uint32_t(random()));
+        }
+        const SmallBox wanted = random_box(random, numbers);
+        std::uint32_t expected = 0;
+        for (std::size_t i = 0; i < block.count; ++i) {
+            expected |= std::uint32_t(overlap(block.box(i), wanted)) << i;
+            found += overlap(block.box(i), wanted) ? 1 : 0;
+        }
+        ASSERT_EQ(overlapping(block, wanted), expected);
+    }
+    EXPECT_GT(found, 1000u);
+}
+
+/// Units of all sizes: what overlaps in cells does in their numbers, and the cells of the numbers hold the box.
+TEST(Unit, NumbersLoseNothing) {
+    std::mt19937 random(2);
+    for (int round = 0; round < 20000; ++round) {
+        const unsigned level = std::uint32_t(random()) % (deepest + 1);
+        const std::uint32_t side = cells_per_axis >> level, octants = 1u << level;
+        Node node{};
+        node.level = level;
+        node.children = Node::no_children;
+        for (unsigned axis = 0; axis < 3; ++axis) node.lo[axis] = std::uint32_t(random()) % octants * side;
+        const Unit unit = Plot::cut(node, 0, {}).own_unit();
+        const auto random_cells = [&] {
+            CellBox box;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                // Near the unit, so that they touch it, its borders and each other.
+                const std::int64_t first = std::int64_t(node.lo[axis]) - side,
+                                   last = std::int64_t(node.lo[axis]) + 2 * side;
+                std::int64_t a = std::uniform_int_distribution<std::int64_t>(first, last)(random);
+                std::int64_t b = std::uniform_int_distribution<std::int64_t>(first, last)(random);
+                if (a > b) std::swap(a, b);
+                a = std::clamp<std::int64_t>(a, 0, node.lo[axis] + side - 1);
+                b = std::clamp<std::int64_t>(b, node.lo[axis], cells_per_axis - 1);
+                box.lo[axis] = std::uint32_t(std::min(a, b));
+                box.hi[axis] = std::uint32_t(std::max(a, b));
+            }
+            return box;
+        };
+        const CellBox a = random_cells(), b = random_cells();
+        bool begins_here = true, overlaps = true;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            begins_here &= std::max(a.lo[axis], b.lo[axis]) >= node.lo[axis];
+            overlaps &= a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis];
+        }
+        if (overlaps && begins_here) {
+            ASSERT_TRUE(overlap(unit.small(a), unit.small(b))) << "level " << level;
+        }
+        const CellBox held = unit.cells(unit.small(a));
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            ASSERT_LE(held.lo[axis], std::max(a.lo[axis], node.lo[axis]));
+            ASSERT_GE(held.hi[axis], std::min(a.hi[axis], node.lo[axis] + side - 1));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octopair
