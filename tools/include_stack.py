@@ -34,7 +34,7 @@ PURPOSE = {
 
 # First part of a third-party include: the folders that may use it.
 THIRD_PARTY = {
-    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree"}, "assimp": {"io"},
+    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "scene"}, "assimp": {"io"},
     "CLI": {"cli"}, "fmt": {"io", "paper", "cli"}, "nlohmann": {"io", "machine", "paper", "cli"},
 }
 SYSTEM = {"sys", "linux", "sanitizer"}

@@ -5,4 +5,5 @@
 #include "octopair/error.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
+#include "octopair/scene.hpp"
 #include "octopair/version.hpp"

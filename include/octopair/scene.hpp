@@ -1,0 +1,125 @@
+// Scene: objects that persist and move, and the pairs that begin and end from step to step.
+//
+// Result    after every step() pairs() is what a full detection of the same boxes, paddings, margin and traits finds,
+//           ascending; `began` and `ended` are ascending as well. The same for any number of threads, and for any way in
+//           which the scene came to be what it is.
+// Objects   have an index, which pairs and queries name, and a generation: an id is of one object for ever. The index of a
+//           removed object is given to another one after the next step() at the earliest, so within a step an index
+//           means one object.
+// Errors    octopair::Error{bad_input} for an id that is not (or no longer) of the scene, or a box that is not one, with its
+//           position in the call. A call that fails changes nothing; a step() that fails or is cancelled may be repeated.
+// Threads   one at a time, also for queries.
+// Cost      a step's follows what moved; where most objects did, it is that of a full detection. At most 120 bytes an
+//           object and 16 a pair.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "octopair/objects.hpp"
+#include "octopair/queries.hpp"
+
+namespace octopair {
+
+/// An object of a scene.
+struct ObjectId {
+    std::uint32_t index = ~std::uint32_t(0);
+    std::uint32_t generation = 0;
+    auto operator<=>(const ObjectId&) const = default;
+};
+
+/// What an object pairs with: two objects do if each one's `mask` has a bit of the other's `groups`, and not both are
+/// `fixed`.
+struct Traits {
+    std::uint32_t groups = 1;
+    std::uint32_t mask = ~std::uint32_t(0);
+    bool fixed = false;  ///< it may be moved nevertheless
+
+    bool operator==(const Traits&) const = default;
+};
+
+/// Of the boxes of a scene.
+enum class Precision : std::uint8_t { float32, float64 };
+
+struct SceneOptions {
+    unsigned threads = 0;  ///< 0: one per core
+    Precision precision = Precision::float32;
+    double margin = 0;  ///< as in Options
+};
+
+/// What a step found. The spans are valid until the scene's next call that is not const.
+struct StepResult {
+    std::span<const Pair> began;   ///< a < b, by their indices
+    std::span<const Pair> ended;   ///< also those of removed objects
+    std::uint64_t persisting = 0;  ///< pairs that were there before and still are
+    bool full = false;             ///< all objects were searched, not just those that changed
+    double seconds = 0;            ///< wall clock
+
+    std::uint64_t pairs() const { return persisting + began.size(); }
+};
+
+class Scene {
+public:
+    /// Throws Error{bad_input} for a margin that is not finite or below 0.
+    explicit Scene(const SceneOptions& options = {});
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+    ~Scene();
+
+    /// Adds objects, whose ids go to `ids` (as many as objects). `traits`: none for the defaults, one for all, or one for
+    /// each. Boxes of the other precision than the scene's are an error; in all calls here arrays are copied.
+    void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits = {});
+    /// Gives objects new boxes; of an object that is named twice, the last counts.
+    void move(std::span<const ObjectId> ids, const Boxes& boxes);
+    /// The same, but for the next step an object's box is that of its whole way, from where it was: a fast one is not
+    /// missed between frames. From the step after that on it is the given box.
+    void sweep(std::span<const ObjectId> ids, const Boxes& boxes);
+    void remove(std::span<const ObjectId> ids);
+    /// One for all, or one for each.
+    void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
+
+    /// Finds what changed since the last step. Throws Error{cancelled} within 200 ms of a stop request.
+    const StepResult& step(std::stop_token stop = {});
+
+    /// All pairs of the last step. Valid until the next step.
+    const PairList& pairs();
+    /// Those of them that were there before that step.
+    const PairList& persisting();
+
+    static constexpr std::uint32_t all_groups = ~std::uint32_t(0);
+
+    /// Queries (queries.hpp): on the objects as they are now, of those that have a bit of `groups` in theirs. Cheapest
+    /// right after a step(). Throw Error{bad_input} for a query that is none, with its position.
+    void overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
+    void overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
+    /// One hit of each ray, or none.
+    void first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups = all_groups);
+    void all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups = all_groups);
+    /// The `count` objects nearest to each place (or all, if there are no more); a point is a box of no extent.
+    void nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
+                 std::uint32_t groups = all_groups);
+
+    /// The same of one query.
+    std::vector<std::uint32_t> overlaps(const Box3d& box, std::uint32_t groups = all_groups);
+    std::vector<std::uint32_t> overlaps(const Sphere& sphere, std::uint32_t groups = all_groups);
+    std::optional<RayHit> first_hit(const Ray& ray, std::uint32_t groups = all_groups);
+    std::vector<RayHit> all_hits(const Ray& ray, std::uint32_t groups = all_groups);
+    std::vector<Neighbor> nearest(const Box3d& place, std::size_t count, std::uint32_t groups = all_groups);
+
+    std::uint64_t size() const;     ///< objects
+    std::uint64_t indices() const;  ///< above every index
+    bool contains(ObjectId id) const;
+    /// Of the object at an index; Error{bad_input} if there is none.
+    ObjectId id(std::uint32_t index) const;
+
+private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,69 @@
+// ChangeLog: what the objects that changed since the last step were before.
+//
+// It keeps no more than a part of the objects; beyond, a step searches all and does not need it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/object_table.hpp"
+
+namespace octopair {
+
+/// An object before its first change since the last step.
+struct Former {
+    std::uint32_t index;
+    ObjectState state;
+};
+
+class ChangeLog {
+public:
+    /// Before a call that changes so many objects, each named once: whether they fit is known at once.
+    void expect(ObjectTable& table, std::uint64_t changes) {
+        if (double(formers_.size() + changes) >= most(table)) overflow(table);
+    }
+    /// To be called before a change of an object, or after it was created (`existed` false).
+    void note(ObjectTable& table, std::uint32_t index, bool existed) {
+        if (overflowed_ || table.mark(index) != ObjectTable::none) return;
+        if (double(formers_.size()) >= most(table)) return overflow(table);
+        table.set_mark(index, std::uint32_t(formers_.size()));
+        formers_.push_back({index, table.state(index)});
+        formers_.back().state.exists = existed;
+    }
+
+    std::span<const Former> formers() const { return formers_; }
+    /// Null if the object has not changed.
+    const Former* former(const ObjectTable& table, std::uint32_t index) const {
+        const std::uint32_t mark = table.mark(index);
+        return mark == ObjectTable::none ? nullptr : &formers_[mark];
+    }
+    /// More has changed than is kept.
+    bool overflowed() const { return overflowed_; }
+
+    /// After a step.
+    void clear(ObjectTable& table) {
+        forget(table);
+        overflowed_ = false;
+    }
+
+private:
+    static constexpr double most_part = 0.125;
+    static constexpr double least = 256;
+    static double most(const ObjectTable& table) { return most_part * double(table.indices()) + least; }
+
+    void overflow(ObjectTable& table) {
+        forget(table);
+        overflowed_ = true;
+    }
+
+    void forget(ObjectTable& table) {
+        for (const Former& former : formers_) table.set_mark(former.index, ObjectTable::none);
+        formers_.clear();
+    }
+
+    std::vector<Former> formers_;
+    bool overflowed_ = false;
+};
+
+}  // namespace octopair

@@ -1,0 +1,196 @@
+#include "scene/change_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+
+#include "base/stop.hpp"
+#include "geometry/pair_rule.hpp"
+#include "scene/scene_source.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t share_size = 2048;  // visits
+constexpr std::size_t listed_ahead = 8;   // changes
+constexpr std::size_t judged_ahead = 16;  // hits whose objects are fetched before they are judged
+
+bool are_pair(const ObjectState& a, const ObjectState& b, double margin) {
+    return a.exists && b.exists && within_reach(a.box, b.box, margin + (a.padding + b.padding)) &&
+           compatible(a.traits, b.traits);
+}
+
+std::uint32_t unit_of(std::uint64_t key) { return std::uint32_t(key >> 32); }
+
+/// Where the share of a position begins: at the unit that it lies in, so that no unit is in two shares.
+std::size_t share_begin(std::span<const std::uint64_t> order, std::size_t position) {
+    if (position >= order.size()) return order.size();
+    while (position > 0 && unit_of(order[position]) == unit_of(order[position - 1])) --position;
+    return position;
+}
+
+}  // namespace
+
+Entry EntryRounding::entry(const Box3d& box, double padding) const {
+    if (!exact) return rounding.entry(box, padding);
+    Entry entry{};
+    for (int axis = 0; axis < 3; ++axis) {
+        entry.min[axis] = float(box.min[axis]);
+        entry.max[axis] = float(box.max[axis]);
+    }
+    return entry;
+}
+
+void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const std::stop_token& stop) {
+    for (Worker& worker : workers_) {
+        worker.began.clear();
+        worker.ended.clear();
+    }
+    read_changes(scene, octree);
+    list_visits(octree, stop);
+    for (std::uint32_t number = 0; number < changes_.size(); ++number) {
+        if (alone_[number] != 0) make_alone(scene, octree, number);
+    }
+    make_visits(scene, octree);
+    collect(&Worker::began, changes.began);
+    collect(&Worker::ended, changes.ended);
+}
+
+void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree) {
+    const auto formers = scene.log.formers();
+    changes_.clear();
+    entries_.clear();
+    for (std::size_t i = 0; i < formers.size(); ++i) {
+        if (i + judged_ahead < formers.size()) scene.table.prefetch(formers[i + judged_ahead].index);
+        const Former& former = formers[i];
+        const ObjectState now = scene.table.state(former.index);
+        changes_.push_back({former.index, former.state.exists, now.exists, {}, {}});
+        // One that did not exist, or does not, has a box that means nothing.
+        entries_.push_back(scene.rounding.entry(former.state.box, now.padding));
+        entries_.push_back(scene.rounding.entry(now.box, now.padding));
+    }
+    cells_.resize(entries_.size());
+    octree.frame().cells(entries_, cells_);
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+        changes_[i].before = cells_[2 * i];
+        changes_[i].after = cells_[2 * i + 1];
+    }
+}
+
+/// A list for each thread, of as many changes, in their order.
+void ChangeSearch::list_visits(MutableOctree& octree, const std::stop_token& stop) {
+    listed_.resize(team_.threads());
+    alone_.assign(changes_.size(), 0);
+    const std::size_t part = (changes_.size() + listed_.size() - 1) / listed_.size();
+    const auto list_part = [&](std::size_t i, unsigned) {
+        listed_[i].clear();
+        const std::size_t end = std::min((i + 1) * part, changes_.size());
+        for (std::size_t k = i * part; k < end; ++k) {
+            throw_if_stopped(stop);
+            if (k + listed_ahead < end) octree.prefetch(changes_[k + listed_ahead]);
+            if (!octree.list(changes_[k], std::uint32_t(k), listed_[i])) alone_[k] = 1;
+        }
+    };
+    for (bool again = true; again;) {
+        team_.for_each(listed_.size(), std::ref(list_part));  // by reference: nothing is put on the heap
+        again = false;
+        for (const MutableOctree::Visits& visits : listed_) {
+            again |= !visits.first_used.empty();
+            octree.use(visits.first_used);
+        }
+    }
+}
+
+void ChangeSearch::make_alone(const Scene& scene, MutableOctree& octree, std::uint32_t number) {
+    const OctreeChange& change = changes_[number];
+    Worker& worker = workers_[0];
+    const auto search = [&](const CellBox& box, std::uint8_t around) {
+        found_.clear();
+        octree.search(box, found_);
+        worker.hits.clear();
+        for (const std::uint32_t object : found_) worker.hits.push_back({number, object, around});
+        judge(scene, worker);
+    };
+    if (change.existed) {
+        search(change.before, around_before);
+        octree.erase(change.object, change.before);
+    }
+    if (change.exists) {
+        search(change.after, around_after);
+        octree.insert(change.object, change.after);
+    }
+}
+
+void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree) {
+    auto& visits = listed_[0].visits;
+    for (std::size_t i = 1; i < listed_.size(); ++i) {
+        visits.insert(visits.end(), listed_[i].visits.begin(), listed_[i].visits.end());
+    }
+    std::uint64_t puts = 0;
+    const auto keys = sort_.take(visits.size());
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+        puts += visits[i].put ? 1 : 0;
+        keys[i] = std::uint64_t(visits[i].unit) << 32 | i;
+    }
+    octree.reserve(puts);
+    // One thread may as well go from change to change.
+    const auto order = team_.threads() == 1 ? keys : sort_.sort(32, 32 + unsigned(std::bit_width(octree.units())));
+    const auto make_share = [&](std::size_t i, unsigned worker) {
+        const std::size_t begin = share_begin(order, i * share_size);
+        const std::size_t end = share_begin(order, (i + 1) * share_size);
+        auto& hits = workers_[worker].hits;
+        hits.clear();
+        octree.run(visits, order.subspan(begin, end - begin), hits);
+        judge(scene, workers_[worker]);
+    };
+    team_.for_each((order.size() + share_size - 1) / share_size, std::ref(make_share));
+}
+
+void ChangeSearch::judge(const Scene& scene, Worker& worker) const {
+    const auto& hits = worker.hits;
+    Judged judged;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (i + judged_ahead < hits.size()) {
+            scene.table.prefetch(hits[i + judged_ahead].object);
+            scene.table.prefetch(changes_[hits[i + judged_ahead].change].object);
+        }
+        if (judged.change != hits[i].change) {
+            const Former& former = scene.log.formers()[hits[i].change];
+            judged = {hits[i].change, former.index, former.state, scene.table.state(former.index)};
+        }
+        judge(scene, hits[i], judged, worker);
+    }
+}
+
+void ChangeSearch::judge(const Scene& scene, const Hit& hit, const Judged& judged, Worker& worker) const {
+    const std::uint32_t other = hit.object;
+    if (other == judged.object) return;
+    const ObjectState other_after = scene.table.state(other);
+    bool began = (hit.around & around_after) != 0, ended = (hit.around & around_before) != 0;
+    bool was;
+    if (const std::uint32_t number = scene.table.mark(other); number == ObjectTable::none) {
+        was = are_pair(judged.before, other_after, scene.margin);
+    } else {
+        const bool earlier = alone_[number] != alone_[hit.change] ? alone_[number] != 0 : number < hit.change;
+        began = began && earlier;
+        ended = ended && !earlier;
+        was = are_pair(judged.before, scene.log.formers()[number].state, scene.margin);
+    }
+    const bool is = are_pair(judged.after, other_after, scene.margin);
+    const std::uint64_t key = key_of({std::min(judged.object, other), std::max(judged.object, other)});
+    if (ended && was && !is) worker.ended.push_back(key);
+    if (began && is && !was) worker.began.push_back(key);
+}
+
+void ChangeSearch::collect(std::vector<std::uint64_t> Worker::*keys, std::vector<Pair>& pairs) {
+    std::size_t size = 0;
+    for (const Worker& worker : workers_) size += (worker.*keys).size();
+    const auto all = sort_.take(size);
+    auto at = all.begin();
+    for (const Worker& worker : workers_) at = std::copy((worker.*keys).begin(), (worker.*keys).end(), at);
+    pairs.clear();
+    for (const std::uint64_t key : sort_.sort(0, 64)) pairs.push_back(pair_of(key));
+}
+
+}  // namespace octopair

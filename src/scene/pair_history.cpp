@@ -1,0 +1,165 @@
+#include "scene/pair_history.hpp"
+
+#include <algorithm>
+
+namespace octopair {
+
+namespace {
+
+constexpr std::uint64_t most_waiting = 16;      // one of so many pairs, but
+constexpr std::uint64_t few_waiting = 1 << 14;  // at least these
+
+/// Goes through the pairs of a list.
+class Reader {
+public:
+    explicit Reader(const PairList& list) : chunks_(list.chunks()) { next_chunk(); }
+
+    bool done() const { return at_ == end_; }
+    const Pair& pair() const { return *at_; }
+    void next() {
+        if (++at_ == end_) next_chunk();
+    }
+    /// The pairs from here on in one chunk that come before `key`; goes on behind them.
+    std::span<const Pair> run_before(std::uint64_t key) {
+        // Doubling steps: runs are short where much changed.
+        const Pair* const begin = at_;
+        std::ptrdiff_t step = 1;
+        while (step < end_ - at_ && key_of(at_[step]) < key) step *= 2;
+        const Pair* const found = std::partition_point(at_, at_ + std::min(step, end_ - at_),
+                                                       [&](const Pair& pair) { return key_of(pair) < key; });
+        at_ = found;
+        if (at_ == end_) next_chunk();
+        return {begin, found};
+    }
+
+private:
+    void next_chunk() {
+        while (!chunks_.empty() && chunks_.front().empty()) chunks_ = chunks_.subspan(1);
+        if (chunks_.empty()) {
+            at_ = end_ = nullptr;
+            return;
+        }
+        at_ = chunks_.front().data();
+        end_ = at_ + chunks_.front().size();
+        chunks_ = chunks_.subspan(1);
+    }
+
+    std::span<const std::span<const Pair>> chunks_;
+    const Pair* at_ = nullptr;
+    const Pair* end_ = nullptr;
+};
+
+/// Fills a list of known size.
+class Writer {
+public:
+    Writer(PairList& list, std::uint64_t size) : storage_(list.storage()) {
+        storage_.reset();
+        if (size > 0) all_ = storage_.take_block(std::size_t(size)).first(std::size_t(size));
+        at_ = all_.data();
+    }
+
+    void add(std::span<const Pair> pairs) { at_ = std::copy(pairs.begin(), pairs.end(), at_); }
+    void add(const Pair& pair) { *at_++ = pair; }
+    void finish() { storage_.append(all_); }
+
+private:
+    PairList::Storage& storage_;
+    std::span<Pair> all_;
+    Pair* at_;
+};
+
+/// Takes out of two ascending lists what is in both, as often as it is.
+void cancel(std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& second) {
+    auto a = first.begin(), b = second.begin();
+    auto a_out = a, b_out = b;
+    while (a != first.end() && b != second.end()) {
+        if (*a < *b) {
+            *a_out++ = *a++;
+        } else if (*b < *a) {
+            *b_out++ = *b++;
+        } else {
+            ++a, ++b;
+        }
+    }
+    first.erase(std::copy(a, first.end(), a_out), first.end());
+    second.erase(std::copy(b, second.end(), b_out), second.end());
+}
+
+}  // namespace
+
+void PairHistory::take_over(PairChanges& changes) {
+    changes.clear();
+    Reader before(list_), after(other_);
+    while (!before.done() && !after.done()) {
+        const std::uint64_t old_key = key_of(before.pair()), new_key = key_of(after.pair());
+        if (old_key == new_key) {
+            before.next();
+            after.next();
+        } else if (old_key < new_key) {
+            changes.ended.push_back(before.pair());
+            before.next();
+        } else {
+            changes.began.push_back(after.pair());
+            after.next();
+        }
+    }
+    for (; !before.done(); before.next()) changes.ended.push_back(before.pair());
+    for (; !after.done(); after.next()) changes.began.push_back(after.pair());
+    std::swap(list_, other_);
+    size_ = list_.size();
+}
+
+void PairHistory::apply(const PairChanges& changes) {
+    for (const Pair& pair : changes.began) began_.push_back(key_of(pair));
+    for (const Pair& pair : changes.ended) ended_.push_back(key_of(pair));
+    size_ += changes.began.size();
+    size_ -= changes.ended.size();
+    if (began_.size() + ended_.size() > std::max(few_waiting, size_ / most_waiting)) merge();
+}
+
+const PairList& PairHistory::list() {
+    merge();
+    return list_;
+}
+
+void PairHistory::merge() {
+    if (began_.empty() && ended_.empty()) return;
+    for (auto* const keys : {&began_, &ended_}) {
+        const auto unsorted = sort_.take(keys->size());
+        std::copy(keys->begin(), keys->end(), unsorted.begin());
+        const auto sorted = sort_.sort(0, 64);
+        std::copy(sorted.begin(), sorted.end(), keys->begin());
+    }
+    cancel(began_, ended_);
+    Reader reader(list_);
+    Writer writer(other_, size_);
+    auto began = began_.begin(), ended = ended_.begin();
+    while (!reader.done() || began != began_.end()) {
+        const std::uint64_t stop = std::min(began != began_.end() ? *began : ~std::uint64_t(0),
+                                            ended != ended_.end() ? *ended : ~std::uint64_t(0));
+        while (!reader.done() && key_of(reader.pair()) < stop) writer.add(reader.run_before(stop));
+        if (began != began_.end() && *began == stop) {
+            writer.add(pair_of(*began++));
+        } else if (ended != ended_.end()) {
+            reader.next();
+            ++ended;
+        }
+    }
+    writer.finish();
+    std::swap(list_, other_);
+    began_.clear();
+    ended_.clear();
+}
+
+void subtract(const PairList& all, std::span<const Pair> less, PairList& out) {
+    Reader reader(all);
+    Writer writer(out, all.size() - less.size());
+    for (const Pair& pair : less) {
+        while (key_of(reader.pair()) < key_of(pair)) writer.add(reader.run_before(key_of(pair)));
+        reader.next();
+    }
+    while (!reader.done()) writer.add(reader.run_before(~std::uint64_t(0)));
+    writer.finish();
+}
+
+}  // namespace octopair

@@ -1,0 +1,59 @@
+// PairHistory: all pairs of a scene, ascending, as steps change them.
+//
+// A step that changes little only notes what began and ended; the list is made from these when it is asked for, or when
+// they have become many. So a step whose list nobody reads costs nothing for the pairs that persist.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/radix_sort.hpp"
+#include "engine/pair_list.hpp"
+
+namespace octopair {
+
+/// Ascending, and without a pair in both.
+struct PairChanges {
+    std::vector<Pair> began;
+    std::vector<Pair> ended;
+
+    void clear() {
+        began.clear();
+        ended.clear();
+    }
+};
+
+/// Pairs as integers in the same order.
+inline std::uint64_t key_of(const Pair& pair) { return std::uint64_t(pair.a) << 32 | pair.b; }
+inline Pair pair_of(std::uint64_t key) { return {std::uint32_t(key >> 32), std::uint32_t(key)}; }
+
+class PairHistory {
+public:
+    /// The list as it will be after a full detection: to be filled, ascending, then taken over.
+    PairList& fresh() {
+        merge();  // which uses the same memory
+        return other_;
+    }
+    /// Takes fresh() over, and tells what changed.
+    void take_over(PairChanges& changes);
+    /// What a step changed.
+    void apply(const PairChanges& changes);
+
+    const PairList& list();
+    std::uint64_t size() const { return size_; }
+
+private:
+    void merge();
+
+    PairList list_;
+    PairList other_;
+    std::vector<std::uint64_t> began_, ended_;  // not yet in list_
+    RadixSort<std::uint64_t> sort_;
+    std::uint64_t size_ = 0;
+};
+
+/// The pairs of `all` without those of `less`, which are among them; both ascending. Replaces `out`.
+void subtract(const PairList& all, std::span<const Pair> less, PairList& out);
+
+}  // namespace octopair

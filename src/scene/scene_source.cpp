@@ -1,0 +1,72 @@
+#include "scene/scene_source.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace octopair {
+
+SceneSource::SceneSource(const ObjectTable& table, double margin)
+    : table_(table), objects_(table.objects()), all_(objects_, nullptr, margin) {
+    if (table.size() == table.indices()) {
+        runs_.push_back({0, 0});
+        return;
+    }
+    std::size_t position = 0;
+    bool before = false;
+    for (std::uint32_t index = 0; index < table.indices(); ++index) {
+        const bool alive = table.alive(index);
+        if (alive && !before) runs_.push_back({position, index});
+        position += alive ? 1 : 0;
+        before = alive;
+    }
+}
+
+const SceneSource::Run& SceneSource::run_at(std::size_t position) const {
+    return *(std::upper_bound(runs_.begin(), runs_.end(), position,
+                              [](std::size_t at, const Run& run) { return at < run.position; }) -
+             1);
+}
+
+std::size_t SceneSource::index_at(std::size_t position) const {
+    const Run& run = run_at(position);
+    return run.index + (position - run.position);
+}
+
+bool SceneSource::load(std::size_t begin, std::span<Entry> out) const {
+    bool good = true;
+    while (!out.empty()) {
+        const Run* const run = &run_at(begin);
+        const std::size_t end = run == &runs_.back() ? size() : run[1].position;
+        const auto some = out.first(std::min(out.size(), end - begin));
+        good = all_.load(run->index + (begin - run->position), some) && good;
+        if (table_.any_traits()) {
+            for (Entry& entry : some) entry.mask |= table_.traits(entry.object).fixed ? fixed_object : 0;
+        }
+        begin += some.size();
+        out = out.subspan(some.size());
+    }
+    return good;
+}
+
+std::span<const Box3f> SceneSource::plain(std::size_t begin, std::size_t count) const {
+    return runs_.size() == 1 ? all_.plain(begin + runs_[0].index, count) : std::span<const Box3f>{};
+}
+
+void SceneSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
+    std::vector<std::size_t> indices(positions.size());
+    std::transform(positions.begin(), positions.end(), indices.begin(), [&](std::size_t at) { return index_at(at); });
+    all_.pick(indices, out);
+}
+
+RoundingSlack SceneSource::slack() const {
+    if (!table_.any_traits()) return all_.slack();
+    // Nothing is certain before counts() has seen the traits.
+    constexpr float all = std::numeric_limits<float>::infinity();
+    return {{all, all, all}};
+}
+
+bool SceneSource::counts(std::uint32_t a, std::uint32_t b) const {
+    return compatible(table_.traits(a), table_.traits(b)) && all_.counts(a, b);
+}
+
+}  // namespace octopair

@@ -1,0 +1,54 @@
+// Scenes large enough for deep octrees: each step against a full detection by the engine, for any number of threads.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "octopair/octopair.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+class LargeScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
+    constexpr std::uint64_t objects = testing::scaled(3000, 2);
+    std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 31);
+    const std::vector<Box3f> places = testing::make_boxes(GetParam(), objects, 32);
+    std::vector<Scene> scenes;
+    std::vector<ObjectId> ids(boxes.size());
+    for (const unsigned threads : {1u, 2u, 3u}) {
+        scenes.emplace_back(SceneOptions{threads});
+        scenes.back().add(Objects{std::span<const Box3f>(boxes)}, ids);
+    }
+    std::mt19937 random(33);
+    int partial = 0;
+    for (int step = 0; step < 6; ++step) {
+        const std::vector<Pair> expected = find_pairs(boxes);
+        for (Scene& scene : scenes) {
+            partial += scene.step().full ? 0 : 1;
+            ASSERT_EQ(scene.pairs().to_vector(), expected) << "step " << step;
+        }
+        // A twentieth move, half of them to the place of another, some of them twice.
+        std::vector<ObjectId> moved;
+        std::vector<Box3f> to;
+        for (std::size_t i = 0; i < boxes.size() / 20; ++i) {
+            const std::size_t object = random() % boxes.size();
+            boxes[object] = i % 2 == 0 ? places[random() % places.size()] : boxes[random() % boxes.size()];
+            moved.push_back(ids[object]);
+            to.push_back(boxes[object]);
+        }
+        for (Scene& scene : scenes) scene.move(moved, std::span<const Box3f>(to));
+    }
+    // Which of them are partial is measured, but not all can be too dear.
+    if (objects > 1000) {
+        EXPECT_GT(partial, 0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,129 @@
+// Queries beside those of the random histories: large scenes, many at once, any number of threads, and bad ones.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "octopair/octopair.hpp"
+#include "scene/query_model.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Model;
+
+class SceneQueriesTest : public ::testing::TestWithParam<std::string> {};
+
+/// A scene and its model, of one kind.
+struct Pool {
+    Pool(const std::string& kind, std::uint64_t objects, unsigned threads) : scene({threads}) {
+        const std::vector<Box3f> boxes = testing::make_boxes(kind, objects, 21);
+        std::vector<ObjectId> ids(boxes.size());
+        scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+        scene.step();
+        const std::vector<Box3d> wide = testing::widened(boxes);
+        for (std::size_t i = 0; i < ids.size(); ++i) model.objects[ids[i].index] = {ids[i], wide[i], 0, {}};
+    }
+
+    Scene scene;
+    Model model;
+};
+
+TEST_P(SceneQueriesTest, OfALargeSceneAreWhatBruteForceFinds) {
+    Pool pool(GetParam(), testing::scaled(3000, 1000), 1);
+    for (std::uint64_t seed = 0; seed < testing::scaled(10, 3); ++seed) {
+        testing::QueryModel(pool.model, pool.scene, seed).check();
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST_P(SceneQueriesTest, ManyAtOnceAreAnsweredLikeOneByOne) {
+    constexpr std::size_t queries = 200;
+    Pool one(GetParam(), 800, 1), three(GetParam(), 800, 3);
+    const std::vector<Box3d> boxes = testing::widened(testing::make_boxes(GetParam(), queries, 22));
+    std::vector<Ray> rays;
+    std::vector<Sphere> spheres;
+    for (const Box3d& box : boxes) {
+        spheres.push_back({{box.min[0], box.min[1], box.min[2]}, 0.25});
+        rays.push_back({{box.min[0], box.min[1], box.min[2]}, {1, rays.size() % 2 == 0 ? 0.0 : -0.5, 0.25}});
+    }
+    const auto compare = [&](auto ask, auto answers, auto ask_one) {
+        auto again = answers;
+        ask(one.scene, answers);
+        ask(three.scene, again);
+        ASSERT_EQ(answers.all, again.all);
+        ASSERT_EQ(answers.ends, again.ends);
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            const auto answer = answers[i];
+            ASSERT_EQ(std::vector(answer.begin(), answer.end()), ask_one(i));
+        }
+    };
+    compare([&](Scene& scene, auto& out) { scene.overlaps(boxes, out); }, Answers<std::uint32_t>(),
+            [&](std::size_t i) { return one.scene.overlaps(boxes[i]); });
+    compare([&](Scene& scene, auto& out) { scene.overlaps(spheres, out); }, Answers<std::uint32_t>(),
+            [&](std::size_t i) { return one.scene.overlaps(spheres[i]); });
+    compare([&](Scene& scene, auto& out) { scene.all_hits(rays, out); }, Answers<RayHit>(),
+            [&](std::size_t i) { return one.scene.all_hits(rays[i]); });
+    compare([&](Scene& scene, auto& out) { scene.nearest(boxes, 5, out); }, Answers<Neighbor>(),
+            [&](std::size_t i) { return one.scene.nearest(boxes[i], 5); });
+    compare([&](Scene& scene, auto& out) { scene.first_hits(rays, out); }, Answers<RayHit>(),
+            [&](std::size_t i) {
+                const auto hit = one.scene.first_hit(rays[i]);
+                return hit ? std::vector<RayHit>{*hit} : std::vector<RayHit>{};
+            });
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SceneQueriesTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+
+TEST(SceneQueries, OfAnEmptySceneFindNothing) {
+    Scene scene;
+    EXPECT_TRUE(scene.overlaps(Box3d{{0, 0, 0}, {1, 1, 1}}).empty());
+    EXPECT_TRUE(scene.overlaps(Sphere{{0, 0, 0}, 1}).empty());
+    EXPECT_FALSE(scene.first_hit({{0, 0, 0}, {1, 0, 0}}).has_value());
+    EXPECT_TRUE(scene.all_hits({{0, 0, 0}, {1, 0, 0}}).empty());
+    EXPECT_TRUE(scene.nearest(Box3d{{0, 0, 0}, {0, 0, 0}}, 3).empty());
+}
+
+TEST(SceneQueries, ARayThatOnlyTouchesHits) {
+    Scene scene({1, Precision::float64});
+    const std::vector<Box3d> boxes = {{{3, 1, 1}, {4, 2, 2}}, {{6, 2, 2}, {6, 2, 2}}, {{9, 3, 0}, {10, 3, 9}}};
+    std::vector<ObjectId> ids(boxes.size());
+    scene.add(Objects{std::span(boxes)}, ids);
+    // Along an edge of the first, through the second, which is a point.
+    EXPECT_EQ(scene.all_hits({{0, 2, 2}, {1, 0, 0}}), (std::vector<RayHit>{{0, 3}, {1, 6}}));
+    // From corner to corner, and into the border of the third, which is flat.
+    EXPECT_EQ(scene.all_hits({{0, 0, 0}, {3, 1, 1}}), (std::vector<RayHit>{{0, 1}, {1, 2}, {2, 3}}));
+    // A segment that ends where the box begins, and one that ends before.
+    EXPECT_EQ(scene.all_hits({{0, 1.5, 1.5}, {3, 0, 0}, 1}), (std::vector<RayHit>{{0, 1}}));
+    EXPECT_TRUE(scene.all_hits({{0, 1.5, 1.5}, {2.5, 0, 0}, 1}).empty());
+    // Backwards nothing is hit, and from within at once.
+    EXPECT_TRUE(scene.all_hits({{0, 1.5, 1.5}, {-1, 0, 0}}).empty());
+    EXPECT_EQ(scene.first_hit({{3.5, 1.5, 1.5}, {0, 0, -1}}), (RayHit{0, 0}));
+}
+
+TEST(SceneQueries, BadOnesAreRefused) {
+    constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    Scene scene;
+    const auto refused = [](auto&& ask) {
+        try {
+            ask();
+            return std::string("accepted");
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::bad_input);
+            return std::string(error.what());
+        }
+    };
+    const std::string what = "query 0 of the call is not valid";
+    EXPECT_EQ(refused([&] { (void)scene.overlaps(Box3d{{1, 0, 0}, {0, 1, 1}}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.overlaps(Box3d{{0, 0, 0}, {infinity, 1, 1}}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.overlaps(Sphere{{0, 0, 0}, -1}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.overlaps(Sphere{{0, nan, 0}, 1}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.first_hit({{0, 0, 0}, {0, 0, 0}}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.all_hits({{0, 0, 0}, {1, infinity, 0}}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.all_hits({{0, 0, 0}, {1, 0, 0}, nan}); }), what);
+    EXPECT_EQ(refused([&] { (void)scene.nearest(Box3d{{0, 0, nan}, {0, 0, 1}}, 1); }), what);
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,114 @@
+// What a scene takes: no memory from the heap in steady frames, and not much for what it holds.
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
+#include "support/scale.hpp"
+
+namespace {
+
+std::atomic<std::uint64_t> allocations = 0;
+
+}  // namespace
+
+#ifndef OCTOPAIR_TEST_SANITIZED
+// The C library's functions under their other names: every allocation of this process comes by here, those of Buffer and
+// of operator new too. Large ones come from mmap, which is seen by the memory resident below.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void* malloc(std::size_t size) {
+    ++allocations;
+    return __libc_malloc(size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+    ++allocations;
+    return __libc_memalign(alignment, size);
+}
+}
+#endif
+
+namespace octopair {
+namespace {
+
+/// The most memory this process ever had resident, in bytes.
+std::uint64_t peak_rss() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+/// Objects that go to and fro between two places, a few each frame.
+class Swing {
+public:
+    Swing(std::uint64_t objects, unsigned threads)
+        : scene(SceneOptions{threads}), boxes_(samples::make_scene("uniform", objects, 1)), ids_(objects) {
+        scene.add(Objects{std::span<const Box3f>(boxes_)}, ids_);
+    }
+
+    void frame(std::uint64_t begin, std::uint64_t count) {
+        for (std::uint64_t i = begin; i < begin + count; ++i) {
+            Box3f& box = boxes_[i];
+            const float way = (box.max[0] - box.min[0]) * ((frames_ + i) % 2 == 0 ? 0.5f : -0.5f);
+            box.min[0] += way;
+            box.max[0] += way;
+        }
+        ++frames_;
+        scene.move(std::span(ids_).subspan(begin, count), std::span<const Box3f>(boxes_).subspan(begin, count));
+        const StepResult& result = scene.step();
+        changes += result.began.size() + result.ended.size();
+        full += result.full ? 1 : 0;
+        pairs = scene.pairs().size();
+    }
+
+    Scene scene;
+    std::uint64_t changes = 0, full = 0, pairs = 0;
+
+private:
+    std::vector<Box3f> boxes_;
+    std::vector<ObjectId> ids_;
+    std::uint64_t frames_ = 0;
+};
+
+TEST(SteadyScene, TakesNothingFromTheHeap) {
+#ifdef OCTOPAIR_TEST_SANITIZED
+    GTEST_SKIP() << "allocations are the sanitizer's";
+#endif
+    constexpr std::uint64_t objects = 30'000;
+    Swing swing(objects, 1);
+    const auto frames = [&](int count) {
+        for (int i = 0; i < count; ++i) swing.frame(std::uint64_t(i / 2 % 20) * 300, 300);
+    };
+    frames(80);
+    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = peak_rss();
+    frames(80);
+    EXPECT_EQ(allocations - before, 0u);
+    EXPECT_LE(peak_rss() - peak, 64u << 10);
+    EXPECT_GT(swing.changes, changes);
+    EXPECT_EQ(swing.full, full);
+}
+
+TEST(SceneMemory, IsBounded) {
+    constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
+    const auto boxes = samples::make_scene("uniform", objects, 1);
+    std::vector<ObjectId> ids(objects, ObjectId{0, 0});
+    const std::uint64_t before = peak_rss();
+    Scene scene({2});
+    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    const std::uint64_t pairs = scene.step().pairs();
+    scene.move(std::span(ids).first(100), std::span<const Box3f>(boxes).first(100));
+    EXPECT_FALSE(scene.step().full);
+    const double bytes = double(peak_rss() - before);
+    RecordProperty("bytes_an_object", std::to_string(bytes / double(objects)));
+    if (!testing::sanitized) {
+        EXPECT_LE(bytes, 120 * double(objects) + 16 * double(pairs));
+    }
+}
+
+}  // namespace
+}  // namespace octopair

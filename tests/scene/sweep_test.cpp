@@ -1,0 +1,58 @@
+// The paper's figure 2: an object so fast that it is on one side of another in one frame and on the far side in the next.
+#include <gtest/gtest.h>
+
+#include "octopair/octopair.hpp"
+
+namespace octopair {
+namespace {
+
+Box3f bullet_at(float x) { return {{x, 0.4f, 0.4f}, {x + 0.1f, 0.6f, 0.6f}}; }
+
+class FastBullet : public ::testing::Test {
+protected:
+    FastBullet() {
+        const std::vector<Box3f> boxes = {bullet_at(-3), {{0, 0, 0}, {0.2f, 1, 1}}};
+        scene_.add(Objects{std::span<const Box3f>(boxes)}, ids_);
+        EXPECT_EQ(scene_.step().pairs(), 0u);
+    }
+
+    std::span<const ObjectId> bullet() const { return std::span(ids_).first(1); }
+
+    Scene scene_{{1}};
+    std::vector<ObjectId> ids_ = std::vector<ObjectId>(2);
+};
+
+TEST_F(FastBullet, PassesThroughAWallWhereItIsMoved) {
+    const Box3f far = bullet_at(3);
+    scene_.move(bullet(), std::span(&far, 1));
+    EXPECT_TRUE(scene_.step().began.empty());
+}
+
+TEST_F(FastBullet, HitsTheWallWhereItIsSwept) {
+    const Box3f far = bullet_at(3);
+    scene_.sweep(bullet(), std::span(&far, 1));
+    const StepResult& through = scene_.step();
+    ASSERT_EQ(through.began.size(), 1u);
+    EXPECT_EQ(through.began[0], (Pair{0, 1}));
+    // Beyond the wall it leaves it, without a further call.
+    const StepResult& beyond = scene_.step();
+    EXPECT_TRUE(beyond.began.empty());
+    EXPECT_EQ(beyond.ended.size(), 1u);
+    // And its next way begins where it is.
+    const Box3f further = bullet_at(6);
+    scene_.sweep(bullet(), std::span(&further, 1));
+    EXPECT_TRUE(scene_.step().began.empty());
+}
+
+TEST_F(FastBullet, IsNotSweptIfItIsMovedAfterAll) {
+    const Box3f far = bullet_at(3), here = bullet_at(-4);
+    scene_.sweep(bullet(), std::span(&far, 1));
+    scene_.move(bullet(), std::span(&here, 1));
+    EXPECT_TRUE(scene_.step().began.empty());
+    EXPECT_TRUE(scene_.step().began.empty());
+    scene_.sweep(bullet(), std::span(&far, 1));
+    EXPECT_EQ(scene_.step().began.size(), 1u);
+}
+
+}  // namespace
+}  // namespace octopair
