@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/detection.hpp"
+#include "cli/event_detection.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
@@ -49,7 +50,8 @@ int run_detect(const DetectRequest& request) {
     // Opened at once, so that a place that cannot be written is known before the work.
     std::optional<io::AtomicFile> stats;
     if (!request.stats.empty()) stats.emplace(request.stats);
-    const DetectReport report = detect(request, interrupt.token());
+    const DetectReport report =
+        request.events ? detect_events(request, interrupt.token()) : detect(request, interrupt.token());
     if (request.count_only) {
         io::StandardOutput out(interrupt.token());
         out.write(std::to_string(report.pairs) + '\n');
@@ -90,9 +92,8 @@ void add_what(CLI::App& command, DetectRequest& request) {
             "pairs count up to a gap of M on every axis (default 0)")
         ->type_name("M");
     command.add_option("--padding", request.padding, "shape (n,): each object's own clearance")->type_name("FILE.npy");
-    command.add_flag_callback(
-        "--events", [] { throw Error(ErrorCode::usage, "--events does not exist yet"); },
-        "of a moving scene: only what began and ended (not yet)");
+    command.add_flag("--events", request.events,
+                     "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
 }
 
 void add_result(CLI::App& command, DetectRequest& request) {
@@ -153,6 +154,7 @@ void add_detect(CLI::App& app, Action& action) {
     add_where(*command, *request);
     command->callback([request, &action] {
         if (!request->output.empty()) (void)io::pair_format(request->output);
+        if (request->events) check_event_options(*request);
         action = [request] { return run_detect(*request); };
     });
 }

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "cli/input_set.hpp"
+#include "cli/join.hpp"
 #include "cli/progress_line.hpp"
-#include "io/npy.hpp"
 #include "io/pair_writer.hpp"
 #include "octopair/error.hpp"
 
@@ -45,35 +45,17 @@ private:
         progress_.show("reading", 0);
         first_ = read_input_set(request_.inputs, request_.mesh_objects, stop_);
         if (join()) second_ = read_input_set({request_.against}, request_.mesh_objects, stop_);
-        agree_on_frames();
-        read_padding();
-        report_.objects = first_.scene.objects + second_.scene.objects;
+        const io::LoadedScene &a = first_.scene, &b = second_.scene;
+        const io::FrameCount frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request_);
+        report_.frames = frames.frames;
+        report_.moving = frames.moving;
+        padding_.emplace(request_, SetSizes{a.objects, b.objects}, stop_);
+        first_.padding = padding_->inputs();
+        second_.padding = padding_->against();
+        report_.objects = a.objects + b.objects;
         const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
         report_.threads = request_.threads > 0 ? request_.threads : cores;
         report_.seconds.read = seconds_since(start_);
-    }
-
-    void agree_on_frames() {
-        const io::LoadedScene &a = first_.scene, &b = second_.scene;
-        if (a.moving && b.moving && a.frames != b.frames) {
-            throw Error(ErrorCode::bad_input, fmt::format("{}: {} frames against the {} of {}", request_.against,
-                                                          b.frames, a.frames, request_.inputs.front()));
-        }
-        report_.moving = a.moving || b.moving;
-        report_.frames = a.moving ? a.frames : b.frames;
-    }
-
-    /// One clearance for each object of the first set; of a join also for the second's, after them.
-    void read_padding() {
-        if (request_.padding.empty()) return;
-        padding_ = io::read_padding(request_.padding, stop_);
-        const std::size_t firsts = first_.scene.objects, seconds = second_.scene.objects;
-        if (padding_.size() != firsts && padding_.size() != firsts + seconds) {
-            throw Error(ErrorCode::bad_input,
-                        fmt::format("{}: {} paddings for {} objects", request_.padding, padding_.size(), firsts));
-        }
-        first_.padding = padding_.span().first(firsts);
-        second_.padding = padding_.span().subspan(firsts);
     }
 
     void count(Engine& engine) {
@@ -151,7 +133,7 @@ private:
     ProgressLine progress_;
     Clock::time_point start_ = Clock::now();
     InputSet first_, second_;
-    Buffer<double> padding_;
+    std::optional<Paddings> padding_;
     DetectReport report_;
 };
 

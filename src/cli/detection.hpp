@@ -23,6 +23,7 @@ struct DetectRequest {
     std::optional<std::uint64_t> limit;
     bool count_only = false;
     bool fail_on_collision = false;
+    bool events = false;
     unsigned threads = 0;
     std::string stats;  ///< a file, or empty
     bool quiet = false;
@@ -33,12 +34,18 @@ struct DetectSeconds {
     double total = 0, read = 0, detect = 0, write = 0;
 };
 
+/// Rows written.
+struct EventCounts {
+    std::uint64_t began = 0, ended = 0;
+};
+
 struct DetectReport {
     std::uint64_t objects = 0;  ///< of both sets, in each frame
     std::uint64_t frames = 1;
     bool moving = false;
     std::uint64_t pairs = 0;  ///< of all frames
     bool truncated = false;
+    std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;

@@ -32,6 +32,21 @@ std::string speed(double objects_per_second) {
                                     : fmt::format("{:.1f} million objects/s", objects_per_second / 1e6);
 }
 
+/// Those that are known.
+nlohmann::ordered_json seconds_json(const DetectReport& report) {
+    nlohmann::ordered_json seconds = {
+        {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
+    if (!report.events) {
+        seconds["encode"] = report.steps.encode;
+        seconds["sort"] = report.steps.sort;
+        seconds["merge"] = report.steps.merge;
+        seconds["scan"] = report.steps.scan;
+        seconds["filter"] = 0.0;
+    }
+    seconds["write"] = report.seconds.write;
+    return seconds;
+}
+
 }  // namespace
 
 std::string summary_text(const DetectReport& report) {
@@ -39,33 +54,35 @@ std::string summary_text(const DetectReport& report) {
     const StepSeconds& steps = report.steps;
     std::string text = fmt::format("objects     {}", grouped(report.objects));
     if (report.moving) text += fmt::format(" in each of {} frames", grouped(report.frames));
-    text += fmt::format("\npairs       {}{}\n", grouped(report.pairs),
-                        report.truncated ? " (the limit was reached; more exist)" : "");
+    text += fmt::format("\npairs       {}", grouped(report.pairs));
+    if (report.events) {
+        text += fmt::format("\nevents      {} began, {} ended", grouped(report.events->began),
+                            grouped(report.events->ended));
+    }
+    text += report.truncated ? " (the limit was reached; more exist)\n" : "\n";
     text += fmt::format("time        {} = read {} + detect {} + write {} + other\n", duration(seconds.total),
                         duration(seconds.read), duration(seconds.detect), duration(seconds.write));
-    text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
-                        duration(steps.sort), duration(steps.merge), duration(steps.scan));
+    if (!report.events) {
+        text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
+                            duration(steps.sort), duration(steps.merge), duration(steps.scan));
+    }
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
     return text + fmt::format(" on {} thread{}\n", report.threads, report.threads == 1 ? "" : "s");
 }
 
 std::string stats_json(const DetectReport& report) {
-    const nlohmann::ordered_json seconds = {{"total", report.seconds.total},   {"read", report.seconds.read},
-                                            {"detect", report.seconds.detect}, {"encode", report.steps.encode},
-                                            {"sort", report.steps.sort},       {"merge", report.steps.merge},
-                                            {"scan", report.steps.scan},       {"filter", 0.0},
-                                            {"write", report.seconds.write}};
-    const nlohmann::ordered_json stats = {{"objects", report.objects},
-                                          {"frames", report.frames},
-                                          {"pairs", report.pairs},
-                                          {"truncated", report.truncated},
-                                          {"engine", "local"},
-                                          {"threads", report.threads},
-                                          {"workers", 0},
-                                          {"entries", report.entries},
-                                          {"peak_rss_bytes", peak_rss_bytes()},
-                                          {"seconds", seconds}};
+    nlohmann::ordered_json stats = {{"objects", report.objects},
+                                    {"frames", report.frames},
+                                    {"pairs", report.pairs},
+                                    {"truncated", report.truncated},
+                                    {"engine", "local"},
+                                    {"threads", report.threads},
+                                    {"workers", 0},
+                                    {"entries", report.entries},
+                                    {"peak_rss_bytes", peak_rss_bytes()},
+                                    {"seconds", seconds_json(report)}};
+    if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/box_kernel.hpp"
 #include "io/failure.hpp"
 #include "io/input_file.hpp"
 #include "io/spheres.hpp"
@@ -80,6 +81,29 @@ LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop)
         scene.boxes = read_boxes<double>(array, shape, stop);
     }
     return scene;
+}
+
+std::optional<NpyFrames> NpyFrames::open(const std::string& path) {
+    OpenArray array = open_array(path);
+    const SceneShape shape = scene_shape(array.header, path);
+    if (!shape.moving) return std::nullopt;
+    return NpyFrames(std::move(array.file), std::move(array.header), shape);
+}
+
+void NpyFrames::read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const {
+    read_rows(frame * shape_.objects, boxes, stop);
+}
+
+void NpyFrames::read(std::uint64_t frame, std::span<Box3d> boxes, const std::stop_token& stop) const {
+    const std::uint64_t first = frame * shape_.objects;
+    if (wide()) return read_rows(first, boxes, stop);
+    constexpr std::size_t batch = 4096;
+    Buffer<Box3f> narrow(std::min(batch, boxes.size()));
+    for (std::size_t i = 0; i < boxes.size(); i += batch) {
+        const auto rows = narrow.span().first(std::min(batch, boxes.size() - i));
+        read_rows(first + i, rows, stop);
+        std::transform(rows.begin(), rows.end(), boxes.data() + i, octopair::wide<float>);
+    }
 }
 
 Buffer<double> read_padding(const std::string& path, const std::stop_token& stop) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
 
 #include "base/memory.hpp"
+#include "io/input_file.hpp"
 #include "io/loaded_scene.hpp"
 #include "io/npy_header.hpp"
 
@@ -27,6 +29,34 @@ SceneShape scene_shape(const NpyHeader& header, std::string_view file);
 
 /// Boxes are read where they will lie, without a second copy. Throws Error{bad_input, io_failed, cancelled}.
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop = {});
+
+/// A moving scene, of which one frame at a time is read.
+class NpyFrames {
+public:
+    /// Nothing if the file is an .npy of another shape. Throws as read_npy_scene does.
+    static std::optional<NpyFrames> open(const std::string& path);
+
+    const SceneShape& shape() const { return shape_; }
+    bool wide() const { return header_.type == NpyType::float64; }
+
+    /// Fills `boxes`, as many as there are objects, from a frame; those of float32 may be read as float64, but not the
+    /// other way. Throws Error{bad_input} if the file has been cut short, Error{io_failed, cancelled}.
+    void read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const;
+    void read(std::uint64_t frame, std::span<Box3d> boxes, const std::stop_token& stop) const;
+
+private:
+    NpyFrames(InputFile file, NpyHeader header, const SceneShape& shape)
+        : file_(std::move(file)), header_(std::move(header)), shape_(shape) {}
+
+    template <typename T>
+    void read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
+        file_.read(header_.data_offset + first * sizeof(T), std::as_writable_bytes(rows), stop);
+    }
+
+    InputFile file_;
+    NpyHeader header_;
+    SceneShape shape_;
+};
 
 /// Clearances: shape (n,), floats, finite and >= 0. Throws as read_npy_scene does.
 Buffer<double> read_padding(const std::string& path, const std::stop_token& stop = {});

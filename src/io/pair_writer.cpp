@@ -1,16 +1,14 @@
 #include "io/pair_writer.hpp"
 
 #include <array>
-#include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
 #include "io/npy_header.hpp"
+#include "io/pair_rows.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
@@ -57,8 +55,6 @@ private:
     std::uint64_t count_ = 0;
 };
 
-char* put_number(char* at, std::uint64_t number) { return std::to_chars(at, at + 20, number).ptr; }
-
 class CsvWriter final : public PairWriter {
 public:
     CsvWriter(std::unique_ptr<OutputStream> out, bool moving) : out_(std::move(out)), moving_(moving) {
@@ -68,18 +64,7 @@ public:
     void begin_frame(std::uint64_t frame) override {
         if (moving_) frame_ = fmt::format("{},", frame);
     }
-    void write(std::span<const Pair> pairs) override {
-        for (const Pair pair : pairs) {
-            char* const begin = out_->room(64);
-            char* at = begin;
-            std::memcpy(at, frame_.data(), frame_.size());
-            at = put_number(at + frame_.size(), pair.a);
-            *at++ = ',';
-            at = put_number(at, pair.b);
-            *at++ = '\n';
-            out_->advance(std::size_t(at - begin));
-        }
-    }
+    void write(std::span<const Pair> pairs) override { write_csv_rows(*out_, frame_, pairs); }
     void end_frame() override {}
     void finish() override { out_->commit(); }
 
@@ -89,43 +74,23 @@ private:
     std::string frame_;
 };
 
-/// The name as a JSON string; what is not UTF-8 in it becomes U+FFFD.
-std::string json_string(const std::string& name) {
-    return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
 class JsonlWriter final : public PairWriter {
 public:
     JsonlWriter(std::unique_ptr<OutputStream> out, bool moving, const PairNames& names)
-        : out_(std::move(out)), moving_(moving), names_(names) {}
+        : out_(std::move(out)), moving_(moving), rows_(names) {}
 
     void begin_frame(std::uint64_t frame) override {
         if (moving_) frame_ = fmt::format("\"frame\":{},", frame);
     }
-    void write(std::span<const Pair> pairs) override {
-        for (const Pair pair : pairs) {
-            line_.clear();
-            fmt::format_to(std::back_inserter(line_), "{{{}\"a\":{},\"b\":{}", frame_, pair.a, pair.b);
-            append_name("a_name", names_.a, pair.a);
-            append_name("b_name", names_.b, pair.b);
-            line_ += "}\n";
-            out_->write(line_);
-        }
-    }
+    void write(std::span<const Pair> pairs) override { rows_.write(*out_, frame_, pairs); }
     void end_frame() override {}
     void finish() override { out_->commit(); }
 
 private:
-    void append_name(std::string_view key, const std::vector<std::string>* names, std::uint32_t object) {
-        if (names == nullptr || names->empty() || (*names)[object].empty()) return;
-        fmt::format_to(std::back_inserter(line_), ",\"{}\":{}", key, json_string((*names)[object]));
-    }
-
     std::unique_ptr<OutputStream> out_;
     bool moving_;
-    PairNames names_;
+    JsonlRows rows_;
     std::string frame_;
-    std::string line_;
 };
 
 }  // namespace

@@ -90,22 +90,28 @@ LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const 
 #endif
 }
 
+void check_frame_counts(std::span<const FrameCount> counts, std::span<const std::string> paths) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] == counts[0]) continue;
+        refuse(paths[i], fmt::format("{} frames beside the {} of {}; one set needs the same number of each",
+                                     counts[i].frames, counts[0].frames, paths[0]));
+    }
+}
+
 LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths) {
     if (scenes.size() == 1) return std::move(scenes.front());
     LoadedScene joined;
     joined.moving = scenes.front().moving;
     joined.frames = scenes.front().frames;
     bool wide = false, named = false;
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const LoadedScene& scene = scenes[i];
-        if (scene.moving != joined.moving || scene.frames != joined.frames) {
-            refuse(paths[i], fmt::format("{} frames beside the {} of {}; one set needs the same number of each",
-                                         scene.frames, joined.frames, paths[0]));
-        }
+    std::vector<FrameCount> counts;
+    for (const LoadedScene& scene : scenes) {
+        counts.push_back({scene.frames, scene.moving});
         joined.objects += scene.objects;
         wide |= std::holds_alternative<Buffer<Box3d>>(scene.boxes);
         named |= !scene.names.empty();
     }
+    check_frame_counts(counts, paths);
     if (named) {
         for (LoadedScene& scene : scenes) {
             scene.names.resize(std::size_t(scene.objects));
@@ -120,16 +126,29 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     return joined;
 }
 
-std::optional<Fault> find_fault(const LoadedScene& scene) {
+std::optional<NpyFrames> open_frames(const std::string& path) {
+    if (lower_case_ending(path) != ".npy") return std::nullopt;
+    return NpyFrames::open(path);
+}
+
+std::optional<Fault> find_fault(const Boxes& boxes) {
     return std::visit(
-        [&](const auto& boxes) -> std::optional<Fault> {
-            for (std::size_t i = 0; i < boxes.size(); ++i) {
-                const auto what = fault_of(boxes[i]);
-                if (what) return Fault{i / scene.objects, i % scene.objects, *what};
+        [](auto span) -> std::optional<Fault> {
+            for (std::size_t i = 0; i < span.size(); ++i) {
+                const auto what = fault_of(span[i]);
+                if (what) return Fault{0, i, *what};
             }
             return std::nullopt;
         },
-        scene.boxes);
+        boxes);
+}
+
+std::optional<Fault> find_fault(const LoadedScene& scene) {
+    for (std::uint64_t frame = 0; frame < scene.frames; ++frame) {
+        const auto fault = find_fault(scene.frame(frame).boxes);
+        if (fault) return Fault{frame, fault->object, fault->what};
+    }
+    return std::nullopt;
 }
 
 }  // namespace octopair::io

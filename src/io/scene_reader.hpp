@@ -7,6 +7,7 @@
 #include <string>
 
 #include "io/loaded_scene.hpp"
+#include "io/npy.hpp"
 
 namespace octopair::io {
 
@@ -23,6 +24,20 @@ LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const 
 /// Error{bad_input} where their frames do not agree.
 LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths);
 
+/// How many frames a set has; one that stands still has the same one for ever.
+struct FrameCount {
+    std::uint64_t frames = 1;
+    bool moving = false;
+
+    bool operator==(const FrameCount&) const = default;
+};
+
+/// Throws Error{bad_input} unless the files of one set all have the same.
+void check_frame_counts(std::span<const FrameCount> counts, std::span<const std::string> paths);
+
+/// A file of a moving scene, to be read frame by frame; nothing if it is of another kind. Throws as read_scene does.
+std::optional<NpyFrames> open_frames(const std::string& path);
+
 /// An object that is not a box, and why: "min x is nan, not a finite number".
 struct Fault {
     std::uint64_t frame;
@@ -32,5 +47,7 @@ struct Fault {
 
 /// The first one, or nothing if all are boxes.
 std::optional<Fault> find_fault(const LoadedScene& scene);
+/// Of one frame, 0.
+std::optional<Fault> find_fault(const Boxes& boxes);
 
 }  // namespace octopair::io
