@@ -58,6 +58,44 @@ TEST_F(Npy, ReadsFrames) {
     EXPECT_EQ(std::get<std::span<const Box3f>>(scene.frame(1).boxes)[0].min[0], 18.0f);
 }
 
+TEST_F(Npy, ReadsOneFrameAtATime) {
+    constexpr std::size_t objects = 5000;  // more than are widened at once
+    std::vector<float> floats(2 * objects * 6);
+    for (std::size_t i = 0; i < floats.size(); ++i) floats[i] = float(i) * 0.3f;
+    const auto narrow = io::NpyFrames::open(save(npy_of(NpyType::float32, {2, objects, 6}, floats)));
+    ASSERT_TRUE(narrow);
+    EXPECT_EQ(narrow->shape().frames, 2u);
+    EXPECT_EQ(narrow->shape().objects, objects);
+    EXPECT_FALSE(narrow->wide());
+    std::vector<Box3f> boxes(objects);
+    std::vector<Box3d> widened(objects);
+    for (const std::size_t frame : {std::size_t(1), std::size_t(0)}) {
+        narrow->read(frame, boxes, {});
+        narrow->read(frame, widened, {});
+        for (std::size_t i = 0; i < objects; ++i) {
+            const float expected = floats[(frame * objects + i) * 6 + 4];
+            ASSERT_EQ(boxes[i].max[1], expected);
+            ASSERT_EQ(widened[i].max[1], double(expected));
+        }
+    }
+    const auto wide = io::NpyFrames::open(
+        save(npy_of(NpyType::float64, {1, 2, 6}, std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0.1})));
+    ASSERT_TRUE(wide && wide->wide());
+    wide->read(0, std::span(widened).first(2), {});
+    EXPECT_EQ(widened[1].max[2], 0.1);
+}
+
+TEST_F(Npy, FramesAreOfMovingScenesAlone) {
+    EXPECT_FALSE(io::NpyFrames::open(save(npy_of(NpyType::float32, {1, 6}, std::vector<float>(6)))));
+    EXPECT_FALSE(io::NpyFrames::open(save(npy_of(NpyType::float32, {1, 4}, std::vector<float>(4)))));
+    error_of(ErrorCode::bad_input, [&] { (void)io::NpyFrames::open(save("hello")); });
+    const auto frames = io::NpyFrames::open(save(npy_of(NpyType::float32, {2, 1, 6}, std::vector<float>(12))));
+    std::filesystem::resize_file(directory_.file("a.npy"), 128 + 30);
+    std::vector<Box3f> box(1);
+    frames->read(0, box, {});
+    error_of(ErrorCode::bad_input, [&] { frames->read(1, box, {}); });
+}
+
 TEST_F(Npy, ReadsEmptyArrays) {
     EXPECT_EQ(io::read_npy_scene(save(npy_of<float>(NpyType::float32, {0, 6}, {}))).objects, 0u);
     EXPECT_EQ(io::read_npy_scene(save(npy_of<float>(NpyType::float32, {0, 4}, {}))).objects, 0u);
