@@ -114,7 +114,7 @@ void add_result(CLI::App& command, DetectRequest& request) {
     command
         .add_option_function<std::string>(
             "--limit", [&request](const std::string& text) { request.limit = parse_count("--limit", text); },
-            "the first N pairs")
+            "the first N pairs (with --events: rows)")
         ->type_name("N");
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
     command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");

@@ -37,7 +37,7 @@ _octopair() {
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
-                    --count-only --limit --fail-on-collision --engine --threads --stats --quiet --help" -- "$current")
+                    --count-only --events --limit --fail-on-collision --engine --threads --stats --quiet --help" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
