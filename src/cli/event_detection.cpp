@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -60,7 +59,10 @@ public:
     }
 
 private:
-    bool differs(std::size_t i) const { return std::memcmp(&now_[i], &before_[i], sizeof(Box<Real>)) != 0; }
+    bool differs(std::size_t i) const {
+        const Box<Real>&now = now_[i], &before = before_[i];
+        return !std::equal(now.min, now.min + 3, before.min) || !std::equal(now.max, now.max + 3, before.max);
+    }
 
     const FrameSet& set_;
     Buffer<Box<Real>> now_, before_;
