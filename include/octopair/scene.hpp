@@ -15,6 +15,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +51,9 @@ struct SceneOptions {
     unsigned threads = 0;  ///< 0: one per core
     Precision precision = Precision::float32;
     double margin = 0;  ///< as in Options
+    /// A file that all calls are written to, for `octopair replay` (docs/formats.md); empty: none. One that is there is
+    /// emptied. Written before and after each step, never synced; a call that cannot be written throws Error{io_failed}.
+    std::filesystem::path recording = {};
 };
 
 /// What a step found. The spans are valid until the scene's next call that is not const.
@@ -65,7 +69,7 @@ struct StepResult {
 
 class Scene {
 public:
-    /// Throws Error{bad_input} for a margin that is not finite or below 0.
+    /// Throws Error{bad_input} for a margin that is not finite or below 0, Error{io_failed} if the recording cannot be made.
     explicit Scene(const SceneOptions& options = {});
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;

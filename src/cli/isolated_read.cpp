@@ -19,7 +19,7 @@
 #include <new>
 #include <span>
 
-#include "io/descriptor.hpp"
+#include "base/descriptor.hpp"
 #include "io/failure.hpp"
 #include "octopair/error.hpp"
 
@@ -128,9 +128,9 @@ public:
     Child(const std::string& path, io::MeshObjects mesh_objects, std::stop_token stop)
         : path_(path), stop_(std::move(stop)) {
         int ends[2];
-        if (::pipe2(ends, O_CLOEXEC) != 0) io::fail_io(path, "cannot make a pipe", errno);
-        pipe_ = io::Descriptor(ends[0]);
-        const io::Descriptor writing(ends[1]);
+        if (::pipe2(ends, O_CLOEXEC) != 0) fail_io(path, "cannot make a pipe", errno);
+        pipe_ = Descriptor(ends[0]);
+        const Descriptor writing(ends[1]);
         id_ = ::fork();
         if (id_ < 0) throw Error(ErrorCode::resource_limit, fmt::format("{}: cannot start a process to read it", path));
         if (id_ == 0) run_child(writing.number(), path, mesh_objects);
@@ -182,7 +182,7 @@ private:
 
     std::string path_;
     std::stop_token stop_;
-    io::Descriptor pipe_;
+    Descriptor pipe_;
     pid_t id_ = 0;
 };
 

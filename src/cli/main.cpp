@@ -27,6 +27,7 @@ int run(int argc, char** argv) {
     add_detect(app, action);
     add_generate(app, action);
     add_info(app, action);
+    add_replay(app, action);
     add_bench(app, action);
     try {
         app.parse(argc, argv);

@@ -11,7 +11,7 @@ _octopair() {
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "bench detect generate info --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "bench detect generate info replay --help --version" -- "$current")
         return
     fi
     case $previous in
@@ -46,6 +46,12 @@ _octopair() {
                 mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -W "--objects --seed --frames --output --quiet --help" -- "$current")
+            fi ;;
+        replay)
+            if [[ $current == -* ]]; then
+                mapfile -t COMPREPLY < <(compgen -W "--threads --check --quiet --help" -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
         info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
     esac

@@ -13,5 +13,6 @@ void add_bench(CLI::App& app, Action& action);
 void add_detect(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
+void add_replay(CLI::App& app, Action& action);
 
 }  // namespace octopair::cli

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "io/descriptor.hpp"
+#include "base/descriptor.hpp"
 #include "io/output_stream.hpp"
 
 namespace octopair::io {

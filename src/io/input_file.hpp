@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/memory.hpp"
-#include "io/descriptor.hpp"
+#include "base/descriptor.hpp"
 
 namespace octopair::io {
 

@@ -13,6 +13,7 @@
 #include "octree/mutable_octree.hpp"
 #include "octree/scan.hpp"
 #include "scene/change_search.hpp"
+#include "scene/recorder.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/scene_source.hpp"
 
@@ -77,6 +78,7 @@ public:
         if (!(margin_ >= 0 && std::isfinite(margin_))) {
             throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin_) + ", not a finite number >= 0");
         }
+        if (!options.recording.empty()) recorder_ = std::make_unique<Recorder>(options);
     }
 
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits);
@@ -103,6 +105,8 @@ private:
 
     void check_boxes(const Boxes& boxes, std::size_t expected) const;
     void check_ids(std::span<const ObjectId> ids) const;
+    void check_paddings(std::span<const double> paddings, std::size_t objects) const;
+    void check_removal(std::span<const ObjectId> ids);
     template <typename Real>
     void move_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes);
     template <typename Real>
@@ -141,6 +145,7 @@ private:
     PairChanges changes_;
     PairList persisting_;
     StepResult result_;
+    std::unique_ptr<Recorder> recorder_;  // null: none. Told of each call between the checks and the first change
 };
 
 void Scene::State::check_boxes(const Boxes& boxes, std::size_t expected) const {
@@ -168,15 +173,19 @@ void Scene::State::check_ids(std::span<const ObjectId> ids) const {
     }
 }
 
+void Scene::State::check_paddings(std::span<const double> paddings, std::size_t objects) const {
+    if (!paddings.empty() && paddings.size() != objects) {
+        throw Error(ErrorCode::bad_input,
+                    std::to_string(paddings.size()) + " paddings for " + std::to_string(objects) + " objects");
+    }
+    for (std::size_t i = 0; i < paddings.size(); ++i) {
+        if (!is_padding(paddings[i])) throw fault(i, "padding is not a finite number >= 0");
+    }
+}
+
 void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
     check_boxes(objects.boxes, ids.size());
-    if (!objects.padding.empty() && objects.padding.size() != ids.size()) {
-        throw Error(ErrorCode::bad_input, std::to_string(objects.padding.size()) + " paddings for " +
-                                              std::to_string(ids.size()) + " objects");
-    }
-    for (std::size_t i = 0; i < objects.padding.size(); ++i) {
-        if (!is_padding(objects.padding[i])) throw fault(i, "padding is not a finite number >= 0");
-    }
+    check_paddings(objects.padding, ids.size());
     if (traits.size() > 1 && traits.size() != ids.size()) {
         throw Error(ErrorCode::bad_input,
                     std::to_string(traits.size()) + " traits for " + std::to_string(ids.size()) + " objects");
@@ -184,6 +193,7 @@ void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::spa
     if (table_.indices() + ids.size() >= ObjectTable::none) throw Error(ErrorCode::resource_limit, "too many objects");
     note_change();
     table_.reserve(ids.size());
+    if (recorder_) recorder_->add(objects, traits);
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const double padding = objects.padding.empty() ? 0 : objects.padding[i];
         ids[i] = table_.create(box_at(objects.boxes, i), padding, traits_at(traits, i));
@@ -194,6 +204,7 @@ void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::spa
 void Scene::State::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
     check_boxes(boxes, ids.size());
     check_ids(ids);
+    if (recorder_) recorder_->move(swept ? RecordKind::sweep : RecordKind::move, ids, boxes);
     note_change();
     std::visit([&](auto span) { swept ? sweep_to(ids, span) : move_to(ids, span); }, boxes);
 }
@@ -234,7 +245,7 @@ void Scene::State::drop_swept(std::uint32_t index) {
     swept_at_[index] = ObjectTable::none;
 }
 
-void Scene::State::remove(std::span<const ObjectId> ids) {
+void Scene::State::check_removal(std::span<const ObjectId> ids) {
     check_ids(ids);
     sorted_.assign(ids.begin(), ids.end());
     std::sort(sorted_.begin(), sorted_.end());
@@ -243,6 +254,11 @@ void Scene::State::remove(std::span<const ObjectId> ids) {
         throw Error(ErrorCode::bad_input, "id " + std::to_string(twice->index) + "." +
                                               std::to_string(twice->generation) + " is to be removed twice");
     }
+}
+
+void Scene::State::remove(std::span<const ObjectId> ids) {
+    check_removal(ids);
+    if (recorder_) recorder_->remove(ids);
     note_change();
     for (const ObjectId& id : ids) {
         log_.note(table_, id.index, true);
@@ -259,6 +275,7 @@ void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Tra
                     std::to_string(traits.size()) + " traits for " + std::to_string(ids.size()) + " ids");
     }
     check_ids(ids);
+    if (recorder_) recorder_->set_traits(ids, traits);
     note_change();
     for (std::size_t i = 0; i < ids.size(); ++i) {
         log_.note(table_, ids[i].index, true);
@@ -268,6 +285,7 @@ void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Tra
 }
 
 const StepResult& Scene::State::step(const std::stop_token& stop) {
+    if (recorder_) recorder_->begin_step();
     const auto begin = std::chrono::steady_clock::now();
     const double changed = double(log_.formers().size());
     const double expected = changed * seconds_a_change_;
@@ -281,6 +299,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     }
     finish_step();
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
+    if (recorder_) recorder_->end_step(result_);
     return result_;
 }
 

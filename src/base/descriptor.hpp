@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace octopair::io {
+namespace octopair {
 
 class Descriptor {
 public:
@@ -29,4 +29,4 @@ private:
     int number_ = -1;
 };
 
-}  // namespace octopair::io
+}  // namespace octopair

@@ -1,0 +1,95 @@
+// octopair replay: the recorded calls of a scene, made again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/subcommands.hpp"
+#include "io/input_file.hpp"
+#include "scene/replay.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr unsigned most_threads = 1024;
+
+struct ReplayRequest {
+    std::string file;
+    unsigned threads = 0;  // 0: one a core
+    bool check = false;
+    bool quiet = false;
+};
+
+std::string plural(std::uint64_t count, std::string_view what) {
+    return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+}
+
+std::string times_text(std::vector<double> seconds) {
+    if (seconds.empty()) return "none";
+    std::sort(seconds.begin(), seconds.end());
+    return fmt::format("median {:.3f} ms, slowest {:.3f} ms", seconds[seconds.size() / 2] * 1e3, seconds.back() * 1e3);
+}
+
+/// What a user should know of how the recording ended, if anything.
+std::string ending_text(const ReplayReport& report) {
+    if (report.unfinished) return "ending      within a step, which was made here\n";
+    if (report.cut) return "ending      in the middle of a call, which was left out\n";
+    return "";
+}
+
+std::string summary_text(const ReplayReport& report, bool checked) {
+    std::string text =
+        fmt::format("steps       {}, {} of them full detections\n", grouped(report.steps), grouped(report.full_steps));
+    text += fmt::format("calls       {}\n", grouped(report.calls));
+    text += fmt::format("objects     {} at the end\n", grouped(report.objects));
+    text += fmt::format("pairs       {} at the end\n", grouped(report.pairs));
+    text += fmt::format("events      {} began, {} ended\n", grouped(report.began), grouped(report.ended));
+    text += fmt::format("step time   {}\n", times_text(report.seconds));
+    if (checked) {
+        const std::uint64_t compared = report.steps - (report.unfinished ? 1 : 0);
+        text += fmt::format("check       {} found what was recorded\n", plural(compared, "step"));
+    }
+    return text + ending_text(report);
+}
+
+int run_replay(const ReplayRequest& request) {
+    const Interrupt interrupt;
+    const io::InputFile file(request.file);
+    const auto read = [&](std::uint64_t offset, std::span<std::byte> out) {
+        file.read(offset, out, interrupt.token());
+    };
+    RecordingReader reader({request.file, file.size(), read});
+    ProgressLine progress(!request.quiet);
+    ReplayOptions options{request.threads, request.check};
+    options.on_step = [&](const StepResult&) { progress.show("replaying", reader.progress()); };
+    const ReplayReport report = replay(reader, options, interrupt.token());
+    progress.clear();
+    if (!request.quiet) fmt::print(stderr, "{}", summary_text(report, request.check));
+    return 0;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("replay", "make the recorded calls of a scene again");
+    const auto request = std::make_shared<ReplayRequest>();
+    command->add_option("FILE", request->file, "a recording, from SceneOptions::recording")->required();
+    command
+        ->add_option_function<std::string>(
+            "--threads",
+            [request](const std::string& text) {
+                request->threads = unsigned(parse_count("--threads", text, most_threads));
+            },
+            "threads (default 0: one a core)")
+        ->type_name("N");
+    command->add_flag("--check", request->check, "every step must find what was recorded; else exit status 6");
+    command->add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
+    command->callback([request, &action] { action = [request] { return run_replay(*request); }; });
+}
+
+}  // namespace octopair::cli
