@@ -38,6 +38,7 @@ public:
 
     /// The precision and margin of the scene.
     const SceneOptions& options() const { return options_; }
+    const std::string& name() const { return source_.name; }
     /// The next call; false at the end, and where the last record was cut.
     bool next(RecordedCall& call);
     /// The file ends within a record.

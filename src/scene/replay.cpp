@@ -1,5 +1,6 @@
 #include "scene/replay.hpp"
 
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -22,16 +23,21 @@ std::string difference_text(const RecordedResult& now, const RecordedResult& the
     return counts_text(now) + "; recorded were " + counts_text(then);
 }
 
-SceneOptions scene_options(const RecordingReader& reader, unsigned threads) {
+Scene scene_of(const RecordingReader& reader, unsigned threads) {
     SceneOptions options = reader.options();
     options.threads = threads;
-    return options;
+    try {
+        return Scene(options);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::bad_input) throw;
+        reader.refuse(offsetof(RecordingHead, margin), error.what());
+    }
 }
 
 class Replay {
 public:
     Replay(RecordingReader& reader, const ReplayOptions& options)
-        : reader_(reader), options_(options), scene_(scene_options(reader, options.threads)) {}
+        : reader_(reader), options_(options), scene_(scene_of(reader, options.threads)) {}
 
     ReplayReport run(const std::stop_token& stop);
 
@@ -107,8 +113,8 @@ void Replay::step(const RecordedResult* then, const std::stop_token& stop) {
     if (options_.check && then != nullptr) {
         const RecordedResult now = recorded_result(result);
         if (now != *then) {
-            throw Error(ErrorCode::engine_failed,
-                        "step " + std::to_string(report_.steps) + ": " + difference_text(now, *then));
+            throw Error(ErrorCode::engine_failed, reader_.name() + ": step " + std::to_string(report_.steps) + ": " +
+                                                      difference_text(now, *then));
         }
     }
     if (options_.on_step) options_.on_step(result);

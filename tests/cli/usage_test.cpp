@@ -7,8 +7,8 @@ namespace {
 class Usage : public ProgramTest {};
 
 TEST_F(Usage, HelpAndVersionAreAnswers) {
-    for (const std::string what :
-         {"--help", "detect --help", "generate --help", "bench --help", "bench paper --help", "--version", "info"}) {
+    for (const std::string what : {"--help", "detect --help", "generate --help", "bench --help", "bench paper --help",
+                                   "replay --help", "--version", "info"}) {
         const Outcome outcome = run(what);
         EXPECT_EQ(outcome.status, 0) << what;
         EXPECT_NE(outcome.out, "") << what;
@@ -73,6 +73,10 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "bench paper --rounds 0",
         "bench paper --scene nothing",
         "bench paper a.npy",
+        "replay",
+        "replay a.npy b.npy",
+        "replay a.npy --threads 1025",
+        "replay a.npy --output p.csv",
         "serve",
     };
     for (const std::string& arguments : wrong) {

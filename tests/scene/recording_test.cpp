@@ -220,7 +220,7 @@ TEST_F(Recording, ADifferenceIsFound) {
     RecordedResult hashed = result;
     ++hashed.hash;
     const std::string message = error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(hashed)); });
-    EXPECT_TRUE(message.starts_with("step 3: other pairs than recorded, as many of them: ")) << message;
+    EXPECT_TRUE(message.starts_with("r.rec: step 3: other pairs than recorded, as many of them: ")) << message;
     RecordedResult counted = result;
     counted.began += 5;
     EXPECT_NE(error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(counted)); })
@@ -281,7 +281,7 @@ TEST_F(Recording, WhatIsNoRecordingIsRefused) {
     refused(head_of(head), "byte 12: precision is 16, not 32 or 64");
     head = {};
     head.margin = -1;
-    refused(head_of(head), "margin");
+    refused(head_of(head), "byte 16: margin is -1");
 }
 
 TEST_F(Recording, RecordsThatNobodyWroteAreRefused) {
