@@ -445,6 +445,28 @@ TEST_F(Recording, AStepThatWasMadeStandsThoughItsResultIsWrittenLater) {
     EXPECT_EQ(replay_bytes(content()).steps, 2u);
 }
 
+TEST_F(Recording, IsByteForByteWhatTheDocumentationShows) {
+    // Another form is another version (docs/formats.md), and this one is still read.
+    const std::string example =
+        "934f43544f5245430100000020000000000000000000000074368087592c9a7f010000008c3882db3c00000000000000"
+        "0200000000000000000000000000000000000000000000000000803f0000803f0000803f0000803f0000000000000000"
+        "000000400000803f0000803f1ba70a0e22d91e59060000005c2b9eeb000000000000000019e0a379fb7353a707000000"
+        "2c227abf2000000000000000aab43a30290e6372010000000000000000000000000000000000000000000000369f338b"
+        "4b56c780";
+    {
+        Scene scene(options());
+        std::vector<ObjectId> ids(2);
+        const std::vector<Box3f> boxes = {unit, {{1, 0, 0}, {2, 1, 1}}};
+        scene.add(Objects{std::span(boxes)}, ids);
+        (void)scene.step();
+    }
+    std::string hexadecimal;
+    for (const char byte : content()) {
+        for (const int shift : {4, 0}) hexadecimal += "0123456789abcdef"[byte >> shift & 15];
+    }
+    EXPECT_EQ(hexadecimal, example);
+}
+
 TEST_F(Recording, TheChecksumIsThatOfTheDocumentation) {
     Checksum sum;
     EXPECT_EQ(sum.value(), 0xdf442d22110c749bu);
