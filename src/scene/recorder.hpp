@@ -16,7 +16,8 @@
 
 namespace octopair {
 
-/// All calls throw Error{io_failed} when the system refuses; the recording is then the same as before.
+/// All calls throw Error{io_failed} when the system refuses; the recording is then the same as before. (A limit of file
+/// sizes ends a process that does not ignore SIGXFSZ.)
 class Recorder {
 public:
     /// Empties a file that is there.
