@@ -199,8 +199,8 @@ TEST_F(Recording, LargeCallsGoPastTheBuffer) {
     std::uint64_t bytes_at_least = 0;
     {
         RandomCalls calls(options(), 5);
-        calls.run(2, 30'000);
-        bytes_at_least = 30'000 * sizeof(Box3f);
+        calls.run(2, 12'000);
+        bytes_at_least = 12'000 * sizeof(Box3f);
     }
     EXPECT_GT(content().size(), bytes_at_least);
     EXPECT_EQ(replay_bytes(content()).steps, 2u);
