@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <string>
 
-#include "base/memory.hpp"
 #include "base/descriptor.hpp"
+#include "base/memory.hpp"
 
 namespace octopair::io {
 
