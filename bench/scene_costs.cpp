@@ -11,27 +11,18 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "octopair/octopair.hpp"
+#include "resident_memory.hpp"
 #include "samples/scenes.hpp"
 
 namespace {
 
 using namespace octopair;
-
-/// A line of /proc/self/status, in bytes.
-double status_bytes(const std::string& name) {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-        if (line.starts_with(name + ":")) return std::strtod(line.c_str() + name.size() + 1, nullptr) * 1024;
-    }
-    return 0;
-}
-
-void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+using bench::forget_peak;
+using bench::status_bytes;
 
 template <typename Real>
 void measure(const std::string& kind, std::uint64_t objects, unsigned threads) {

@@ -1,8 +1,9 @@
-// Bullet's dynamic bounding volume trees, all pairs at once (deferred).
+// Bullet's dynamic bounding volume trees: all pairs at once (deferred), and frame by frame.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include "peers/contender.hpp"
+#include "peers/tracker.hpp"
 
 namespace octopair::bench {
 
@@ -10,32 +11,93 @@ namespace {
 
 btVector3 vector_of(const float* at) { return {at[0], at[1], at[2]}; }
 
+std::uint32_t object(const btBroadphaseProxy* proxy) {
+    return std::uint32_t(reinterpret_cast<std::uintptr_t>(proxy->m_clientObject));
+}
+
+/// A broadphase with its cache of pairs, and a proxy for each box.
+class BulletWorld {
+public:
+    BulletWorld(std::span<const Box3f> boxes, bool deferred) : broadphase_(&cache_), proxies_(boxes.size()) {
+        broadphase_.m_deferedcollide = deferred;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            proxies_[i] = broadphase_.createProxy(vector_of(boxes[i].min), vector_of(boxes[i].max), 0,
+                                                  reinterpret_cast<void*>(i), 1, 1, nullptr);
+        }
+        broadphase_.calculateOverlappingPairs(nullptr);
+    }
+    BulletWorld(const BulletWorld&) = delete;
+    BulletWorld& operator=(const BulletWorld&) = delete;
+    ~BulletWorld() {
+        // Each proxy that goes has the cache looked through for its pairs: in all n times the pairs, of no use to anyone.
+        btNullPairCache empty;
+        broadphase_.m_paircache = &empty;
+        for (btBroadphaseProxy* proxy : proxies_) broadphase_.destroyProxy(proxy, nullptr);
+    }
+
+    void next(const Frame& frame) {
+        for (std::size_t i = 0; i < frame.moved.size(); ++i) {
+            const Box3f& box = frame.moved_boxes[i];
+            broadphase_.setAabb(proxies_[frame.moved[i]], vector_of(box.min), vector_of(box.max), nullptr);
+        }
+        broadphase_.calculateOverlappingPairs(nullptr);
+    }
+
+    const btBroadphasePairArray& found() { return cache_.getOverlappingPairArray(); }
+
+private:
+    btHashedOverlappingPairCache cache_;
+    btDbvtBroadphase broadphase_;
+    std::vector<btBroadphaseProxy*> proxies_;
+};
+
 class Bullet : public CollectingContender {
 public:
     void run(std::span<const Box3f> boxes) override {
-        btHashedOverlappingPairCache cache;
-        btDbvtBroadphase broadphase(&cache);
-        broadphase.m_deferedcollide = true;
-        std::vector<btBroadphaseProxy*> proxies(boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            proxies[i] = broadphase.createProxy(vector_of(boxes[i].min), vector_of(boxes[i].max), 0,
-                                                reinterpret_cast<void*>(i), 1, 1, nullptr);
-        }
-        broadphase.calculateOverlappingPairs(nullptr);
+        BulletWorld world(boxes, true);
         pairs_.clear();
-        const btBroadphasePairArray& found = cache.getOverlappingPairArray();
+        const btBroadphasePairArray& found = world.found();
         for (int i = 0; i < found.size(); ++i)
             pairs_.push_back({object(found[i].m_pProxy0), object(found[i].m_pProxy1)});
-        // Each proxy that goes has the cache looked through for its pairs: in all n times the pairs, of no use to anyone.
-        btNullPairCache empty;
-        broadphase.m_paircache = &empty;
-        for (btBroadphaseProxy* proxy : proxies) broadphase.destroyProxy(proxy, nullptr);
+    }
+};
+
+/// Its cache holds the pairs of boxes that were widened, and drops those that are over little by little; so each is judged
+/// by the proxies' own boxes on its way into the list.
+template <bool deferred>
+class BulletTracker : public CollectingTracker {
+public:
+    void begin(std::span<const Box3f> boxes) override {
+        gDbvtMargin = margin_for(boxes);
+        world_ = std::make_unique<BulletWorld>(boxes, deferred);
+        collect();
+    }
+    void next(const Frame& frame) override {
+        world_->next(frame);
+        collect();
     }
 
 private:
-    static std::uint32_t object(const btBroadphaseProxy* proxy) {
-        return std::uint32_t(reinterpret_cast<std::uintptr_t>(proxy->m_clientObject));
+    /// Bullet's own 0.05 is meant for objects of about 1.
+    static btScalar margin_for(std::span<const Box3f> boxes) {
+        double sides = 0;
+        for (const Box3f& box : boxes) sides += double(box.max[0]) - double(box.min[0]);
+        return btScalar(0.05 * sides / double(boxes.size()));
     }
+
+    void collect() {
+        pairs_.clear();
+        const btBroadphasePairArray& found = world_->found();
+        for (int i = 0; i < found.size(); ++i) {
+            const btBroadphaseProxy* const a = found[i].m_pProxy0;
+            const btBroadphaseProxy* const b = found[i].m_pProxy1;
+            if (TestAabbAgainstAabb2(a->m_aabbMin, a->m_aabbMax, b->m_aabbMin, b->m_aabbMax)) {
+                pairs_.push_back({object(a), object(b)});
+            }
+        }
+    }
+
+    std::unique_ptr<BulletWorld> world_;
 };
 
 }  // namespace
@@ -43,6 +105,15 @@ private:
 std::vector<ContenderKind> bullet_contenders() {
     return {{"Bullet dbvt", false, false,
              [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Bullet>(); }}};
+}
+
+std::vector<TrackerKind> bullet_trackers() {
+    return {
+        {"Bullet dbvt", false,
+         [](unsigned) -> std::unique_ptr<Tracker> { return std::make_unique<BulletTracker<false>>(); }},
+        {"Bullet dbvt deferred", false,
+         [](unsigned) -> std::unique_ptr<Tracker> { return std::make_unique<BulletTracker<true>>(); }},
+    };
 }
 
 }  // namespace octopair::bench

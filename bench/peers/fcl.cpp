@@ -1,10 +1,13 @@
-// FCL's dynamic AABB tree (array, Morton) and sweep and prune managers.
+// FCL's dynamic AABB trees (in an array, in Morton order; and of nodes) and its sweep and prune: all pairs at once, and
+// frame by frame.
 #include <fcl/broadphase/broadphase_SaP.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
 #include <fcl/geometry/collision_geometry.h>
 #include <fcl/narrowphase/collision_object.h>
 
 #include "peers/contender.hpp"
+#include "peers/tracker.hpp"
 
 namespace octopair::bench {
 
@@ -13,54 +16,115 @@ namespace {
 /// A shape that is nothing but its bounds: a box of FCL's would be rounded to centre and sides.
 class Bounds : public fcl::CollisionGeometryd {
 public:
-    explicit Bounds(const Box3f& box) {
+    explicit Bounds(const Box3f& box) { set(box); }
+    void computeLocalAABB() override {}
+    void set(const Box3f& box) {
         aabb_local = fcl::AABBd(fcl::Vector3d(box.min[0], box.min[1], box.min[2]),
                                 fcl::Vector3d(box.max[0], box.max[1], box.max[2]));
     }
-    void computeLocalAABB() override {}
+};
+
+std::uint32_t object(const fcl::CollisionObjectd* of) {
+    return std::uint32_t(reinterpret_cast<std::uintptr_t>(of->getUserData()));
+}
+
+bool keep(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* pairs) {
+    if (a->getAABB().overlap(b->getAABB())) {
+        static_cast<std::vector<Pair>*>(pairs)->push_back({object(a), object(b)});
+    }
+    return false;
+}
+
+/// A manager, and an object for each box.
+template <typename Manager>
+class FclWorld {
+public:
+    explicit FclWorld(std::span<const Box3f> boxes) {
+        shapes_.reserve(boxes.size());
+        objects_.reserve(boxes.size());
+        pointers_.reserve(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            auto shape = std::make_shared<Bounds>(boxes[i]);
+            shapes_.push_back(shape.get());
+            objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(shape)));
+            objects_.back()->setUserData(reinterpret_cast<void*>(i));
+            pointers_.push_back(objects_.back().get());
+        }
+        manager_.registerObjects(pointers_);
+        manager_.setup();
+    }
+
+    /// Where all have moved the tree is fitted anew as a whole; else the objects are put to other places of it.
+    void next(const Frame& frame) {
+        moved_.clear();
+        for (std::size_t i = 0; i < frame.moved.size(); ++i) {
+            const std::uint32_t index = frame.moved[i];
+            shapes_[index]->set(frame.moved_boxes[i]);
+            pointers_[index]->computeAABB();
+            moved_.push_back(pointers_[index]);
+        }
+        if (frame.all_moved()) {
+            manager_.update();
+        } else {
+            manager_.update(moved_);
+        }
+    }
+
+    void collect(std::vector<Pair>& pairs) {
+        pairs.clear();
+        manager_.collide(&pairs, keep);
+    }
+
+private:
+    std::vector<Bounds*> shapes_;
+    std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+    std::vector<fcl::CollisionObjectd*> pointers_, moved_;
+    Manager manager_;
 };
 
 template <typename Manager>
 class Fcl : public CollectingContender {
 public:
-    void run(std::span<const Box3f> boxes) override {
-        std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
-        std::vector<fcl::CollisionObjectd*> pointers;
-        objects.reserve(boxes.size());
-        pointers.reserve(boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<Bounds>(boxes[i])));
-            objects.back()->setUserData(reinterpret_cast<void*>(i));
-            pointers.push_back(objects.back().get());
-        }
-        Manager manager;
-        manager.registerObjects(pointers);
-        manager.setup();
-        pairs_.clear();
-        manager.collide(this, keep);
+    void run(std::span<const Box3f> boxes) override { FclWorld<Manager>(boxes).collect(pairs_); }
+};
+
+template <typename Manager>
+class FclTracker : public CollectingTracker {
+public:
+    void begin(std::span<const Box3f> boxes) override {
+        world_ = std::make_unique<FclWorld<Manager>>(boxes);
+        world_->collect(pairs_);
+    }
+    void next(const Frame& frame) override {
+        world_->next(frame);
+        world_->collect(pairs_);
     }
 
 private:
-    static bool keep(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* self) {
-        if (a->getAABB().overlap(b->getAABB())) static_cast<Fcl*>(self)->pairs_.push_back({object(a), object(b)});
-        return false;
-    }
-    static std::uint32_t object(const fcl::CollisionObjectd* of) {
-        return std::uint32_t(reinterpret_cast<std::uintptr_t>(of->getUserData()));
-    }
+    std::unique_ptr<FclWorld<Manager>> world_;
 };
+
+using TreeInArray = fcl::DynamicAABBTreeCollisionManager_Arrayd;
+using TreeOfNodes = fcl::DynamicAABBTreeCollisionManagerd;
 
 }  // namespace
 
 std::vector<ContenderKind> fcl_contenders() {
     return {
         {"FCL AABB tree", false, false,
-         [](unsigned) -> std::unique_ptr<Contender> {
-             return std::make_unique<Fcl<fcl::DynamicAABBTreeCollisionManager_Arrayd>>();
-         }},
+         [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Fcl<TreeInArray>>(); }},
         {"FCL sweep and prune", false, false,
          [](unsigned) -> std::unique_ptr<Contender> { return std::make_unique<Fcl<fcl::SaPCollisionManagerd>>(); },
          50'000},
+    };
+}
+
+std::vector<TrackerKind> fcl_trackers() {
+    return {
+        {"FCL AABB tree", false,
+         [](unsigned) -> std::unique_ptr<Tracker> { return std::make_unique<FclTracker<TreeOfNodes>>(); }},
+        {"FCL AABB tree, array", false,
+         [](unsigned) -> std::unique_ptr<Tracker> { return std::make_unique<FclTracker<TreeInArray>>(); }},
     };
 }
 

@@ -1,9 +1,11 @@
-// Ours: the timed call is find_pairs in octal order into a reused list; besides, ascending order and counting.
+// Ours: the timed call is find_pairs in octal order into a reused list; besides, ascending order and counting. Frame by
+// frame: scenes, and a full detection of every frame.
 #include "octopair/octopair.hpp"
 
 #include <algorithm>
 
 #include "peers/contender.hpp"
+#include "peers/tracker.hpp"
 
 namespace octopair::bench {
 
@@ -64,6 +66,65 @@ private:
     std::vector<Box3d> wide_;
 };
 
+/// move() and step(), which say what began and ended; the whole list is not asked for, so there is no hash to compare.
+class SceneSteps : public Tracker {
+public:
+    explicit SceneSteps(unsigned threads) : scene_({.threads = threads}) {}
+    void begin(std::span<const Box3f> boxes) override {
+        ids_.resize(boxes.size());
+        scene_.add(Objects{boxes}, ids_);
+        pairs_ = scene_.step().pairs();
+    }
+    void next(const Frame& frame) override {
+        moved_.clear();
+        for (const std::uint32_t object : frame.moved) moved_.push_back(ids_[object]);
+        scene_.move(moved_, frame.moved_boxes);
+        pairs_ = scene_.step().pairs();
+    }
+    Found found() const override { return {pairs_, 0}; }
+
+protected:
+    octopair::Scene scene_;
+
+private:
+    std::vector<ObjectId> ids_, moved_;
+    std::uint64_t pairs_ = 0;
+};
+
+/// And pairs(): the whole list.
+class ScenePairs : public SceneSteps {
+public:
+    using SceneSteps::SceneSteps;
+    void begin(std::span<const Box3f> boxes) override {
+        SceneSteps::begin(boxes);
+        list_ = &scene_.pairs();
+    }
+    void next(const Frame& frame) override {
+        SceneSteps::next(frame);
+        list_ = &scene_.pairs();
+    }
+    Found found() const override {
+        Found found;
+        for (const auto chunk : list_->chunks()) add(found, chunk);
+        return found;
+    }
+
+private:
+    const PairList* list_ = nullptr;
+};
+
+/// Every frame as if it were the first.
+class FullDetection : public Tracker {
+public:
+    explicit FullDetection(unsigned threads) : ours_(threads, Order::ascending) {}
+    void begin(std::span<const Box3f> boxes) override { ours_.run(boxes); }
+    void next(const Frame& frame) override { ours_.run(frame.boxes); }
+    Found found() const override { return ours_.found(); }
+
+private:
+    Ours ours_;
+};
+
 }  // namespace
 
 std::vector<ContenderKind> octopair_contenders() {
@@ -76,6 +137,16 @@ std::vector<ContenderKind> octopair_contenders() {
          [](unsigned k) -> std::unique_ptr<Contender> { return std::make_unique<OursCounting>(k); }},
         {"octopair float64", true, false,
          [](unsigned k) -> std::unique_ptr<Contender> { return std::make_unique<OursWide>(k); }},
+    };
+}
+
+std::vector<TrackerKind> octopair_trackers() {
+    return {
+        {"full detection", true,
+         [](unsigned k) -> std::unique_ptr<Tracker> { return std::make_unique<FullDetection>(k); }},
+        {"scene", true, [](unsigned k) -> std::unique_ptr<Tracker> { return std::make_unique<ScenePairs>(k); }},
+        {"scene, changes only", true,
+         [](unsigned k) -> std::unique_ptr<Tracker> { return std::make_unique<SceneSteps>(k); }},
     };
 }
 

@@ -1,0 +1,189 @@
+// Moving scenes: octopair::Scene frame by frame beside a full detection of every frame, and beside its peers.
+//
+//     octopair_frames [--case NAME...] [--frames N] [--seconds S] [--quick] [--json FILE]
+//
+// Boxes of the kind uniform move as frames/motion.hpp says. All trackers take turns, frame by frame (frames/tracking.hpp);
+// a row tells the median, the 95th percentile and the slowest frame after the first. The case `memory` measures what a scene
+// takes, in processes of their own. Who finds other pairs than the full detection is marked, and makes the exit status 1; a
+// goal that is missed does not, since the machine has a say in it. `--quick` has a tenth of the objects and of the frames.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "frames/memory.hpp"
+#include "frames/tracking.hpp"
+#include "io/atomic_file.hpp"
+#include "machine/machine.hpp"
+
+namespace {
+
+using namespace octopair;
+using namespace octopair::bench;
+using Json = nlohmann::ordered_json;
+
+const std::string memory_name = "memory";
+
+struct Request {
+    std::vector<std::string> cases;
+    FramePlan plan;
+    bool quick = false;
+    std::string json;
+
+    bool asks(const std::string& name) const {
+        return cases.empty() || std::find(cases.begin(), cases.end(), name) != cases.end();
+    }
+};
+
+std::string statistic_name(Statistic statistic) { return statistic == Statistic::median ? "median" : "slowest"; }
+
+std::string against_name(const Goal& goal) {
+    return goal.against.size() > 1 ? "the fastest peer" : goal.against.front();
+}
+
+std::string remark(const Track& track, const FramePlan& plan) {
+    std::string text;
+    if (track.seconds.size() < plan.frames) text += fmt::format("  {} frames", track.seconds.size());
+    if (track.differing > 0) {
+        text += fmt::format("  DIFFERS in {} frames: {} pairs", track.differing, track.differs_pairs);
+    }
+    return text;
+}
+
+void print(const FrameCase& which, const std::vector<Track>& tracks, const FramePlan& plan) {
+    fmt::print("{}: {} objects, {:g}% move, {} thread(s), {} pairs\n", which.name, which.objects, which.share * 100,
+               which.threads, tracks.front().pairs);
+    fmt::print("  {:<20} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "milliseconds", "median", "95%", "slowest", "first",
+               "frames/s");
+    for (const Track& track : tracks) {
+        const double median = track.quantile(0.5);
+        fmt::print("  {:<20} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.1f}{}\n", track.tracker, median * 1e3,
+                   track.quantile(0.95) * 1e3, track.quantile(1) * 1e3, track.first_seconds * 1e3, 1 / median,
+                   remark(track, plan));
+    }
+    for (const Goal& goal : which.goals) {
+        const double ratio = reached(goal, tracks);
+        fmt::print("  {} of {} / median of {}: {:.3f}, at most {:.3f}{}\n", statistic_name(goal.statistic),
+                   goal.tracker, against_name(goal), ratio, goal.most, ratio <= goal.most ? "" : "  MISSED");
+    }
+    std::fflush(stdout);
+}
+
+Json track_json(const Track& track) {
+    return {{"tracker", track.tracker},
+            {"frames", track.seconds.size()},
+            {"median_seconds", track.quantile(0.5)},
+            {"percentile95_seconds", track.quantile(0.95)},
+            {"slowest_seconds", track.quantile(1)},
+            {"first_seconds", track.first_seconds},
+            {"seconds", track.seconds},
+            {"pairs", track.pairs},
+            {"differing_frames", track.differing}};
+}
+
+Json goal_json(const Goal& goal, const std::vector<Track>& tracks) {
+    return {{"tracker", goal.tracker},
+            {"statistic", statistic_name(goal.statistic)},
+            {"against", goal.against},
+            {"ratio", reached(goal, tracks)},
+            {"most", goal.most}};
+}
+
+Json case_json(const FrameCase& which, const std::vector<Track>& tracks) {
+    Json rows = Json::array(), goals = Json::array();
+    for (const Track& track : tracks) rows.push_back(track_json(track));
+    for (const Goal& goal : which.goals) goals.push_back(goal_json(goal, tracks));
+    return {{"case", which.name},   {"objects", which.objects},
+            {"share", which.share}, {"threads", which.threads},
+            {"rows", rows},         {"goals", goals}};
+}
+
+Json memory_json(const MemoryCase& which, const MemoryUse& use) {
+    return {{"scene", which.kind},          {"objects", which.objects},
+            {"share", which.share},         {"pairs", use.pairs},
+            {"first_peak", use.first_peak}, {"peak", use.peak},
+            {"steady", use.steady},         {"most", promised_bytes(double(which.objects), double(use.pairs))}};
+}
+
+/// Small enough to try the program.
+void shrink(std::uint64_t& objects) { objects = std::max<std::uint64_t>(1000, objects / 10); }
+
+Json run_memory(const Request& request) {
+    Json rows = Json::array();
+    fmt::print("{}: bytes an object of a scene, 1 thread\n", memory_name);
+    fmt::print("  {:<10} {:>6} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "scene", "moved", "pairs/n", "first peak", "peak",
+               "steady", "at most");
+    for (MemoryCase which : memory_cases()) {
+        if (request.quick) shrink(which.objects);
+        const MemoryUse use = measure_memory(which);
+        const double n = double(which.objects);
+        const double most = promised_bytes(n, double(use.pairs));
+        fmt::print("  {:<10} {:>5g}% {:>8.2f} {:>10.1f} {:>10.1f} {:>10.1f} {:>10.1f}{}\n", which.kind,
+                   which.share * 100, double(use.pairs) / n, use.first_peak / n, use.peak / n, use.steady / n, most / n,
+                   use.highest() <= most ? "" : "  MISSED");
+        std::fflush(stdout);
+        rows.push_back(memory_json(which, use));
+    }
+    return rows;
+}
+
+/// False if some tracker found other pairs.
+bool run_case(const FrameCase& which, const FramePlan& plan, Json& results) {
+    const auto tell = [&](std::string_view what) { fmt::print(stderr, "{}: {}\n", which.name, what); };
+    const std::vector<Track> tracks = track(which, plan, tell);
+    print(which, tracks, plan);
+    results.push_back(case_json(which, tracks));
+    return std::all_of(tracks.begin(), tracks.end(), [](const Track& track) { return track.differing == 0; });
+}
+
+int run(const Request& request) {
+    std::optional<io::AtomicFile> file;
+    if (!request.json.empty()) file.emplace(request.json);
+    Json all = machine_json();
+    // First, since it forks: nothing has made threads yet, or left memory behind.
+    if (request.asks(memory_name)) all["memory"] = run_memory(request);
+    Json results = Json::array();
+    bool agree = true;
+    for (FrameCase which : frame_cases()) {
+        if (!request.asks(which.name)) continue;
+        if (request.quick) shrink(which.objects);
+        agree = run_case(which, request.plan, results) && agree;
+    }
+    all["results"] = results;
+    if (file) {
+        file->write(all.dump(1) + '\n');
+        file->commit();
+    }
+    return agree ? 0 : 1;
+}
+
+std::vector<std::string> case_names() {
+    std::vector<std::string> names{memory_name};
+    for (const FrameCase& which : frame_cases()) names.push_back(which.name);
+    return names;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    Request request;
+    CLI::App app("scenes that move, frame by frame, and their peers");
+    app.add_option("--case", request.cases, "default: all")->check(CLI::IsMember(case_names()));
+    const CLI::Option* const frames =
+        app.add_option("--frames", request.plan.frames, "after the first")->check(CLI::PositiveNumber);
+    app.add_option("--seconds", request.plan.most_seconds, "after which a tracker ends, in one case");
+    app.add_flag("--quick", request.quick, "a tenth of the objects, and of the frames");
+    app.add_option("--json", request.json);
+    CLI11_PARSE(app, count, words);
+    if (request.quick && frames->count() == 0) request.plan.frames /= 10;
+    try {
+        return run(request);
+    } catch (const std::exception& error) {
+        std::cerr << "octopair_frames: " << error.what() << '\n';
+        return 3;
+    }
+}

@@ -1,0 +1,56 @@
+#include "frames/cases.hpp"
+
+namespace octopair::bench {
+
+namespace {
+
+const std::string full = "full detection";
+const std::string scene = "scene";
+const std::string changes = "scene, changes only";
+const std::string bullet = "Bullet dbvt";
+const std::string bullet_deferred = "Bullet dbvt deferred";
+const std::string fcl = "FCL AABB tree";
+const std::string fcl_array = "FCL AABB tree, array";
+const std::string ode = "ODE hash space";
+const std::string ode_sweep = "ODE sweep and prune";
+
+}  // namespace
+
+std::vector<FrameCase> frame_cases() {
+    const auto median = Statistic::median;
+    return {
+        {"1m-percent",
+         1'000'000,
+         0.01,
+         1,
+         {full, scene, changes, bullet, fcl},
+         {{changes, median, {full}, 1.0 / 10}, {scene, median, {full}, 1.0 / 10}}},
+        {"1m-permille",
+         1'000'000,
+         0.001,
+         1,
+         {full, scene, changes},
+         {{changes, median, {full}, 1.0 / 50}, {scene, median, {full}, 1.0 / 50}}},
+        {"1m-all",
+         1'000'000,
+         1,
+         1,
+         {full, scene, changes, fcl, fcl_array},
+         {{changes, median, {full}, 1.1}, {scene, median, {full}, 1.1}, {scene, median, {fcl, fcl_array}, 1.0 / 8}}},
+        {"100k-percent",
+         100'000,
+         0.01,
+         1,
+         {full, scene, bullet, bullet_deferred, fcl},
+         {{scene, median, {bullet, bullet_deferred}, 1.0 / 10}, {scene, Statistic::slowest, {scene}, 3}}},
+        {"10k-all",
+         10'000,
+         1,
+         1,
+         {full, scene, bullet, bullet_deferred, fcl, fcl_array, ode, ode_sweep},
+         {{scene, median, {bullet, bullet_deferred, fcl, fcl_array, ode, ode_sweep}, 1.0 / 5}}},
+        {"100k-all", 100'000, 1, 2, {full, scene}, {}},
+    };
+}
+
+}  // namespace octopair::bench

@@ -1,0 +1,116 @@
+#include "frames/tracking.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "frames/motion.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::bench {
+
+namespace {
+
+struct Runner {
+    Track track;
+    std::unique_ptr<Tracker> tracker;
+    double spent = 0;
+};
+
+template <typename Body>
+double timed(const Body& body) {
+    const auto begin = std::chrono::steady_clock::now();
+    body();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::vector<Runner> make_runners(const FrameCase& which) {
+    const std::vector<TrackerKind> kinds = tracker_kinds();
+    std::vector<Runner> runners;
+    runners.reserve(which.trackers.size());
+    for (const std::string& name : which.trackers) {
+        const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.name == name; });
+        if (kind == kinds.end()) throw std::out_of_range("no tracker " + name);
+        Runner& runner = runners.emplace_back();
+        runner.track.tracker = name;
+        runner.tracker = kind->make(which.threads);
+    }
+    return runners;
+}
+
+/// The first runner's pairs are what the others' are held against.
+void judge(std::vector<Runner>& runners) {
+    const Found expected = runners.front().tracker->found();
+    for (Runner& runner : runners) {
+        if (!runner.tracker) continue;
+        const Found found = runner.tracker->found();
+        runner.track.pairs = found.pairs;
+        if (found == expected || (found.hash == 0 && found.pairs == expected.pairs)) continue;
+        if (runner.track.differing++ == 0) runner.track.differs_pairs = found.pairs;
+    }
+}
+
+void run_frame(std::vector<Runner>& runners, const Frame& frame) {
+    for (Runner& runner : runners) {
+        if (!runner.tracker) continue;
+        runner.track.seconds.push_back(timed([&] { runner.tracker->next(frame); }));
+        runner.spent += runner.track.seconds.back();
+    }
+}
+
+/// Who has missed a frame cannot go on, so it ends for good. The first one stays: it is needed to judge the others.
+void end_slow(std::vector<Runner>& runners, const FramePlan& plan) {
+    for (std::size_t i = 1; i < runners.size(); ++i) {
+        Runner& runner = runners[i];
+        if (runner.spent > plan.most_seconds && runner.track.seconds.size() >= plan.least_frames) {
+            runner.tracker.reset();
+        }
+    }
+}
+
+const Track& named(const std::vector<Track>& tracks, const std::string& name) {
+    const auto it = std::find_if(tracks.begin(), tracks.end(), [&](const Track& one) { return one.tracker == name; });
+    if (it == tracks.end()) throw std::out_of_range("no track of " + name);
+    return *it;
+}
+
+}  // namespace
+
+double Track::quantile(double share) const {
+    if (seconds.empty()) return first_seconds;
+    std::vector<double> sorted = seconds;
+    std::sort(sorted.begin(), sorted.end());
+    const auto rank = std::size_t(std::ceil(share * double(sorted.size())));
+    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+}
+
+double reached(const Goal& goal, const std::vector<Track>& tracks) {
+    double fastest = named(tracks, goal.against.front()).quantile(0.5);
+    for (const std::string& other : goal.against) fastest = std::min(fastest, named(tracks, other).quantile(0.5));
+    return named(tracks, goal.tracker).quantile(goal.statistic == Statistic::median ? 0.5 : 1) / fastest;
+}
+
+std::vector<Track> track(const FrameCase& which, const FramePlan& plan, const TrackingProgress& progress) {
+    Motion motion(samples::make_scene("uniform", which.objects, 1), which.share);
+    std::vector<Runner> runners = make_runners(which);
+    for (Runner& runner : runners) {
+        runner.track.first_seconds = timed([&] { runner.tracker->begin(motion.boxes()); });
+        progress(fmt::format("first frame of {}: {:.2f} ms", runner.track.tracker, runner.track.first_seconds * 1e3));
+    }
+    judge(runners);
+    for (unsigned i = 0; i < plan.frames; ++i) {
+        run_frame(runners, motion.next());
+        judge(runners);
+        end_slow(runners, plan);
+        if ((i + 1) % 10 == 0) progress(fmt::format("frame {} of {}", i + 1, plan.frames));
+    }
+    std::vector<Track> tracks;
+    tracks.reserve(runners.size());
+    for (Runner& runner : runners) tracks.push_back(std::move(runner.track));
+    return tracks;
+}
+
+}  // namespace octopair::bench
