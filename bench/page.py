@@ -22,7 +22,8 @@ def load(path):
 
 def machine(results):
     """What measured."""
-    files = [load(path) for path in [results / "paper.json", *sorted(results.glob("peers_*.json"))]]
+    others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json")]
+    files = [load(path) for path in [results / "paper.json", *others]]
     said = files[0]
     commits = sorted({file["commit"] for file in files})
     return (f"Measured on {said['processor']}, {said['cores']} cores, with {said['compiler']}; octopair "
@@ -96,7 +97,79 @@ def peers(results, name):
     return "\n".join(lines)
 
 
-BLOCKS = {"machine": machine, "short": short, "paper": paper, "scenes": scenes}
+def milliseconds(seconds):
+    """With as many digits as say something."""
+    value = seconds * 1e3
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
+
+
+TIMES = ("median_seconds", "percentile95_seconds", "slowest_seconds", "median_processor_seconds")
+
+
+def case_title(case):
+    """What a case of moving scenes is, as the first cell of its rows."""
+    moved = "all moved" if case["share"] == 1 else f"{case['share'] * 100:g}% moved"
+    threads = f"{case['threads']} thread{'s' if case['threads'] > 1 else ''}"
+    return f"{case['objects']:,}, {moved}, {threads}"
+
+
+def frames(results):
+    """A row for each case and tracker; how many times slower than the scene with all pairs."""
+    lines = ["| objects | milliseconds a frame | median | 95% | slowest | processor | against scene | frames/s |",
+             "|---|---|--:|--:|--:|--:|--:|--:|"]
+    for case in load(results / "frames.json")["results"]:
+        scene = next(row["median_seconds"] for row in case["rows"] if row["tracker"] == "scene")
+        title = case_title(case)
+        most = max(row["frames"] for row in case["rows"])
+        for row in case["rows"]:
+            median = row["median_seconds"]
+            times = [milliseconds(row[key]) for key in TIMES]
+            name = row["tracker"] + (f", {row['frames']} frames" if row["frames"] < most else "")
+            name += f", other pairs in {row['differing_frames']} frames" if row["differing_frames"] else ""
+            cells = [title, name, *times, f"{median / scene:.2f} x", f"{1 / median:,.0f}"]
+            lines.append("| " + " | ".join(cells) + " |")
+            title = ""
+    return "\n".join(lines)
+
+
+def goal_text(goal):
+    """What a goal bounds."""
+    against = goal["against"][0] if len(goal["against"]) == 1 else "the fastest peer"
+    if goal["against"] == [goal["tracker"]]:
+        return f"{goal['tracker']}: {goal['statistic']} frame / its median"
+    return f"{goal['tracker']} / {against}"
+
+
+def share_text(ratio):
+    """A ratio, or its inverse where that is easier to read."""
+    return f"1/{1 / ratio:.3g}" if ratio < 0.995 else f"{ratio:.3g}"
+
+
+def frame_goals(results):
+    """Aims and what was measured."""
+    lines = ["| objects | what | aim: at most | measured | processor | |", "|---|---|--:|--:|--:|---|"]
+    for case in load(results / "frames.json")["results"]:
+        for goal in case["goals"]:
+            cells = [case_title(case), goal_text(goal), share_text(goal["most"]), share_text(goal["ratio"]),
+                     share_text(goal["processor_ratio"]), "" if goal["ratio"] <= goal["most"] else "missed"]
+            lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def frame_memory(results):
+    """Bytes an object."""
+    lines = ["| bytes an object | moved | pairs an object | peak, first frame | peak, later | steady | promised |",
+             "|---|--:|--:|--:|--:|--:|--:|"]
+    for row in load(results / "frames.json")["memory"]:
+        objects = row["objects"]
+        sizes = [f"{row[name] / objects:.0f}" for name in ("first_peak", "peak", "steady", "most")]
+        cells = [row["scene"], f"{row['share'] * 100:g}%", f"{row['pairs'] / objects:.2f}", *sizes]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+BLOCKS = {"machine": machine, "short": short, "paper": paper, "scenes": scenes, "frames": frames,
+          "frame_goals": frame_goals, "frame_memory": frame_memory}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
     BLOCKS[f"peers_{table}"] = lambda results, table=table: peers(results, table)
 

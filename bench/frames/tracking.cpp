@@ -1,6 +1,7 @@
 #include "frames/tracking.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,11 +21,23 @@ struct Runner {
     double spent = 0;
 };
 
+struct Times {
+    double wall = 0, processor = 0;
+};
+
+double processor_now() {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
 template <typename Body>
-double timed(const Body& body) {
+Times timed(const Body& body) {
+    const double processor = processor_now();
     const auto begin = std::chrono::steady_clock::now();
     body();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const auto end = std::chrono::steady_clock::now();
+    return {std::chrono::duration<double>(end - begin).count(), processor_now() - processor};
 }
 
 std::vector<Runner> make_runners(const FrameCase& which) {
@@ -56,8 +69,10 @@ void judge(std::vector<Runner>& runners) {
 void run_frame(std::vector<Runner>& runners, const Frame& frame) {
     for (Runner& runner : runners) {
         if (!runner.tracker) continue;
-        runner.track.seconds.push_back(timed([&] { runner.tracker->next(frame); }));
-        runner.spent += runner.track.seconds.back();
+        const Times times = timed([&] { runner.tracker->next(frame); });
+        runner.track.seconds.push_back(times.wall);
+        runner.track.processor_seconds.push_back(times.processor);
+        runner.spent += times.wall;
     }
 }
 
@@ -79,25 +94,27 @@ const Track& named(const std::vector<Track>& tracks, const std::string& name) {
 
 }  // namespace
 
-double Track::quantile(double share) const {
-    if (seconds.empty()) return first_seconds;
-    std::vector<double> sorted = seconds;
+double Track::quantile(double share, Clock clock) const {
+    std::vector<double> sorted = clock == Clock::wall ? seconds : processor_seconds;
+    if (sorted.empty()) return first_seconds;
     std::sort(sorted.begin(), sorted.end());
     const auto rank = std::size_t(std::ceil(share * double(sorted.size())));
     return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
 }
 
-double reached(const Goal& goal, const std::vector<Track>& tracks) {
-    double fastest = named(tracks, goal.against.front()).quantile(0.5);
-    for (const std::string& other : goal.against) fastest = std::min(fastest, named(tracks, other).quantile(0.5));
-    return named(tracks, goal.tracker).quantile(goal.statistic == Statistic::median ? 0.5 : 1) / fastest;
+double reached(const Goal& goal, const std::vector<Track>& tracks, Clock clock) {
+    double fastest = named(tracks, goal.against.front()).quantile(0.5, clock);
+    for (const std::string& other : goal.against) {
+        fastest = std::min(fastest, named(tracks, other).quantile(0.5, clock));
+    }
+    return named(tracks, goal.tracker).quantile(goal.statistic == Statistic::median ? 0.5 : 1, clock) / fastest;
 }
 
 std::vector<Track> track(const FrameCase& which, const FramePlan& plan, const TrackingProgress& progress) {
     Motion motion(samples::make_scene("uniform", which.objects, 1), which.share);
     std::vector<Runner> runners = make_runners(which);
     for (Runner& runner : runners) {
-        runner.track.first_seconds = timed([&] { runner.tracker->begin(motion.boxes()); });
+        runner.track.first_seconds = timed([&] { runner.tracker->begin(motion.boxes()); }).wall;
         progress(fmt::format("first frame of {}: {:.2f} ms", runner.track.tracker, runner.track.first_seconds * 1e3));
     }
     judge(runners);
