@@ -126,7 +126,9 @@ def frames(results):
             times = [milliseconds(row[key]) for key in TIMES]
             name = row["tracker"] + (f", {row['frames']} frames" if row["frames"] < most else "")
             name += f", other pairs in {row['differing_frames']} frames" if row["differing_frames"] else ""
-            cells = [title, name, *times, f"{median / scene:.2f} x", f"{1 / median:,.0f}"]
+            ratio = f"{median / scene:.2f}" if median < 9.95 * scene else f"{median / scene:.0f}"
+            rate = f"{1 / median:.1f}" if median > 0.1 else f"{1 / median:,.0f}"
+            cells = [title, name, *times, f"{ratio} x", rate]
             lines.append("| " + " | ".join(cells) + " |")
             title = ""
     return "\n".join(lines)
