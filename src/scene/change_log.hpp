@@ -3,6 +3,7 @@
 // It keeps no more than a part of the objects; beyond, a step searches all and does not need it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,14 +20,16 @@ struct Former {
 
 class ChangeLog {
 public:
-    /// Before a call that changes so many objects, each named once: whether they fit is known at once.
+    /// Before a call that changes so many objects: whether they fit is known at once, and memory is there.
     void expect(ObjectTable& table, std::uint64_t changes) {
-        if (double(formers_.size() + changes) >= most(table)) overflow(table);
+        if (overflowed_) return;
+        if (double(formers_.size() + changes) >= most(table)) return overflow(table);
+        const std::size_t all = formers_.size() + std::size_t(changes);
+        if (all > formers_.capacity()) formers_.reserve(std::max(all, 2 * formers_.capacity()));
     }
-    /// To be called before a change of an object, or after it was created (`existed` false).
+    /// To be called before a change of an object, or after it was created (`existed` false), which was expected.
     void note(ObjectTable& table, std::uint32_t index, bool existed) {
         if (overflowed_ || table.mark(index) != ObjectTable::none) return;
-        if (double(formers_.size()) >= most(table)) return overflow(table);
         table.set_mark(index, std::uint32_t(formers_.size()));
         formers_.push_back({index, table.state(index)});
         formers_.back().state.exists = existed;

@@ -11,25 +11,17 @@ Objects ObjectTable::objects() const {
     return {boxes32_.span(), paddings_.span()};
 }
 
-ObjectId ObjectTable::create(const Box3d& box, double padding, const Traits& traits) {
-    std::uint32_t index = std::uint32_t(slots_.size());
+std::uint32_t ObjectTable::new_index() {
     if (!free_.empty()) {
-        index = free_.back();
+        const std::uint32_t index = free_.back();
         free_.pop_back();
-    } else {
-        reserve(1);
-        precision_ == Precision::float64 ? boxes64_.push_back({}) : boxes32_.push_back({});
-        slots_.push_back({0, none});
-        if (!paddings_.empty()) paddings_.push_back(0);
-        if (!traits_.empty()) traits_.push_back({});
+        return index;
     }
-    ++slots_[index].generation;
-    ++size_;
-    set_box(index, box);
-    if (padding > 0 && paddings_.empty()) paddings_.resize(slots_.size(), 0);
-    if (!paddings_.empty()) paddings_[index] = padding;
-    set_traits(index, traits);
-    return id(index);
+    precision_ == Precision::float64 ? boxes64_.push_back({}) : boxes32_.push_back({});
+    slots_.push_back({0, none});
+    if (padded_) paddings_.push_back(0);
+    if (with_traits_) traits_.push_back({});
+    return std::uint32_t(slots_.size() - 1);
 }
 
 void ObjectTable::set_box(std::uint32_t index, const Box3d& box) {
@@ -43,21 +35,17 @@ void ObjectTable::set_box(std::uint32_t index, const Box3d& box) {
     }
 }
 
-void ObjectTable::set_traits(std::uint32_t index, const Traits& traits) {
-    if (traits_.empty()) {
-        if (traits == Traits{}) return;
-        traits_.resize(slots_.size(), {});
-    }
-    traits_[index] = traits;
-}
-
-void ObjectTable::reserve(std::uint64_t more) {
+void ObjectTable::reserve(std::uint64_t more, bool with_padding, bool with_traits) {
     const std::uint64_t fresh = more - std::min<std::uint64_t>(more, free_.size());
     const std::size_t all = std::size_t(slots_.size() + fresh);
     precision_ == Precision::float64 ? boxes64_.reserve(all) : boxes32_.reserve(all);
     slots_.reserve(all);
-    if (!paddings_.empty()) paddings_.reserve(all);
-    if (!traits_.empty()) traits_.reserve(all);
+    padded_ |= with_padding;
+    with_traits_ |= with_traits;
+    if (padded_) paddings_.reserve(all);
+    if (with_traits_) traits_.reserve(all);
+    if (padded_) paddings_.resize(slots_.size(), 0);
+    if (with_traits_) traits_.resize(slots_.size(), {});
 }
 
 }  // namespace octopair

@@ -41,11 +41,11 @@ public:
     ObjectId id(std::uint32_t index) const { return {index, slots_[index].generation}; }
 
     Box3d box(std::uint32_t index) const { return boxes64_.empty() ? wide(boxes32_[index]) : boxes64_[index]; }
-    double padding(std::uint32_t index) const { return paddings_.empty() ? 0 : paddings_[index]; }
-    Traits traits(std::uint32_t index) const { return traits_.empty() ? Traits{} : traits_[index]; }
+    double padding(std::uint32_t index) const { return padded_ ? paddings_[index] : 0; }
+    Traits traits(std::uint32_t index) const { return with_traits_ ? traits_[index] : Traits{}; }
     ObjectState state(std::uint32_t index) const { return {alive(index), box(index), padding(index), traits(index)}; }
-    bool any_padding() const { return !paddings_.empty(); }
-    bool any_traits() const { return !traits_.empty(); }
+    bool any_padding() const { return padded_; }
+    bool any_traits() const { return with_traits_; }
     /// All indices, those not in use too.
     Objects objects() const;
     /// For what is called here of that object soon.
@@ -58,20 +58,24 @@ public:
         if (index < slots_.size()) hwy::Prefetch(&slots_[index]);
     }
 
-    /// A new object at a free or a further index.
-    ObjectId create(const Box3d& box, double padding, const Traits& traits);
+    /// A new object at a free or a further index. To be reserved for.
+    template <typename Real>
+    ObjectId create(const Box<Real>& box, double padding, const Traits& traits);
     /// Of the table's precision, or one that it holds exactly.
     void set_box(std::uint32_t index, const Box3f& box) { boxes32_[index] = box; }
     void set_box(std::uint32_t index, const Box3d& box);
-    void set_traits(std::uint32_t index, const Traits& traits);
+    /// To be reserved for.
+    void set_traits(std::uint32_t index, const Traits& traits) {
+        if (with_traits_) traits_[index] = traits;
+    }
     /// It is alive no longer; its index is not free before release().
     void kill(std::uint32_t index) {
         ++slots_[index].generation;
         --size_;
     }
     void release(std::uint32_t index) { free_.push_back(index); }
-    /// Memory for so many more.
-    void reserve(std::uint64_t more);
+    /// Memory for so many more, and for what not all objects have where one of them is going to.
+    void reserve(std::uint64_t more, bool with_padding, bool with_traits);
 
     /// A mark that the change log keeps for each object (change_log.hpp); none at first.
     std::uint32_t mark(std::uint32_t index) const { return slots_[index].mark; }
@@ -83,14 +87,28 @@ private:
         std::uint32_t mark;
     };
 
+    std::uint32_t new_index();
+
     Precision precision_;
     GrowingArray<Box3f> boxes32_;  // empty if the precision is the other one
     GrowingArray<Box3d> boxes64_;
     GrowingArray<Slot> slots_;
-    GrowingArray<double> paddings_;
-    GrowingArray<Traits> traits_;
+    bool padded_ = false, with_traits_ = false;
+    GrowingArray<double> paddings_;  // if padded_
+    GrowingArray<Traits> traits_;    // if with_traits_
     std::vector<std::uint32_t> free_;
     std::uint64_t size_ = 0;  // alive
 };
+
+template <typename Real>
+ObjectId ObjectTable::create(const Box<Real>& box, double padding, const Traits& traits) {
+    const std::uint32_t index = new_index();
+    ++slots_[index].generation;
+    ++size_;
+    set_box(index, box);
+    if (padded_) paddings_[index] = padding;
+    if (with_traits_) traits_[index] = traits;
+    return id(index);
+}
 
 }  // namespace octopair

@@ -1,0 +1,231 @@
+// The calls that change the objects of a scene: checked as a whole, recorded, then made.
+#include "scene/scene_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t ahead = 24;  // objects of a call that are fetched before their turn
+
+Error fault(std::size_t position, const std::string& what) {
+    return {ErrorCode::bad_input, "object " + std::to_string(position) + " of the call: " + what};
+}
+
+std::uint64_t size_of(const Boxes& boxes) {
+    return std::visit([](auto span) -> std::uint64_t { return span.size(); }, boxes);
+}
+
+Box3d joined(const Box3d& a, const Box3d& b) {
+    Box3d both;
+    for (int axis = 0; axis < 3; ++axis) {
+        both.min[axis] = std::min(a.min[axis], b.min[axis]);
+        both.max[axis] = std::max(a.max[axis], b.max[axis]);
+    }
+    return both;
+}
+
+/// Room for so many more, by doubling: calls of a few objects do not copy all each time.
+template <typename T>
+void reserve_more(std::vector<T>& list, std::size_t more) {
+    const std::size_t all = list.size() + more;
+    if (all > list.capacity()) list.reserve(std::max(all, 2 * list.capacity()));
+}
+
+/// None for the defaults, one for all, or one for each.
+const Traits& traits_at(std::span<const Traits> traits, std::size_t i) {
+    static constexpr Traits defaults{};
+    return traits.empty() ? defaults : traits[traits.size() == 1 ? 0 : i];
+}
+
+}  // namespace
+
+Scene::State::State(const SceneOptions& options)
+    : margin_(options.margin),
+      float64_(options.precision == Precision::float64),
+      table_(options.precision),
+      team_(options.threads),
+      search_(team_),
+      queries_(team_) {
+    if (!(margin_ >= 0 && std::isfinite(margin_))) {
+        throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin_) + ", not a finite number >= 0");
+    }
+    if (!options.recording.empty()) recorder_ = std::make_unique<Recorder>(options);
+}
+
+void Scene::State::check_boxes(const Boxes& boxes, std::size_t expected) const {
+    if (size_of(boxes) != expected) {
+        throw Error(ErrorCode::bad_input,
+                    std::to_string(size_of(boxes)) + " boxes for " + std::to_string(expected) + " ids");
+    }
+    if (std::holds_alternative<std::span<const Box3d>>(boxes) != float64_) {
+        throw Error(ErrorCode::bad_input, std::string("boxes are float") + (float64_ ? "32" : "64") +
+                                              ", the scene's float" + (float64_ ? "64" : "32"));
+    }
+    const auto check = [](const auto& span) {
+        const auto wrong = std::find_if_not(span.begin(), span.end(), [](const auto& box) { return is_box(box); });
+        if (wrong != span.end()) throw fault(std::size_t(wrong - span.begin()), "not a finite box with min <= max");
+    };
+    std::visit(check, boxes);
+}
+
+void Scene::State::check_ids(std::span<const ObjectId> ids) const {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (i + ahead < ids.size()) table_.prefetch_slot(ids[i + ahead].index);
+        if (table_.contains(ids[i])) continue;
+        throw fault(i, "id " + std::to_string(ids[i].index) + "." + std::to_string(ids[i].generation) +
+                           " is of no object of the scene");
+    }
+}
+
+void Scene::State::check_paddings(std::span<const double> paddings, std::size_t objects) const {
+    if (!paddings.empty() && paddings.size() != objects) {
+        throw Error(ErrorCode::bad_input,
+                    std::to_string(paddings.size()) + " paddings for " + std::to_string(objects) + " objects");
+    }
+    for (std::size_t i = 0; i < paddings.size(); ++i) {
+        if (!is_padding(paddings[i])) throw fault(i, "padding is not a finite number >= 0");
+    }
+}
+
+void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
+    check_boxes(objects.boxes, ids.size());
+    check_paddings(objects.padding, ids.size());
+    if (traits.size() > 1 && traits.size() != ids.size()) {
+        throw Error(ErrorCode::bad_input,
+                    std::to_string(traits.size()) + " traits for " + std::to_string(ids.size()) + " objects");
+    }
+    if (table_.indices() + ids.size() >= ObjectTable::none) throw Error(ErrorCode::resource_limit, "too many objects");
+    const auto padded = [](double padding) { return padding > 0; };
+    const auto unusual = [](const Traits& one) { return one != Traits{}; };
+    table_.reserve(ids.size(), std::any_of(objects.padding.begin(), objects.padding.end(), padded),
+                   std::any_of(traits.begin(), traits.end(), unusual));
+    prepare(ids.size());
+    if (recorder_) recorder_->add(objects, traits);
+    std::visit([&](auto boxes) { add_all(boxes, objects.padding, traits, ids); }, objects.boxes);
+}
+
+/// Memory for changes that are about to be made, so that nothing can fail then.
+void Scene::State::prepare(std::uint64_t changes) {
+    log_.expect(table_, changes);
+    fresh_ = built_ = false;
+}
+
+template <typename Real>
+void Scene::State::add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings,
+                           std::span<const Traits> traits, std::span<ObjectId> ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        ids[i] = table_.create(boxes[i], paddings.empty() ? 0 : paddings[i], traits_at(traits, i));
+        log_.note(table_, ids[i].index, false);
+    }
+}
+
+void Scene::State::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
+    check_boxes(boxes, ids.size());
+    check_ids(ids);
+    if (swept) {
+        reserve_more(swept_, ids.size());
+        if (swept_at_.size() < table_.indices()) swept_at_.resize(std::size_t(table_.indices()), ObjectTable::none);
+    }
+    prepare(ids.size());
+    if (recorder_) recorder_->move(swept ? RecordKind::sweep : RecordKind::move, ids, boxes);
+    std::visit([&](auto span) { swept ? sweep_to(ids, span) : move_to(ids, span); }, boxes);
+}
+
+template <typename Real>
+void Scene::State::move_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
+    const bool any_swept = !swept_.empty();
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const std::uint32_t index = ids[i].index;
+        if (!log_.overflowed()) {
+            if (i + ahead < ids.size()) table_.prefetch(ids[i + ahead].index);
+            log_.note(table_, index, true);
+        }
+        if (any_swept) drop_swept(index);
+        table_.set_box(index, boxes[i]);
+    }
+    moved_ += ids.size();
+}
+
+template <typename Real>
+void Scene::State::sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const std::uint32_t index = ids[i].index;
+        log_.note(table_, index, true);
+        drop_swept(index);
+        swept_at_[index] = std::uint32_t(swept_.size());
+        swept_.push_back({ids[i], wide(boxes[i])});
+        table_.set_box(index, joined(table_.box(index), wide(boxes[i])));
+    }
+    moved_ += ids.size();
+}
+
+void Scene::State::drop_swept(std::uint32_t index) {
+    if (index >= swept_at_.size() || swept_at_[index] == ObjectTable::none) return;
+    swept_[swept_at_[index]].id = {};
+    swept_at_[index] = ObjectTable::none;
+}
+
+void Scene::State::check_removal(std::span<const ObjectId> ids) {
+    check_ids(ids);
+    sorted_.assign(ids.begin(), ids.end());
+    std::sort(sorted_.begin(), sorted_.end());
+    const auto twice = std::adjacent_find(sorted_.begin(), sorted_.end());
+    if (twice != sorted_.end()) {
+        throw Error(ErrorCode::bad_input, "id " + std::to_string(twice->index) + "." +
+                                              std::to_string(twice->generation) + " is to be removed twice");
+    }
+}
+
+void Scene::State::remove(std::span<const ObjectId> ids) {
+    check_removal(ids);
+    reserve_more(removed_, ids.size());
+    prepare(ids.size());
+    if (recorder_) recorder_->remove(ids);
+    for (const ObjectId& id : ids) {
+        log_.note(table_, id.index, true);
+        drop_swept(id.index);
+        table_.kill(id.index);
+        removed_.push_back(id.index);
+        ++moved_;
+    }
+}
+
+void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
+    if (traits.size() != 1 && traits.size() != ids.size()) {
+        throw Error(ErrorCode::bad_input,
+                    std::to_string(traits.size()) + " traits for " + std::to_string(ids.size()) + " ids");
+    }
+    check_ids(ids);
+    if (std::any_of(traits.begin(), traits.end(), [](const Traits& one) { return one != Traits{}; })) {
+        table_.reserve(0, false, true);
+    }
+    prepare(ids.size());
+    if (recorder_) recorder_->set_traits(ids, traits);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        log_.note(table_, ids[i].index, true);
+        table_.set_traits(ids[i].index, traits_at(traits, i));
+        ++moved_;
+    }
+}
+
+/// What was swept is where it came to, from now on.
+void Scene::State::settle_swept() {
+    if (swept_.empty()) return;
+    prepare(swept_.size());
+    for (const Swept& swept : swept_) {
+        if (!table_.contains(swept.id)) continue;
+        swept_at_[swept.id.index] = ObjectTable::none;
+        log_.note(table_, swept.id.index, true);
+        table_.set_box(swept.id.index, swept.place);
+        ++moved_;
+    }
+    swept_.clear();
+}
+
+}  // namespace octopair

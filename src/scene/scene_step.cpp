@@ -1,0 +1,117 @@
+// The steps of a scene: around what changed where that is cheaper, and otherwise all.
+#include <algorithm>
+#include <chrono>
+#include <new>
+
+#include "engine/local/ascending.hpp"
+#include "octopair/error.hpp"
+#include "octree/scan.hpp"
+#include "scene/scene_state.hpp"
+
+namespace octopair {
+
+namespace {
+
+// In parts of a full detection, as far as costs are known:
+constexpr double worth_it = 0.9;  // may the search for changes cost
+constexpr double pays = 0.5;      // would the last step's changes have cost, so that an octree for the next ones pays
+constexpr double guessed_cost = 10;  // of an object that changed, in those of one in a full detection
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+const StepResult& Scene::State::step(const std::stop_token& stop) {
+    if (recorder_) recorder_->begin_step();
+    const auto begin = std::chrono::steady_clock::now();
+    const double changed = double(log_.formers().size());
+    const double expected = changed * seconds_a_change_;
+    const std::uint64_t before = history_.size();
+    const bool unlike = rounding_.exact && table_.any_padding();  // boxes in the octree have not been widened
+    const bool full = !planted_ || unlike || log_.overflowed() || expected > worth_it * full_seconds_;
+    try {
+        full ? find_all(stop) : find_changes(stop);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    }
+    finish_step();
+    result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
+    if (recorder_) recorder_->end_step(result_);
+    return result_;
+}
+
+void Scene::State::find_all(const std::stop_token& stop) {
+    const auto begin = std::chrono::steady_clock::now();
+    planted_ = fresh_ = false;
+    const SceneSource source(table_, margin_);
+    build(source, stop);
+    PairList::Storage& fresh = history_.fresh().storage();
+    fresh.reset();
+    AscendingExecutor ascending(team_, fresh, {{0, table_.indices()}, table_.indices()});
+    scan(linear_, {source, stop}, ascending, {});
+    ascending.append_sorted(stop);
+    full_seconds_ = seconds_since(begin);
+    const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, table_.size()));
+    // What was learned fades, so that it is tried again.
+    seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
+    if (double(moved_) * seconds_a_change_ <= pays * full_seconds_) {
+        octree_.build(linear_, stop);
+        linear_ = {};
+        planted_ = true;
+        built_ = false;
+    }
+    history_.take_over(changes_);  // the last step: one that fails before has changed nothing
+}
+
+void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
+    TeamExecutor executor(team_);
+    built_ = false;
+    linear_.build(source, executor, stop);
+    rounding_ = {source.boxes().exact(), source.boxes().rounding()};
+    built_ = true;
+}
+
+SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
+    const bool follows = planted_ && !log_.overflowed();
+    if (!follows && !fresh_) {
+        planted_ = false;
+        if (!built_) build(SceneSource(table_, margin_), {});
+        octree_.build(linear_, {});
+        fresh_ = true;
+    }
+    return {table_, octree_, rounding_.rounding, follows ? &log_ : nullptr, groups};
+}
+
+void Scene::State::find_changes(const std::stop_token& stop) {
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        search_.run({table_, log_, rounding_, margin_}, octree_, changes_, stop);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::cancelled) planted_ = false;
+        throw;
+    } catch (...) {
+        planted_ = false;
+        throw;
+    }
+    history_.apply(changes_);
+    const std::size_t changed = log_.formers().size();
+    constexpr std::size_t enough = 64;  // to tell what one costs
+    if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
+}
+
+void Scene::State::finish_step() {
+    log_.clear(table_);
+    for (const std::uint32_t index : removed_) table_.release(index);
+    removed_.clear();
+    moved_ = 0;
+    settle_swept();
+}
+
+const PairList& Scene::State::persisting() {
+    subtract(history_.list(), changes_.began, persisting_);
+    return persisting_;
+}
+
+}  // namespace octopair
