@@ -28,9 +28,17 @@ bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
     return good;
 }
 
+bool are_boxes_simd(std::span<const Box3f> boxes) {
+    bool good = true;
+    for (const Box3f& box : boxes) good &= is_box(box);
+    return good;
+}
+
 #else
 
-bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
+/// `out`: as many entries, where boxes are copied; otherwise nothing.
+template <bool copied>
+bool check_boxes_of(std::span<const Box3f> boxes, std::span<Entry> out) {
     const hn::FixedTag<float, 4> floats;
     const hn::FixedTag<std::uint32_t, 4> words;
     alignas(16) constexpr std::array<std::uint32_t, 4> fourth = {0, 0, 0, ~0u};
@@ -38,7 +46,7 @@ bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
     const auto largest = hn::Set(floats, FLT_MAX);
     auto good = hn::BitCast(floats, hn::Set(words, ~0u));
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        std::memcpy(&out[i], &boxes[i], sizeof(Box3f));
+        if constexpr (copied) std::memcpy(&out[i], &boxes[i], sizeof(Box3f));
         const float* const numbers = reinterpret_cast<const float*>(&boxes[i]);
         const auto first = hn::LoadU(floats, numbers);       // min x, y, z, max x
         const auto second = hn::LoadU(floats, numbers + 2);  // min z, max x, y, z
@@ -48,6 +56,9 @@ bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) {
     }
     return hn::AllTrue(floats, hn::MaskFromVec(good));
 }
+
+bool copy_boxes_simd(std::span<const Box3f> boxes, std::span<Entry> out) { return check_boxes_of<true>(boxes, out); }
+bool are_boxes_simd(std::span<const Box3f> boxes) { return check_boxes_of<false>(boxes, {}); }
 
 #endif
 
@@ -161,6 +172,15 @@ HWY_AFTER_NAMESPACE();
 namespace octopair {
 
 HWY_EXPORT(copy_boxes_simd);
+HWY_EXPORT(are_boxes_simd);
+
+bool are_boxes(std::span<const Box3f> boxes) { return HWY_DYNAMIC_DISPATCH(are_boxes_simd)(boxes); }
+
+bool are_boxes(std::span<const Box3d> boxes) {
+    bool good = true;
+    for (const Box3d& box : boxes) good &= is_box(box);
+    return good;
+}
 
 bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out) {
     return HWY_DYNAMIC_DISPATCH(copy_boxes_simd)(boxes, out);

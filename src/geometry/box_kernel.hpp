@@ -74,6 +74,10 @@ private:
     }
 };
 
+/// Whether is_box() is true of all.
+bool are_boxes(std::span<const Box3f> boxes);
+bool are_boxes(std::span<const Box3d> boxes);
+
 /// Copies the bounds of boxes as they are; false if is_box() is not true of all.
 bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out);
 

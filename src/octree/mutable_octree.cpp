@@ -132,6 +132,12 @@ void MutableOctree::clear() {
     inner_used_ = false;
 }
 
+void MutableOctree::release() {
+    clear();
+    plots_ = {};
+    units_.release();
+}
+
 void MutableOctree::insert(std::uint32_t object, const CellBox& box) {
     for_each_home_unit(box, [&](const Unit& unit, NodeIndex node) {
         if (unit.index == plots_[node].begin) use({&node, 1});

@@ -64,6 +64,8 @@ public:
     void build(const LinearOctree& octree, const std::stop_token& stop);
     /// Forgets everything, but keeps its memory.
     void clear();
+    /// And gives it back.
+    void release();
 
     const Frame& frame() const { return frame_; }
     /// Of its boxes: cells of frame(). An object is in here once.

@@ -15,6 +15,12 @@ void UnitBlocks::clear() {
     free_ = SmallBlock::none;
 }
 
+void UnitBlocks::release() {
+    clear();
+    heads_ = {};
+    blocks_ = {};
+}
+
 void UnitBlocks::reserve(std::uint64_t puts) {
     const std::uint64_t wanted = blocks_.size() + puts;
     if (wanted >= SmallBlock::none) throw Error(ErrorCode::resource_limit, "too many entries in an octree");

@@ -17,6 +17,8 @@ class UnitBlocks {
 public:
     /// Empties it; units are numbered from 0 on as they are added. Keeps its memory.
     void clear();
+    /// And gives it back.
+    void release();
     void add_units(std::size_t count) { heads_.resize(heads_.size() + count, SmallBlock::none); }
     std::uint32_t units() const { return std::uint32_t(heads_.size()); }
     std::uint64_t blocks() const { return blocks_.size(); }

@@ -49,23 +49,33 @@ private:
     const Pair* end_ = nullptr;
 };
 
-/// Fills a list of known size.
+/// Fills a list, in blocks of the memory that it has.
 class Writer {
 public:
-    Writer(PairList& list, std::uint64_t size) : storage_(list.storage()) {
-        storage_.reset();
-        if (size > 0) all_ = storage_.take_block(std::size_t(size)).first(std::size_t(size));
-        at_ = all_.data();
-    }
+    explicit Writer(PairList& list) : storage_(list.storage()) { storage_.reset(); }
 
-    void add(std::span<const Pair> pairs) { at_ = std::copy(pairs.begin(), pairs.end(), at_); }
-    void add(const Pair& pair) { *at_++ = pair; }
-    void finish() { storage_.append(all_); }
+    void add(std::span<const Pair> pairs) {
+        while (!pairs.empty()) {
+            if (used_ == block_.size()) next_block();
+            const std::size_t some = std::min(pairs.size(), block_.size() - used_);
+            std::copy_n(pairs.begin(), some, block_.begin() + std::ptrdiff_t(used_));
+            used_ += some;
+            pairs = pairs.subspan(some);
+        }
+    }
+    void add(const Pair& pair) { add(std::span(&pair, 1)); }
+    void finish() { storage_.append(block_.first(used_)); }
 
 private:
+    void next_block() {
+        finish();
+        block_ = storage_.take_block(1);
+        used_ = 0;
+    }
+
     PairList::Storage& storage_;
-    std::span<Pair> all_;
-    Pair* at_;
+    std::span<Pair> block_;
+    std::size_t used_ = 0;
 };
 
 /// Takes out of two ascending lists what is in both, as often as it is.
@@ -109,6 +119,12 @@ void PairHistory::take_over(PairChanges& changes) {
     size_ = list_.size();
 }
 
+void PairHistory::settle() {
+    Writer writer(other_);
+    for (Reader reader(list_); !reader.done();) writer.add(reader.run_before(~std::uint64_t(0)));
+    writer.finish();
+}
+
 void PairHistory::apply(const PairChanges& changes) {
     for (const Pair& pair : changes.began) began_.push_back(key_of(pair));
     for (const Pair& pair : changes.ended) ended_.push_back(key_of(pair));
@@ -132,7 +148,7 @@ void PairHistory::merge() {
     }
     cancel(began_, ended_);
     Reader reader(list_);
-    Writer writer(other_, size_);
+    Writer writer(other_);
     auto began = began_.begin(), ended = ended_.begin();
     while (!reader.done() || began != began_.end()) {
         const std::uint64_t stop = std::min(began != began_.end() ? *began : ~std::uint64_t(0),
@@ -153,7 +169,7 @@ void PairHistory::merge() {
 
 void subtract(const PairList& all, std::span<const Pair> less, PairList& out) {
     Reader reader(all);
-    Writer writer(out, all.size() - less.size());
+    Writer writer(out);
     for (const Pair& pair : less) {
         while (key_of(reader.pair()) < key_of(pair)) writer.add(reader.run_before(key_of(pair)));
         reader.next();

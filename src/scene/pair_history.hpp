@@ -37,6 +37,8 @@ public:
     }
     /// Takes fresh() over, and tells what changed.
     void take_over(PairChanges& changes);
+    /// Before steps that change little: takes the memory that they need.
+    void settle();
     /// What a step changed.
     void apply(const PairChanges& changes);
 
@@ -46,8 +48,7 @@ public:
 private:
     void merge();
 
-    PairList list_;
-    PairList other_;
+    PairList list_, other_;
     std::vector<std::uint64_t> began_, ended_;  // not yet in list_
     RadixSort<std::uint64_t> sort_;
     std::uint64_t size_ = 0;

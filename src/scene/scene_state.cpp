@@ -68,8 +68,9 @@ void Scene::State::check_boxes(const Boxes& boxes, std::size_t expected) const {
                                               ", the scene's float" + (float64_ ? "64" : "32"));
     }
     const auto check = [](const auto& span) {
+        if (are_boxes(span)) return;
         const auto wrong = std::find_if_not(span.begin(), span.end(), [](const auto& box) { return is_box(box); });
-        if (wrong != span.end()) throw fault(std::size_t(wrong - span.begin()), "not a finite box with min <= max");
+        throw fault(std::size_t(wrong - span.begin()), "not a finite box with min <= max");
     };
     std::visit(check, boxes);
 }

@@ -93,6 +93,7 @@ private:
     bool planted_ = false;  // octree_ holds the objects as they were at the last step
     bool fresh_ = false;    // octree_ holds them as they are now
     bool built_ = false;    // linear_ does
+    bool asked_ = false;    // queries made an octree since all was last searched: they may again
     double full_seconds_ = 0;
     double seconds_a_change_ = 0;
 

@@ -44,6 +44,8 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
 
 void Scene::State::find_all(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
+    if (!asked_) octree_.release();
+    asked_ = false;
     planted_ = fresh_ = false;
     const SceneSource source(table_, margin_);
     build(source, stop);
@@ -63,6 +65,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
         built_ = false;
     }
     history_.take_over(changes_);  // the last step: one that fails before has changed nothing
+    if (planted_) history_.settle();
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
@@ -79,7 +82,7 @@ SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
         planted_ = false;
         if (!built_) build(SceneSource(table_, margin_), {});
         octree_.build(linear_, {});
-        fresh_ = true;
+        fresh_ = asked_ = true;
     }
     return {table_, octree_, rounding_.rounding, follows ? &log_ : nullptr, groups};
 }
