@@ -68,8 +68,16 @@ struct LinearOctree::Block {
 };
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
-    auto clock = std::chrono::steady_clock::now();
+    const auto begin = std::chrono::steady_clock::now();
     plant(source, stop);
+    fill(source, executor, stop, begin);
+}
+
+void LinearOctree::refill(const EntrySource& source, Executor& executor, std::stop_token stop) {
+    fill(source, executor, stop, std::chrono::steady_clock::now());
+}
+
+void LinearOctree::fill(const EntrySource& source, Executor& executor, std::stop_token stop, Clock clock) {
     homes_.resize_discard(source.size());
     const std::size_t enough = std::max<std::size_t>(1, source.size() / (8 * batch_size));
     std::vector<Block> blocks(

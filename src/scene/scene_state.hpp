@@ -89,6 +89,8 @@ private:
     SceneQueries queries_;
     LinearOctree linear_;
     MutableOctree octree_;
+    static constexpr unsigned most_refills = 8;
+    unsigned refills_ = most_refills;  // of the octants of linear_ since they were made; at most as many
     EntryRounding rounding_;
     bool planted_ = false;  // octree_ holds the objects as they were at the last step
     bool fresh_ = false;    // octree_ holds them as they are now

@@ -61,6 +61,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     if (double(moved_) * seconds_a_change_ <= pays * full_seconds_) {
         octree_.build(linear_, stop);
         linear_ = {};
+        refills_ = most_refills;
         planted_ = true;
         built_ = false;
     }
@@ -70,9 +71,15 @@ void Scene::State::find_all(const std::stop_token& stop) {
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
     TeamExecutor executor(team_);
+    const EntryRounding rounding{source.boxes().exact(), source.boxes().rounding()};
+    // Where boxes are moved to an origin, it is another one each time.
+    const bool refill = refills_ < most_refills && rounding.exact && rounding_.exact;
+    const unsigned refills = refill ? refills_ + 1 : 0;
+    refills_ = most_refills;
     built_ = false;
-    linear_.build(source, executor, stop);
-    rounding_ = {source.boxes().exact(), source.boxes().rounding()};
+    refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
+    refills_ = refills;
+    rounding_ = rounding;
     built_ = true;
 }
 
