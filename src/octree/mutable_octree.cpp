@@ -283,18 +283,25 @@ bool MutableOctree::list(const Work& work, Visits& out) const {
 
 bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visits& out) const {
     const std::size_t visits = out.visits.size(), first_used = out.first_used.size();
-    if (change.existed && change.exists && near(change.before, change.after)) {
-        constexpr std::uint8_t both = around_before | around_after;
-        return list({number, change.object, both, joined(change.before, change.after), &change.before, &change.after},
-                    out);
+    constexpr std::uint8_t both = around_before | around_after;
+    const CellBox *const before = &change.before, *const after = &change.after;
+    bool listed = true;
+    if (change.existed && change.exists && near(*before, *after)) {
+        listed = list({number, change.object, both, joined(*before, *after), before, after}, out);
+    } else {
+        if (change.existed) listed = list({number, change.object, around_before, *before, before, nullptr}, out);
+        if (change.exists && listed) {
+            listed = list({number, change.object, around_after, *after, nullptr, after}, out);
+        }
     }
-    if (change.existed && !list({number, change.object, around_before, change.before, &change.before, nullptr}, out)) {
-        return false;
-    }
-    if (!change.exists || list({number, change.object, around_after, change.after, nullptr, &change.after}, out))
-        return true;
+    if (listed) return true;
     out.visits.resize(visits);
     out.first_used.resize(first_used);
+    // It is put where it belongs before the others are, whose searches must see it.
+    if (!change.exists) return false;
+    for_each_home_unit(*after, [&](const Unit& unit, NodeIndex node) {
+        if (unit.index == plots_[node].begin && !plots_[node].used) out.first_used.push_back(node);
+    });
     return false;
 }
 

@@ -86,7 +86,8 @@ public:
             first_used.clear();
         }
     };
-    /// Appends what a change has to visit; false, and nothing, if that is too much to be listed.
+    /// Appends what a change has to visit; false, and no visits, if these are too many: it is then to be made with
+    /// search(), erase() and insert() before all that are listed.
     bool list(const OctreeChange& change, std::uint32_t number, Visits& out) const;
     /// For a change that is listed soon.
     void prefetch(const OctreeChange& change) const;

@@ -11,6 +11,18 @@
 namespace octopair {
 namespace {
 
+/// What all lie in.
+Box3f hull(std::span<const Box3f> boxes) {
+    Box3f all = boxes.front();
+    for (const Box3f& box : boxes) {
+        for (int axis = 0; axis < 3; ++axis) {
+            all.min[axis] = std::min(all.min[axis], box.min[axis]);
+            all.max[axis] = std::max(all.max[axis], box.max[axis]);
+        }
+    }
+    return all;
+}
+
 class LargeScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
@@ -31,12 +43,18 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
             partial += scene.step().full ? 0 : 1;
             ASSERT_EQ(scene.pairs().to_vector(), expected) << "step " << step;
         }
-        // A twentieth move, half of them to the place of another, some of them twice.
+        // A twentieth move, half of them to the place of another, some of them twice; and two of them grow over all, or
+        // shrink.
         std::vector<ObjectId> moved;
         std::vector<Box3f> to;
         for (std::size_t i = 0; i < boxes.size() / 20; ++i) {
             const std::size_t object = random() % boxes.size();
             boxes[object] = i % 2 == 0 ? places[random() % places.size()] : boxes[random() % boxes.size()];
+            moved.push_back(ids[object]);
+            to.push_back(boxes[object]);
+        }
+        for (const std::size_t object : {0u, 1u}) {
+            boxes[object] = (step + object) % 2 == 0 ? hull(boxes) : places[object];
             moved.push_back(ids[object]);
             to.push_back(boxes[object]);
         }
@@ -49,6 +67,26 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+
+/// The first object that is kept far above the leaves, in the step in which a small one moves.
+TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
+    std::vector<Box3f> boxes = testing::make_boxes("uniform", 4000, 34);
+    std::vector<ObjectId> ids(boxes.size());
+    Scene scene({1});
+    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.step();
+    const Box3f giant{{0, 0, 0}, {1, 1, 1}};
+    boxes.push_back(giant);
+    for (const std::size_t small : {7u, 8u}) {
+        boxes[small].min[0] += 1e-3f;
+        boxes[small].max[0] += 1e-3f;
+        scene.move({&ids[small], 1}, std::span<const Box3f>(&boxes[small], 1));
+    }
+    ObjectId id;
+    scene.add(Objects{std::span<const Box3f>(&giant, 1)}, {&id, 1});
+    EXPECT_FALSE(scene.step().full);
+    EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
+}
 
 }  // namespace
 }  // namespace octopair
