@@ -7,7 +7,9 @@
 //           removed object is given to another one after the next step() at the earliest, so within a step an index
 //           means one object.
 // Errors    octopair::Error{bad_input} for an id that is not (or no longer) of the scene, or a box that is not one, with its
-//           position in the call. A call that fails changes nothing; a step() that fails or is cancelled may be repeated.
+//           position in the call; {resource_limit} where a step runs out of memory, std::bad_alloc elsewhere. A call that
+//           fails changes nothing; a step() that fails or is cancelled leaves pairs() as they were, and may be repeated.
+//           A scene that was moved from may only be destroyed or assigned to.
 // Threads   one at a time, also for queries.
 // Cost      a step's follows what moved; where most objects did, it is that of a full detection. About 120 bytes an object
 //           and 16 a pair at the most; docs/results.md has what was measured.
@@ -87,18 +89,19 @@ public:
     /// One for all, or one for each.
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
 
-    /// Finds what changed since the last step. Throws Error{cancelled} within 200 ms of a stop request.
+    /// Finds what changed since the last step. Throws Error{cancelled} within 200 ms of a stop request, unless it is done
+    /// before.
     const StepResult& step(std::stop_token stop = {});
 
     /// All pairs of the last step. Valid until the next step.
     const PairList& pairs();
-    /// Those of them that were there before that step.
+    /// Those of them that were there before that step. Valid as long.
     const PairList& persisting();
 
     static constexpr std::uint32_t all_groups = ~std::uint32_t(0);
 
-    /// Queries (queries.hpp): on the objects as they are now, of those that have a bit of `groups` in theirs. Cheapest
-    /// right after a step(). Throw Error{bad_input} for a query that is none, with its position.
+    /// Queries (queries.hpp): on the objects as they are now (until the next step, one that is swept is its whole way), of
+    /// those that have a bit of `groups` in theirs. Cheapest right after a step(). Throw Error{bad_input} for a query that is none, with its position.
     void overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
     void overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
     /// One hit of each ray, or none.

@@ -3,11 +3,11 @@
 // It keeps no more than a part of the objects; beyond, a step searches all and does not need it.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/reserve.hpp"
 #include "scene/object_table.hpp"
 
 namespace octopair {
@@ -20,12 +20,15 @@ struct Former {
 
 class ChangeLog {
 public:
-    /// Before a call that changes so many objects: whether they fit is known at once, and memory is there.
-    void expect(ObjectTable& table, std::uint64_t changes) {
+    /// Before a call that changes so many objects: whether they fit is known at once, and note() does not fail.
+    void expect(ObjectTable& table, std::uint64_t changes) noexcept {
         if (overflowed_) return;
         if (double(formers_.size() + changes) >= most(table)) return overflow(table);
-        const std::size_t all = formers_.size() + std::size_t(changes);
-        if (all > formers_.capacity()) formers_.reserve(std::max(all, 2 * formers_.capacity()));
+        try {
+            reserve_more(formers_, std::size_t(changes));
+        } catch (...) {
+            overflow(table);
+        }
     }
     /// To be called before a change of an object, or after it was created (`existed` false), which was expected.
     void note(ObjectTable& table, std::uint32_t index, bool existed) {

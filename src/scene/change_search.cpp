@@ -13,6 +13,7 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t share_size = 2048;  // visits
+constexpr std::size_t run_size = 256;     // visits between looks at the limits
 constexpr std::size_t listed_ahead = 8;   // changes
 constexpr std::size_t judged_ahead = 16;  // hits whose objects are fetched before they are judged
 
@@ -22,6 +23,11 @@ bool are_pair(const ObjectState& a, const ObjectState& b, double margin) {
 }
 
 std::uint32_t unit_of(std::uint64_t key) { return std::uint32_t(key >> 32); }
+
+void throw_if_beyond(const ChangeSearch::Limits& limits) {
+    throw_if_stopped(limits.stop);
+    if (std::chrono::steady_clock::now() > limits.deadline) throw ChangeSearch::TooDear{};
+}
 
 /// Where the share of a position begins: at the unit that it lies in, so that no unit is in two shares.
 std::size_t share_begin(std::span<const std::uint64_t> order, std::size_t position) {
@@ -42,17 +48,19 @@ Entry EntryRounding::entry(const Box3d& box, double padding) const {
     return entry;
 }
 
-void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const std::stop_token& stop) {
+void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits) {
     for (Worker& worker : workers_) {
         worker.began.clear();
         worker.ended.clear();
     }
     read_changes(scene, octree);
-    list_visits(octree, stop);
+    list_visits(octree, limits);
     for (std::uint32_t number = 0; number < changes_.size(); ++number) {
-        if (alone_[number] != 0) make_alone(scene, octree, number);
+        if (alone_[number] == 0) continue;
+        throw_if_beyond(limits);
+        make_alone(scene, octree, number);
     }
-    make_visits(scene, octree);
+    make_visits(scene, octree, limits);
     collect(&Worker::began, changes.began);
     collect(&Worker::ended, changes.ended);
 }
@@ -79,7 +87,7 @@ void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree)
 }
 
 /// A list for each thread, of as many changes, in their order.
-void ChangeSearch::list_visits(MutableOctree& octree, const std::stop_token& stop) {
+void ChangeSearch::list_visits(MutableOctree& octree, const Limits& limits) {
     listed_.resize(team_.threads());
     alone_.assign(changes_.size(), 0);
     const std::size_t part = (changes_.size() + listed_.size() - 1) / listed_.size();
@@ -87,7 +95,8 @@ void ChangeSearch::list_visits(MutableOctree& octree, const std::stop_token& sto
         listed_[i].clear();
         const std::size_t end = std::min((i + 1) * part, changes_.size());
         for (std::size_t k = i * part; k < end; ++k) {
-            throw_if_stopped(stop);
+            throw_if_stopped(limits.stop);
+            if (listed_[i].visits.size() > limits.visits / listed_.size()) throw TooDear{};
             if (k + listed_ahead < end) octree.prefetch(changes_[k + listed_ahead]);
             if (!octree.list(changes_[k], std::uint32_t(k), listed_[i])) alone_[k] = 1;
         }
@@ -122,7 +131,7 @@ void ChangeSearch::make_alone(const Scene& scene, MutableOctree& octree, std::ui
     }
 }
 
-void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree) {
+void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const Limits& limits) {
     auto& visits = listed_[0].visits;
     for (std::size_t i = 1; i < listed_.size(); ++i) {
         visits.insert(visits.end(), listed_[i].visits.begin(), listed_[i].visits.end());
@@ -137,12 +146,14 @@ void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree) {
     // One thread may as well go from change to change.
     const auto order = team_.threads() == 1 ? keys : sort_.sort(32, 32 + unsigned(std::bit_width(octree.units())));
     const auto make_share = [&](std::size_t i, unsigned worker) {
-        const std::size_t begin = share_begin(order, i * share_size);
         const std::size_t end = share_begin(order, (i + 1) * share_size);
         auto& hits = workers_[worker].hits;
-        hits.clear();
-        octree.run(visits, order.subspan(begin, end - begin), hits);
-        judge(scene, workers_[worker]);
+        for (std::size_t begin = share_begin(order, i * share_size); begin < end; begin += run_size) {
+            throw_if_beyond(limits);
+            hits.clear();
+            octree.run(visits, order.subspan(begin, std::min(run_size, end - begin)), hits);
+            judge(scene, workers_[worker]);
+        }
     };
     team_.for_each((order.size() + share_size - 1) / share_size, std::ref(make_share));
 }

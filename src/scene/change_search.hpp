@@ -7,6 +7,7 @@
 // What is found is judged on the boxes and traits themselves, as they were and as they are.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,11 +38,20 @@ public:
         double margin;
     };
 
+    /// When to give up.
+    struct Limits {
+        std::chrono::steady_clock::time_point deadline;
+        std::uint64_t visits;  ///< most, of units of the octree
+        const std::stop_token& stop;
+    };
+    /// Thrown where a limit is met: another way is cheaper.
+    struct TooDear {};
+
     explicit ChangeSearch(Team& team) : team_(team), workers_(team.threads()) {}
 
-    /// Brings the octree up to date, and tells what changed. Throws Error{cancelled} before it changes anything; what
-    /// else it throws leaves the octree in no state to be used.
-    void run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const std::stop_token& stop);
+    /// Brings the octree up to date, and tells what changed. Throws Error{cancelled} and TooDear; whatever it throws leaves
+    /// the octree in no state to be used.
+    void run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits);
 
 private:
     /// A worker's own.
@@ -57,9 +67,9 @@ private:
     };
 
     void read_changes(const Scene& scene, const MutableOctree& octree);
-    void list_visits(MutableOctree& octree, const std::stop_token& stop);
+    void list_visits(MutableOctree& octree, const Limits& limits);
     void make_alone(const Scene& scene, MutableOctree& octree, std::uint32_t number);
-    void make_visits(const Scene& scene, MutableOctree& octree);
+    void make_visits(const Scene& scene, MutableOctree& octree, const Limits& limits);
     void judge(const Scene& scene, Worker& worker) const;
     void judge(const Scene& scene, const Hit& hit, const Judged& judged, Worker& worker) const;
     void collect(std::vector<std::uint64_t> Worker::*keys, std::vector<Pair>& pairs);

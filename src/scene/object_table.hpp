@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/growing_array.hpp"
+#include "base/reserve.hpp"
 #include "geometry/box_kernel.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/scene.hpp"
@@ -74,6 +75,8 @@ public:
         --size_;
     }
     void release(std::uint32_t index) { free_.push_back(index); }
+    /// Memory for so many calls of release().
+    void reserve_release(std::size_t more) { reserve_more(free_, more); }
     /// Memory for so many more, and for what not all objects have where one of them is going to.
     void reserve(std::uint64_t more, bool with_padding, bool with_traits);
 

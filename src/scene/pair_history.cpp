@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "base/reserve.hpp"
+#include "octopair/error.hpp"
+
 namespace octopair {
 
 namespace {
@@ -116,21 +119,30 @@ void PairHistory::take_over(PairChanges& changes) {
     for (; !before.done(); before.next()) changes.ended.push_back(before.pair());
     for (; !after.done(); after.next()) changes.began.push_back(after.pair());
     std::swap(list_, other_);
+    settled_ = false;
     size_ = list_.size();
 }
 
+void PairHistory::prepare(bool little) {
+    if (began_.size() + ended_.size() > std::max(few_waiting, size_ / most_waiting)) merge();
+    if (little && !settled_) settle();
+}
+
+/// Takes the memory that merge() will need, before a frame waits for it.
 void PairHistory::settle() {
     Writer writer(other_);
     for (Reader reader(list_); !reader.done();) writer.add(reader.run_before(~std::uint64_t(0)));
     writer.finish();
+    settled_ = true;
 }
 
 void PairHistory::apply(const PairChanges& changes) {
+    reserve_more(began_, changes.began.size());
+    reserve_more(ended_, changes.ended.size());
     for (const Pair& pair : changes.began) began_.push_back(key_of(pair));
     for (const Pair& pair : changes.ended) ended_.push_back(key_of(pair));
     size_ += changes.began.size();
     size_ -= changes.ended.size();
-    if (began_.size() + ended_.size() > std::max(few_waiting, size_ / most_waiting)) merge();
 }
 
 const PairList& PairHistory::list() {
@@ -157,6 +169,9 @@ void PairHistory::merge() {
         if (began != began_.end() && *began == stop) {
             writer.add(pair_of(*began++));
         } else if (ended != ended_.end()) {
+            if (reader.done() || key_of(reader.pair()) != stop) {
+                throw Error(ErrorCode::engine_failed, "a pair that ended was none");
+            }
             reader.next();
             ++ended;
         }

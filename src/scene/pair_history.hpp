@@ -37,8 +37,9 @@ public:
     }
     /// Takes fresh() over, and tells what changed.
     void take_over(PairChanges& changes);
-    /// Before steps that change little: takes the memory that they need.
-    void settle();
+    /// Before a step, and the only thing here that may then run out of memory with no harm done. `little`: for a step
+    /// that may change little.
+    void prepare(bool little);
     /// What a step changed.
     void apply(const PairChanges& changes);
 
@@ -47,11 +48,13 @@ public:
 
 private:
     void merge();
+    void settle();
 
     PairList list_, other_;
     std::vector<std::uint64_t> began_, ended_;  // not yet in list_
     RadixSort<std::uint64_t> sort_;
     std::uint64_t size_ = 0;
+    bool settled_ = false;  // other_ has memory for a list of this size
 };
 
 /// The pairs of `all` without those of `less`, which are among them; both ascending. Replaces `out`.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/reserve.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -28,13 +29,6 @@ Box3d joined(const Box3d& a, const Box3d& b) {
         both.max[axis] = std::max(a.max[axis], b.max[axis]);
     }
     return both;
-}
-
-/// Room for so many more, by doubling: calls of a few objects do not copy all each time.
-template <typename T>
-void reserve_more(std::vector<T>& list, std::size_t more) {
-    const std::size_t all = list.size() + more;
-    if (all > list.capacity()) list.reserve(std::max(all, 2 * list.capacity()));
 }
 
 /// None for the defaults, one for all, or one for each.
@@ -186,6 +180,7 @@ void Scene::State::check_removal(std::span<const ObjectId> ids) {
 void Scene::State::remove(std::span<const ObjectId> ids) {
     check_removal(ids);
     reserve_more(removed_, ids.size());
+    table_.reserve_release(removed_.size() + ids.size());
     prepare(ids.size());
     if (recorder_) recorder_->remove(ids);
     for (const ObjectId& id : ids) {

@@ -71,7 +71,7 @@ private:
     // scene_step.cpp: the octrees, and what they find.
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
-    void find_changes(const std::stop_token& stop);
+    bool find_changes(const std::stop_token& stop);
     void finish_step();
 
     double margin_;

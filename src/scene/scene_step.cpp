@@ -15,7 +15,11 @@ namespace {
 // In parts of a full detection, as far as costs are known:
 constexpr double worth_it = 0.9;  // may the search for changes cost
 constexpr double pays = 0.5;      // would the last step's changes have cost, so that an octree for the next ones pays
-constexpr double guessed_cost = 10;  // of an object that changed, in those of one in a full detection
+constexpr double most_patience = 4;      // may the search take when it has turned out dearer than that,
+constexpr double least_patience = 0.02;  // with so many seconds beside, in which others may have had the processor
+constexpr double guessed_cost = 10;      // of an object that changed, in those of one in a full detection
+
+constexpr std::uint64_t least_visits = 1 << 14;  // of units, for which there is memory in small scenes too
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -30,9 +34,12 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const double expected = changed * seconds_a_change_;
     const std::uint64_t before = history_.size();
     const bool unlike = rounding_.exact && table_.any_padding();  // boxes in the octree have not been widened
-    const bool full = !planted_ || unlike || log_.overflowed() || expected > worth_it * full_seconds_;
+    bool full = !planted_ || unlike || log_.overflowed() || expected > worth_it * full_seconds_;
     try {
-        full ? find_all(stop) : find_changes(stop);
+        history_.prepare(planted_);
+        const bool found = !full && find_changes(stop);
+        if (!found) find_all(stop);
+        full = !found;
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     }
@@ -58,15 +65,15 @@ void Scene::State::find_all(const std::stop_token& stop) {
     const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, table_.size()));
     // What was learned fades, so that it is tried again.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    if (double(moved_) * seconds_a_change_ <= pays * full_seconds_) {
+    const bool plant = double(moved_) * seconds_a_change_ <= pays * full_seconds_;
+    if (plant) {
         octree_.build(linear_, stop);
         linear_ = {};
         refills_ = most_refills;
-        planted_ = true;
         built_ = false;
     }
     history_.take_over(changes_);  // the last step: one that fails before has changed nothing
-    if (planted_) history_.settle();
+    planted_ = plant;
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
@@ -94,21 +101,25 @@ SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
     return {table_, octree_, rounding_.rounding, follows ? &log_ : nullptr, groups};
 }
 
-void Scene::State::find_changes(const std::stop_token& stop) {
+/// False if that is too dear after all.
+bool Scene::State::find_changes(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
+    const std::size_t changed = log_.formers().size();
+    const auto patience = std::chrono::duration<double>(most_patience * full_seconds_ + least_patience);
+    const ChangeSearch::Limits limits{begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience),
+                                      table_.size() / 2 + least_visits, stop};
+    planted_ = false;  // until all of this is done
     try {
-        search_.run({table_, log_, rounding_, margin_}, octree_, changes_, stop);
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::cancelled) planted_ = false;
-        throw;
-    } catch (...) {
-        planted_ = false;
-        throw;
+        search_.run({table_, log_, rounding_, margin_}, octree_, changes_, limits);
+    } catch (const ChangeSearch::TooDear&) {
+        seconds_a_change_ = std::max(seconds_a_change_, full_seconds_ / double(changed));
+        return false;
     }
     history_.apply(changes_);
-    const std::size_t changed = log_.formers().size();
+    planted_ = true;
     constexpr std::size_t enough = 64;  // to tell what one costs
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
+    return true;
 }
 
 void Scene::State::finish_step() {

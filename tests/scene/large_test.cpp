@@ -88,5 +88,22 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
     EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
 }
 
+/// Many go where the octree has no octants, all into one: dearer than it seemed, and the result is the same.
+TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
+    std::vector<Box3f> boxes = testing::make_boxes("uniform", testing::scaled(30000, 4), 35);
+    std::vector<ObjectId> ids(boxes.size());
+    Scene scene({1});
+    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.step();
+    const std::size_t leaving = boxes.size() / 10;
+    for (std::size_t i = 0; i < leaving; ++i) {
+        const float place = 10 + 2 * float(i);
+        boxes[i] = {{place, place, place}, {place + 2, place + 2, place + 2}};  // touches the next
+    }
+    scene.move(std::span(ids).first(leaving), std::span<const Box3f>(boxes).first(leaving));
+    scene.step();
+    EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
+}
+
 }  // namespace
 }  // namespace octopair

@@ -13,6 +13,7 @@
 namespace {
 
 std::atomic<std::uint64_t> allocations = 0;
+std::atomic<std::uint64_t> refused = ~std::uint64_t(0);  // the number of the allocation that gets no memory
 
 }  // namespace
 
@@ -22,13 +23,9 @@ std::atomic<std::uint64_t> allocations = 0;
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
-void* malloc(std::size_t size) {
-    ++allocations;
-    return __libc_malloc(size);
-}
+void* malloc(std::size_t size) { return allocations++ == refused ? nullptr : __libc_malloc(size); }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-    ++allocations;
-    return __libc_memalign(alignment, size);
+    return allocations++ == refused ? nullptr : __libc_memalign(alignment, size);
 }
 }
 #endif
@@ -91,6 +88,45 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
     EXPECT_LE(peak_rss() - peak, 64u << 10);
     EXPECT_GT(swing.changes, changes);
     EXPECT_EQ(swing.full, full);
+}
+
+/// Any allocation of a step may fail: the step says so, and finds the same when it is made again.
+TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
+#ifdef OCTOPAIR_TEST_SANITIZED
+    GTEST_SKIP() << "allocations are the sanitizer's";
+#endif
+    constexpr std::uint64_t objects = 3000;
+    for (const std::uint64_t moved : {std::uint64_t(200), objects}) {
+        std::uint64_t failures = 0;
+        bool whole = false;
+        for (std::uint64_t n = 0; !whole && n < 4000; n += 1 + n / 40) {
+            auto boxes = samples::make_scene("dense", objects, 1);
+            std::vector<ObjectId> ids(objects);
+            Scene scene({1});
+            scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+            const std::uint64_t before = scene.step().pairs();
+            for (std::uint64_t i = 0; i < moved; ++i) boxes[i] = boxes[objects - 1 - i];
+            scene.move(std::span(ids).first(moved), std::span<const Box3f>(boxes).first(moved));
+            const std::uint64_t after = find_pairs(boxes).size();
+            whole = true;
+            refused = allocations + n;
+            try {
+                EXPECT_EQ(scene.step().full, moved == objects);
+            } catch (const Error& error) {
+                whole = false;
+                refused = ~std::uint64_t(0);
+                ASSERT_EQ(error.code(), ErrorCode::resource_limit);
+                ASSERT_EQ(scene.pairs().size(), before);
+                ++failures;
+                const StepResult& again = scene.step();
+                ASSERT_EQ(again.pairs(), after);
+                ASSERT_EQ(before + again.began.size() - again.ended.size(), after);
+            }
+            refused = ~std::uint64_t(0);
+            ASSERT_EQ(scene.pairs().size(), after);
+        }
+        EXPECT_GT(failures, 3u);
+    }
 }
 
 TEST(SceneMemory, IsBounded) {
