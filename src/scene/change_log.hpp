@@ -39,11 +39,6 @@ public:
     }
 
     std::span<const Former> formers() const { return formers_; }
-    /// Null if the object has not changed.
-    const Former* former(const ObjectTable& table, std::uint32_t index) const {
-        const std::uint32_t mark = table.mark(index);
-        return mark == ObjectTable::none ? nullptr : &formers_[mark];
-    }
     /// More has changed than is kept.
     bool overflowed() const { return overflowed_; }
 

@@ -74,6 +74,8 @@ private:
     bool find_changes(const std::stop_token& stop);
     void finish_step();
 
+    static constexpr unsigned most_refills = 8;
+
     double margin_;
     bool float64_;
     ObjectTable table_;
@@ -89,7 +91,6 @@ private:
     SceneQueries queries_;
     LinearOctree linear_;
     MutableOctree octree_;
-    static constexpr unsigned most_refills = 8;
     unsigned refills_ = most_refills;  // of the octants of linear_ since they were made; at most as many
     EntryRounding rounding_;
     bool planted_ = false;  // octree_ holds the objects as they were at the last step

@@ -15,10 +15,10 @@ namespace {
 // In parts of a full detection, as far as costs are known:
 constexpr double worth_it = 0.9;  // may the search for changes cost
 constexpr double pays = 0.5;      // would the last step's changes have cost, so that an octree for the next ones pays
-constexpr double most_patience = 4;      // may the search take when it has turned out dearer than that,
-constexpr double least_patience = 0.02;  // with so many seconds beside, in which others may have had the processor
-constexpr double guessed_cost = 10;      // of an object that changed, in those of one in a full detection
+constexpr double most_patience = 4;  // may the search take, where it turns out dearer than that
 
+constexpr double least_patience = 0.02;          // seconds beside, in which others may have had the processor
+constexpr double guessed_cost = 10;              // of an object that changed, in those of one in a full detection
 constexpr std::uint64_t least_visits = 1 << 14;  // of units, for which there is memory in small scenes too
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {

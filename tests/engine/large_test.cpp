@@ -1,6 +1,5 @@
 // More pairs than 32 bits count, in memory that does not grow with them.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <string>
 #include <vector>
@@ -8,17 +7,11 @@
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
 #include "support/kinds.hpp"
+#include "support/peak_memory.hpp"
 #include "support/scale.hpp"
 
 namespace octopair {
 namespace {
-
-/// The most memory this process ever had resident, in bytes.
-std::uint64_t peak_rss() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
-}
 
 constexpr std::uint64_t pairs_of(std::uint64_t n) { return n * (n - 1) / 2; }
 
@@ -26,19 +19,19 @@ TEST(EngineLarge, CountsBeyond32Bits) {
     constexpr std::uint64_t objects = testing::sanitized ? 20'000 : 92'683;
     static_assert(testing::sanitized || pairs_of(objects) == 4'295'022'903);
     const auto boxes = samples::make_scene("coincident", objects, 1);
-    const std::uint64_t before = peak_rss();
+    const std::uint64_t before = testing::peak_rss();
     for (const unsigned threads : {1u, 2u}) {
         EXPECT_EQ(make_local_engine(threads)->count_pairs(Objects{std::span<const Box3f>(boxes)}), pairs_of(objects));
     }
     if (!testing::sanitized) {
-        EXPECT_LT(peak_rss() - before, 100u << 20);
+        EXPECT_LT(testing::peak_rss() - before, 100u << 20);
     }
 }
 
 TEST(EngineLarge, StreamsInBoundedMemory) {
     constexpr std::uint64_t objects = testing::scaled(12'000, 4);
     const auto boxes = samples::make_scene("coincident", objects, 1);
-    const std::uint64_t before = peak_rss();
+    const std::uint64_t before = testing::peak_rss();
     for (const Order order : {Order::octal, Order::ascending}) {
         Options options;
         options.order = order;
@@ -50,7 +43,7 @@ TEST(EngineLarge, StreamsInBoundedMemory) {
         EXPECT_EQ(pairs, pairs_of(objects));
     }
     if (!testing::sanitized) {
-        EXPECT_LT(peak_rss() - before, 160u << 20);
+        EXPECT_LT(testing::peak_rss() - before, 160u << 20);
     }
 }
 
@@ -70,10 +63,10 @@ TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
     constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
     const auto boxes = samples::make_scene(GetParam(), objects, 1);
     const Objects all{std::span<const Box3f>(boxes)};
-    const std::uint64_t before = peak_rss();
+    const std::uint64_t before = testing::peak_rss();
     const auto engine = make_local_engine(2);
     engine->count_pairs(all);
-    const double bytes = double(peak_rss() - before) / double(objects);
+    const double bytes = double(testing::peak_rss() - before) / double(objects);
     RecordProperty("bytes_an_object", std::to_string(bytes));
     if (!testing::sanitized) {
         EXPECT_LE(bytes, 56);

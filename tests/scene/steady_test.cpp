@@ -1,13 +1,12 @@
 // What a scene takes: no memory from the heap in steady frames, and not much for what it holds.
 #include <gtest/gtest.h>
-#include <malloc.h>
-#include <sys/resource.h>
 
 #include <atomic>
 #include <cstdlib>
 
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
+#include "support/peak_memory.hpp"
 #include "support/scale.hpp"
 
 namespace {
@@ -32,13 +31,6 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 
 namespace octopair {
 namespace {
-
-/// The most memory this process ever had resident, in bytes.
-std::uint64_t peak_rss() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
-}
 
 /// Objects that go to and fro between two places, a few each frame.
 class Swing {
@@ -82,10 +74,10 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
         for (int i = 0; i < count; ++i) swing.frame(std::uint64_t(i / 2 % 20) * 300, 300);
     };
     frames(80);
-    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = peak_rss();
+    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = testing::peak_rss();
     frames(80);
     EXPECT_EQ(allocations - before, 0u);
-    EXPECT_LE(peak_rss() - peak, 64u << 10);
+    EXPECT_LE(testing::peak_rss() - peak, 64u << 10);
     EXPECT_GT(swing.changes, changes);
     EXPECT_EQ(swing.full, full);
 }
@@ -133,13 +125,13 @@ TEST(SceneMemory, IsBounded) {
     constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
     const auto boxes = samples::make_scene("uniform", objects, 1);
     std::vector<ObjectId> ids(objects, ObjectId{0, 0});
-    const std::uint64_t before = peak_rss();
+    const std::uint64_t before = testing::peak_rss();
     Scene scene({2});
     scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
     const std::uint64_t pairs = scene.step().pairs();
     scene.move(std::span(ids).first(100), std::span<const Box3f>(boxes).first(100));
     EXPECT_FALSE(scene.step().full);
-    const double bytes = double(peak_rss() - before);
+    const double bytes = double(testing::peak_rss() - before);
     RecordProperty("bytes_an_object", std::to_string(bytes / double(objects)));
     if (!testing::sanitized) {
         EXPECT_LE(bytes, 120 * double(objects) + 16 * double(pairs));
