@@ -3,7 +3,7 @@
 #include <chrono>
 #include <new>
 
-#include "engine/local/ascending.hpp"
+#include "engine/ascending.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan.hpp"
 #include "scene/scene_state.hpp"

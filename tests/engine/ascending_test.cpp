@@ -1,11 +1,13 @@
 // Pairs into ascending order, whoever found them and however few pages there are.
-#include "engine/local/ascending.hpp"
+#include "engine/ascending.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <vector>
+
+#include "engine/pair_pages.hpp"
 
 namespace octopair {
 namespace {
@@ -26,7 +28,7 @@ std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::si
 }
 
 /// Writes `pairs` as 100 shares and returns what the list then holds.
-std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingExecutor::Bounds& bounds) {
+std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingBounds& bounds) {
     Team team(threads);
     PairList list;
     AscendingExecutor executor(team, list.storage(), bounds);
@@ -70,7 +72,7 @@ TEST_P(Ascending, NoPairs) { EXPECT_TRUE(sorted_by(GetParam(), {}, {{0, 0}, 0}).
 TEST_P(Ascending, TooManyForTheBudget) {
     const std::vector<Pair> pairs = random_pairs(100'000, 1000, 0);
     EXPECT_THROW(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() - page_pairs}),
-                 AscendingExecutor::OverBudget);
+                 OverBudget);
     EXPECT_EQ(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() * 2}).size(), pairs.size());
 }
 

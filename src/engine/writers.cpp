@@ -1,4 +1,4 @@
-#include "engine/local/writers.hpp"
+#include "engine/writers.hpp"
 
 #include <algorithm>
 

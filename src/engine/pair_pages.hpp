@@ -1,26 +1,22 @@
-// Pages of pairs: short pieces of a list's memory, and strings of them that grow a pair at a time.
+// Pages of pairs: short pieces of memory that become a list, and strings of them that grow a pair at a time.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "engine/pair_list.hpp"
+#include "octopair/objects.hpp"
 
 namespace octopair {
 
 constexpr std::size_t page_pairs = 512;
 
-/// The pages in one thread's hands: taken from the list, and given back to be taken again.
+/// The pages in one thread's hands: taken fresh, and given back to be taken again.
 class Pages {
 public:
-    struct OverBudget {};
-
-    /// `left` is how many pages all threads together may still take from the list.
-    Pages(PairList::Storage& list, std::atomic<std::int64_t>& left) : list_(list), left_(left) {}
+    virtual ~Pages() = default;
 
     Pair* take() {
         if (returned_.empty()) return fresh();
@@ -31,24 +27,23 @@ public:
     void give_back(Pair* page) { returned_.push_back(page); }
 
 private:
-    Pair* fresh() {
-        constexpr std::size_t pages_at_once = 64;  // a whole block
-        if (--left_ < 0) throw OverBudget{};
-        if (block_.empty()) block_ = list_.take_block(pages_at_once * page_pairs).first(pages_at_once * page_pairs);
-        Pair* page = block_.data();
-        block_ = block_.subspan(page_pairs);
-        return page;
-    }
+    /// Throws OverBudget (ascending_bounds.hpp).
+    virtual Pair* fresh() = 0;
 
-    PairList::Storage& list_;
-    std::atomic<std::int64_t>& left_;
-    std::span<Pair> block_;
     std::vector<Pair*> returned_;
 };
 
 /// Pairs in full pages and a last one.
 class PageString {
 public:
+    PageString() = default;
+    /// `size` pairs in pages that have room for them.
+    PageString(std::vector<Pair*> pages, std::size_t size) : pages_(std::move(pages)) {
+        if (pages_.empty()) return;
+        end_ = pages_.back() + page_pairs;
+        next_ = end_ - (pages_.size() * page_pairs - size);
+    }
+
     void add(const Pair& pair, Pages& pages) {
         if (next_ == end_) grow(pages);
         *next_++ = pair;

@@ -1,4 +1,4 @@
-#include "engine/local/progress.hpp"
+#include "engine/progress.hpp"
 
 #include <algorithm>
 

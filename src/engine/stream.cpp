@@ -10,7 +10,7 @@
 #include <mutex>
 #include <utility>
 
-#include "engine/local/writers.hpp"
+#include "engine/writers.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

@@ -1,0 +1,189 @@
+#include "engine/search.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "base/timed.hpp"
+#include "engine/pair_pages.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::uint64_t least_buffer_bytes = 1 << 20;
+constexpr double built = 0.3;  // of the progress
+
+}  // namespace
+
+std::uint64_t Call::buffer_pairs() const {
+    return std::max(request.options.buffer_bytes, least_buffer_bytes) / sizeof(Pair);
+}
+
+/// Receives pairs in their final order, up to the limit.
+class Search::Receiver {
+public:
+    Receiver(const Engine::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
+
+    struct LimitReached {};
+
+    /// Throws LimitReached at the first pair beyond the limit.
+    void take(std::span<const Pair> pairs) {
+        const std::uint64_t room = limit_ ? *limit_ - pairs_ : ~std::uint64_t(0);
+        const auto kept = pairs.first(std::size_t(std::min<std::uint64_t>(pairs.size(), room)));
+        pairs_ += kept.size();
+        if (!kept.empty()) deliver(kept);
+        if (kept.size() < pairs.size()) {
+            truncated_ = true;
+            throw LimitReached{};
+        }
+    }
+
+    void flush() {
+        if (held_.empty()) return;
+        give(held_);
+        held_.clear();
+    }
+
+    std::uint64_t pairs() const { return pairs_; }
+    bool truncated() const { return truncated_; }
+    double sink_seconds() const { return sink_seconds_; }
+
+private:
+    void deliver(std::span<const Pair> pairs) {
+        constexpr std::size_t worth_a_call = 1 << 13;  // pairs; small batches are put together
+        if (output_.list != nullptr) return keep(pairs);
+        if (held_.size() + pairs.size() > worth_a_call) flush();
+        if (pairs.size() >= worth_a_call) {
+            give(pairs);
+        } else {
+            held_.insert(held_.end(), pairs.begin(), pairs.end());
+        }
+    }
+
+    void give(std::span<const Pair> pairs) {
+        const Timed timed(sink_seconds_);
+        (*output_.sink)(pairs);
+    }
+
+    void keep(std::span<const Pair> pairs) {
+        PairList::Storage& list = output_.list->storage();
+        if (block_.size() < pairs.size()) block_ = list.take_block(pairs.size());
+        std::copy(pairs.begin(), pairs.end(), block_.begin());
+        list.append(block_.first(pairs.size()));
+        block_ = block_.subspan(pairs.size());
+    }
+
+    const Engine::Output& output_;
+    std::optional<std::uint64_t> limit_;
+    std::uint64_t pairs_ = 0;
+    bool truncated_ = false;
+    double sink_seconds_ = 0;
+    std::vector<Pair> held_;
+    std::span<Pair> block_;
+};
+
+Summary Search::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
+    const BoxSource source(request.first, request.second, request.options.margin);
+    Progress progress(control.progress);
+    Call call{request, output, source, {}, progress, {}};
+    const std::stop_callback forward(control.stop, [&] { call.stop.request_stop(); });
+    find(call);
+    progress.finish();
+    return call.summary;
+}
+
+void Search::find(Call& call) {
+    const Timed timed(call.summary.seconds);
+    passes_.build(call, built);
+    if (call.output.list == nullptr && call.output.sink == nullptr) {
+        count(call);
+    } else if (call.request.options.order == Order::octal) {
+        find_octal(call);
+    } else {
+        find_ascending(call);
+    }
+}
+
+void Search::count(Call& call) {
+    const std::uint64_t pairs = passes_.count(call, 1);
+    const std::uint64_t limit = call.request.options.limit.value_or(~std::uint64_t(0));
+    call.summary.pairs = std::min(limit, pairs);
+    call.summary.truncated = pairs > limit;
+}
+
+void Search::find_octal(Call& call) {
+    if (call.output.list != nullptr && !call.request.options.limit) {
+        PairList::Storage& list = call.output.list->storage();
+        passes_.list_octal(call, list, 1);
+        call.summary.pairs = list.size;
+        return;
+    }
+    Receiver receiver(call.output, call.request.options.limit);
+    receive(call, receiver, [&] {
+        passes_.stream_octal(call, [&](std::span<const Pair> pairs) { receiver.take(pairs); }, 1);
+    });
+    call.summary.steps.scan = std::max(0.0, call.summary.steps.scan - receiver.sink_seconds());
+}
+
+void Search::find_ascending(Call& call) {
+    const ObjectRange all{0, call.source.size()};
+    if (call.output.list != nullptr && !call.request.options.limit) {
+        PairList::Storage& list = call.output.list->storage();
+        passes_.list_ascending(call, list, {all, all.end}, 1);
+        call.summary.pairs = list.size;
+        return;
+    }
+    Receiver receiver(call.output, call.request.options.limit);
+    held_.storage().reset();
+    try {
+        passes_.list_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, 0.9);
+    } catch (const OverBudget&) {
+        return find_windows(call, receiver);
+    }
+    hand_out_held(call, receiver);
+}
+
+void Search::hand_out_held(Call& call, Receiver& receiver) {
+    receive(call, receiver, [&] {
+        for (const auto chunk : held_.storage().chunks) receiver.take(chunk);
+    });
+}
+
+/// Where the pairs do not fit into the buffer: counts those of each object, then collects as many objects at a time
+/// as fit.
+void Search::find_windows(Call& call, Receiver& receiver) {
+    const std::uint64_t objects = call.source.size();
+    std::vector<std::uint32_t> counts(objects, 0);
+    passes_.count_by_object(call, counts, 0.5);
+    // A quarter of the buffer is for pages that are not full.
+    const std::uint64_t most = call.buffer_pairs() - call.buffer_pairs() / 4;
+    ObjectRange window{0, 0};
+    while (window.end < objects && !call.summary.truncated) {
+        window.begin = window.end;
+        std::uint64_t pairs = 0;
+        while (window.end < objects && (pairs == 0 || pairs + counts[window.end] <= most)) {
+            pairs += counts[window.end++];
+        }
+        if (pairs == 0) break;
+        // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
+        const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs;
+        const AscendingBounds bounds{window, objects, room, pairs};
+        held_.storage().reset();
+        passes_.list_ascending(call, held_.storage(), bounds, 0.5 + 0.5 * double(window.end) / double(objects));
+        hand_out_held(call, receiver);
+    }
+}
+
+template <typename Give>
+void Search::receive(Call& call, Receiver& receiver, Give&& give) {
+    try {
+        give();
+    } catch (const Receiver::LimitReached&) {
+    }
+    receiver.flush();
+    call.summary.pairs = receiver.pairs();
+    call.summary.truncated = receiver.truncated();
+}
+
+}  // namespace octopair

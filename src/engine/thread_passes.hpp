@@ -1,0 +1,33 @@
+// ThreadPasses: scans of a linear octree on the threads of this process.
+#pragma once
+
+#include "engine/search.hpp"
+#include "octree/linear_octree.hpp"
+#include "parallel/team.hpp"
+
+namespace octopair {
+
+class ThreadPasses : public Passes {
+public:
+    explicit ThreadPasses(unsigned threads) : team_(threads) {}
+
+    unsigned width() const override { return team_.threads(); }
+    std::uint64_t count(Call& call, double progress) override;
+    void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
+    void list_octal(Call& call, PairList::Storage& list, double progress) override;
+    void stream_octal(Call& call, const Deliver& deliver, double progress) override;
+    void list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) override;
+
+protected:
+    Team& team() { return team_; }
+    /// Of the call's objects after build().
+    LinearOctree& octree() { return octree_; }
+
+private:
+    void scan_into(Call& call, Executor& executor, double progress);
+
+    Team team_;
+    LinearOctree octree_;
+};
+
+}  // namespace octopair
