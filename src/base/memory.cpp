@@ -64,4 +64,20 @@ void free_pages(void* memory, std::size_t bytes) noexcept {
     std::free(memory);
 }
 
+namespace {
+
+class OwnPages final : public PageSource {
+public:
+    void* reserve(std::size_t bytes) override { return allocate_pages(bytes); }
+    void commit(void*, std::size_t) override {}
+    void free(void* memory, std::size_t bytes) noexcept override { free_pages(memory, bytes); }
+};
+
+}  // namespace
+
+PageSource& own_pages() {
+    static OwnPages pages;
+    return pages;
+}
+
 }  // namespace octopair

@@ -16,6 +16,20 @@ void* allocate_pages(std::size_t bytes);
 /// `bytes` as when it was allocated.
 void free_pages(void* memory, std::size_t bytes) noexcept;
 
+/// Where buffers get their pages. Thread-safe.
+class PageSource {
+public:
+    virtual ~PageSource() = default;
+    /// As allocate_pages, but only pages that commit() was called for may be touched. Throws.
+    virtual void* reserve(std::size_t bytes) = 0;
+    /// Makes reserved memory fit for use, wherever it lies in what was reserved; no harm if it was before. Throws.
+    virtual void commit(void* memory, std::size_t bytes) = 0;
+    virtual void free(void* memory, std::size_t bytes) noexcept = 0;
+};
+
+/// Memory of this process, which needs no commit.
+PageSource& own_pages();
+
 template <typename T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -23,15 +37,29 @@ class Buffer {
 public:
     Buffer() = default;
     explicit Buffer(std::size_t size) { resize_discard(size); }
+    /// Empty; its pages come from `source`, which must outlive it.
+    explicit Buffer(PageSource& source) : source_(&source) {}
 
     /// Makes the size `size`; what it held is lost where it grows beyond its capacity.
     void resize_discard(std::size_t size) {
+        reserve_discard(size);
+        if (size > 0) source_->commit(data(), size * sizeof(T));
+    }
+
+    /// The same without any use of memory: before a part is touched it must be committed.
+    void reserve_discard(std::size_t size) {
         if (size > capacity()) {
-            memory_.reset();
-            size_ = 0;
-            memory_ = {static_cast<T*>(allocate_pages(size * sizeof(T))), Free{size}};
+            clear();
+            memory_ = {static_cast<T*>(source_->reserve(size * sizeof(T))), Free{size, source_}};
         }
         size_ = size;
+    }
+    void commit(std::size_t begin, std::size_t count) { source_->commit(data() + begin, count * sizeof(T)); }
+
+    /// Empty, with its memory given back.
+    void clear() noexcept {
+        memory_.reset();
+        size_ = 0;
     }
 
     std::size_t size() const { return size_; }
@@ -45,10 +73,12 @@ public:
 private:
     struct Free {
         std::size_t capacity = 0;
-        void operator()(T* memory) const noexcept { free_pages(memory, capacity * sizeof(T)); }
+        PageSource* source = nullptr;
+        void operator()(T* memory) const noexcept { source->free(memory, capacity * sizeof(T)); }
     };
     std::size_t capacity() const { return memory_ ? memory_.get_deleter().capacity : 0; }
 
+    PageSource* source_ = &own_pages();
     std::unique_ptr<T, Free> memory_;
     std::size_t size_ = 0;
 };

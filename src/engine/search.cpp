@@ -121,7 +121,8 @@ void Search::find_octal(Call& call) {
     }
     Receiver receiver(call.output, call.request.options.limit);
     receive(call, receiver, [&] {
-        passes_.stream_octal(call, [&](std::span<const Pair> pairs) { receiver.take(pairs); }, 1);
+        passes_.stream_octal(
+            call, [&](std::span<const Pair> pairs) { receiver.take(pairs); }, 1);
     });
     call.summary.steps.scan = std::max(0.0, call.summary.steps.scan - receiver.sink_seconds());
 }

@@ -7,10 +7,7 @@
 //   into it or are too large for a leaf, each ascending by object; class bits are set as entry.hpp says.
 //   All of it is a function of the source alone; blocks of objects are only the shares of work.
 //
-// Steps (each over ranges, so that threads, processes and ranks can share them out)
-//   encode  sample -> frame and directory; each object -> its home octant, and counts per octant
-//   merge   counts of all blocks -> where each block's entries of each octant go
-//   sort    entries to their places: an MSD radix sort by octal code
+// A sample gives frame and directory; then the steps of build_steps.hpp, shared out by an executor.
 //
 // Source: Lucchesi, Egbert, Harris 2014, sections 3.2 and 3.3.
 #pragma once
@@ -23,6 +20,7 @@
 
 #include "base/memory.hpp"
 #include "geometry/box_source.hpp"
+#include "octree/build_steps.hpp"
 #include "octree/directory.hpp"
 #include "octree/executor.hpp"
 #include "octree/frame.hpp"
@@ -33,20 +31,13 @@ struct BuildSeconds {
     double encode = 0, sort = 0, merge = 0;
 };
 
-/// The leaf that a box begins in, or none if it is too large for it, and whether it reaches into further ones.
-class Home {
-public:
-    Home() = default;
-    Home(NodeIndex node, bool crosses) : packed_(node << 1 | unsigned(crosses)) {}
-    NodeIndex node() const { return packed_ >> 1; }
-    bool crosses() const { return (packed_ & 1) != 0; }
-
-private:
-    std::uint32_t packed_;
-};
-
 class LinearOctree {
 public:
+    LinearOctree() = default;
+    /// Its entries, and what the steps leave for each other, are in pages of `pages`, which must outlive it. Where each
+    /// of several processes builds it with an executor that shares work out among them, these are the pages of all.
+    explicit LinearOctree(PageSource& pages) : entries_(pages), memory_(pages) {}
+
     /// Replaces what it held, in the same memory. Throws Error{cancelled}; where an object is not a box, throws Invalid
     /// with the first position to look at.
     void build(const EntrySource& source, Executor& executor, std::stop_token stop);
@@ -70,21 +61,18 @@ public:
     const BuildSeconds& seconds() const { return seconds_; }
 
 private:
-    struct Block;
     using Clock = std::chrono::steady_clock::time_point;
-    void fill(const EntrySource& source, Executor& executor, std::stop_token stop, Clock clock);
+    void fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, Clock clock);
     void plant(const EntrySource& source, std::stop_token stop);
     std::vector<Entry> sample(const EntrySource& source) const;
-    void encode(const EntrySource& source, Block& block, std::stop_token stop);
-    void merge(std::span<Block> blocks);
-    void sort(const EntrySource& source, Block& block, std::stop_token stop);
+    void join_ranges(std::span<const NumberedNodes> ranges, std::vector<std::uint64_t>& range_begins);
     bool crowded() const;
 
     Frame frame_;
     Directory directory_{Frame{}, {}, 0, {}};
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
-    Buffer<Home> homes_;  // of each object; used while building
+    BuildMemory memory_{own_pages()};
     BuildSeconds seconds_;
 };
 

@@ -1,0 +1,196 @@
+#include "octree/build_steps.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/stop.hpp"
+#include "octree/octants_of.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+constexpr std::size_t batch_size = 256;          // objects loaded at a time: they stay in the first cache
+constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
+constexpr std::size_t prefetched_ghosts = 8;     // and ghosts
+constexpr std::size_t ghosts_at_once = 1 << 14;  // committed; more than a batch can have
+
+/// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the
+/// frame's low border (the box then begins before the octant that this frame was made within).
+std::uint32_t mask_in(const Node& node, std::uint32_t brought, std::uint32_t begins) {
+    std::uint32_t border = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) border |= std::uint32_t(node.lo[axis] == 0) << axis;
+    return (brought & ~begins_before) | begins | (brought & border);
+}
+
+/// A block's ghosts, in the order in which they are found.
+class GhostList {
+public:
+    GhostList(BuildMemory& memory, const ObjectBlock& block)
+        : ghosts_(memory.ghosts), begin_(most_ghosts * block.begin), end_(most_ghosts * block.end) {}
+
+    /// Makes room for a batch.
+    void prepare() {
+        if (size_ + most_ghosts * batch_size <= committed_) return;
+        const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
+        ghosts_.commit(begin_ + committed_, more);
+        committed_ += more;
+    }
+    void add(NodeIndex node, unsigned begins) { ghosts_[begin_ + size_++] = Ghost(node, begins); }
+    void end_box() { ghosts_[begin_ + size_ - 1].set_last(); }
+    std::size_t size() const { return size_; }
+
+private:
+    Buffer<Ghost>& ghosts_;
+    std::size_t begin_, end_;
+    std::size_t size_ = 0;
+    std::size_t committed_ = 0;
+};
+
+}  // namespace
+
+void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t node_count, std::size_t node_ranges) {
+    nodes = node_count;
+    homes.resize_discard(objects);
+    ghosts.reserve_discard(most_ghosts * objects);
+    ghost_counts.resize_discard(blocks);
+    counts.resize_discard(2 * blocks * nodes);
+    places.resize_discard(2 * blocks * nodes);
+    begins.resize_discard(nodes);
+    totals.resize_discard(node_ranges);
+    valid.resize_discard(blocks);
+}
+
+void encode_block(const EntrySource& source, const Octants& octants, const NumberedBlock& block, BuildMemory& memory,
+                  const std::stop_token& stop) {
+    const auto& [frame, directory] = octants;
+    const auto above = NodeIndex(memory.nodes);
+    const ObjectBlock& objects = block.objects;
+    std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
+    std::vector<std::uint64_t> ghost_counts(above, 0);
+    GhostList ghosts(memory, objects);
+    std::array<Entry, batch_size> batch;
+    std::array<CellBox, batch_size> cells;
+    std::array<Directory::Leaf, batch_size> leaves;
+    std::array<std::uint32_t, batch_size> crossers;
+    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
+        if ((begin - objects.begin) % check_interval == 0) throw_if_stopped(stop);
+        const std::size_t count = std::min(batch_size, objects.end - begin);
+        if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
+            frame.cells(boxes, cells);
+        } else {
+            const std::span<Entry> entries = std::span(batch).first(count);
+            (void)source.load(begin, entries);
+            frame.cells(entries, cells);
+        }
+        directory.leaves(std::span(cells).first(count), leaves);
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            // No branch on whether a box crosses: mispredicting it cost more than everything else here.
+            const bool crosses = !within(cells[i], leaves[i].level());
+            const NodeIndex node = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].node();
+            memory.homes[begin + i] = Home(node, crosses);
+            ++home_counts[node];
+            crossers[crossing] = std::uint32_t(i);
+            crossing += crosses ? 1 : 0;
+        }
+        ghosts.prepare();
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            const NodeIndex home = memory.homes[begin + i].node();
+            for_each_octant_of(cells[i], directory, leaves[i], [&](NodeIndex node, unsigned begins) {
+                if (node == home) return;
+                ++ghost_counts[node];
+                ghosts.add(node, begins);
+            });
+            ghosts.end_box();
+        }
+    }
+    memory.ghost_counts[block.number] = ghosts.size();
+    std::copy_n(home_counts.begin(), above, memory.home_part(memory.counts, block.number).begin());
+    std::copy_n(ghost_counts.begin(), above, memory.ghost_part(memory.counts, block.number).begin());
+}
+
+void merge_nodes(const NumberedNodes& nodes, std::span<const std::size_t> blocks, BuildMemory& memory) {
+    std::uint64_t at = 0;
+    for (NodeIndex node = nodes.begin; node < nodes.end; ++node) {
+        memory.begins[node] = at;
+        for (const std::size_t block : blocks) {
+            memory.home_part(memory.places, block)[node] = at;
+            at += memory.home_part(memory.counts, block)[node];
+        }
+        for (const std::size_t block : blocks) {
+            memory.ghost_part(memory.places, block)[node] = at;
+            at += memory.ghost_part(memory.counts, block)[node];
+        }
+    }
+    memory.totals[nodes.number] = at;
+}
+
+namespace {
+
+/// Where the next entry of each node goes, of one block.
+std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const SortTarget& target) {
+    std::vector<std::uint64_t> places(part.begin(), part.end());
+    for (const NumberedNodes& range : target.ranges) {
+        const std::uint64_t begin = target.range_begins[range.number];
+        for (NodeIndex node = range.begin; node < range.end; ++node) places[node] += begin;
+    }
+    return places;
+}
+
+}  // namespace
+
+void sort_block(const EntrySource& source, const Directory& directory, const NumberedBlock& block, BuildMemory& memory,
+                const SortTarget& target, const std::stop_token& stop) {
+    const auto above = NodeIndex(memory.nodes);
+    const auto nodes = directory.nodes();
+    const ObjectBlock& objects = block.objects;
+    const std::span<Entry> entries_out = target.entries;
+    auto home_at = places_of(memory.home_part(memory.places, block.number), target);
+    home_at.push_back(target.spare);
+    auto ghost_at = places_of(memory.ghost_part(memory.places, block.number), target);
+    const std::span<const Ghost> ghosts =
+        std::as_const(memory.ghosts).span().subspan(most_ghosts * objects.begin, memory.ghost_counts[block.number]);
+    std::array<Entry, batch_size> batch;
+    std::array<std::uint32_t, batch_size> crossers;
+    std::size_t ghost = 0;
+    memory.valid[block.number] = 0;
+    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
+        if ((begin - objects.begin) % check_interval == 0) throw_if_stopped(stop);
+        const std::span<Entry> entries(batch.data(), std::min(batch_size, objects.end - begin));
+        if (!source.load(begin, entries)) return;
+        const auto homes = std::as_const(memory.homes).span().subspan(begin, entries.size());
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const Home soon = homes[std::min(i + prefetched, homes.size() - 1)];
+            hwy::Prefetch(&entries_out[std::size_t(home_at[soon.node()])]);
+            const NodeIndex node = homes[i].node();
+            std::uint64_t& at = home_at[node];
+            entries_out[std::size_t(at)] = entries[i];
+            if ((entries[i].mask & begins_before) != 0 && node != above) {
+                entries_out[std::size_t(at)].mask = mask_in(nodes[node], entries[i].mask, 0);
+            }
+            at += node != above ? 1 : 0;
+            crossers[crossing] = std::uint32_t(i);
+            crossing += homes[i].crosses() ? 1 : 0;
+        }
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            for (bool last = false; !last; ++ghost) {
+                last = ghosts[ghost].last();
+                if (ghosts.size() - ghost > prefetched_ghosts) {
+                    hwy::Prefetch(&entries_out[std::size_t(ghost_at[ghosts[ghost + prefetched_ghosts].node()])]);
+                }
+                const NodeIndex node = ghosts[ghost].node();
+                Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
+                entry = entries[i];
+                entry.mask = mask_in(nodes[node], entry.mask, ghosts[ghost].begins());
+            }
+        }
+    }
+    memory.valid[block.number] = 1;
+}
+
+}  // namespace octopair
