@@ -24,6 +24,7 @@ void PairList::Storage::reset() {
     chunks.clear();
     size = 0;
     taken_ = 0;
+    kept_ = nullptr;
 }
 
 std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {

@@ -4,8 +4,10 @@
 // the chunks and keeps the blocks, so that a reused list does not page-fault again.
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/memory.hpp"
@@ -21,12 +23,15 @@ struct PairList::Storage {
     void reset();
     /// A free block of at least `pairs` pairs, until the next reset. Thread-safe.
     std::span<Pair> take_block(std::size_t pairs);
+    /// Keeps memory that chunks lie in, until the next reset.
+    void keep(std::shared_ptr<const void> memory) { kept_ = std::move(memory); }
     /// Makes `pairs` the next chunk. Adjoining chunks grow together.
     void append(std::span<const Pair> pairs);
 
 private:
     std::mutex mutex_;
     std::vector<Buffer<Pair>> blocks_;
+    std::shared_ptr<const void> kept_;
     std::size_t taken_ = 0;  // blocks_[0, taken_) are in writers' hands
 };
 

@@ -19,24 +19,17 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
-class CountByObjectWriter final : public FullWriter {
-public:
-    explicit CountByObjectWriter(std::span<std::uint32_t> counts) : counts_(counts) {}
-    void write(std::span<const Pair> pairs) override {
-        // Pairs of one object tend to come together.
-        for (std::size_t i = 0; i < pairs.size();) {
-            const std::uint32_t a = pairs[i].a;
-            std::uint32_t count = 0;
-            while (i < pairs.size() && pairs[i].a == a) ++i, ++count;
-            std::atomic_ref(counts_[a]).fetch_add(count, std::memory_order_relaxed);
-        }
-    }
-
-private:
-    std::span<std::uint32_t> counts_;
-};
-
 }  // namespace
+
+void CountByObjectWriter::write(std::span<const Pair> pairs) {
+    // Pairs of one object tend to come together.
+    for (std::size_t i = 0; i < pairs.size();) {
+        const std::uint32_t a = pairs[i].a;
+        std::uint32_t count = 0;
+        while (i < pairs.size() && pairs[i].a == a) ++i, ++count;
+        std::atomic_ref(counts_[a]).fetch_add(count, std::memory_order_relaxed);
+    }
+}
 
 void FullWriter::write_count(std::uint64_t) {
     throw Error(ErrorCode::engine_failed, "pairs counted where they are wanted");

@@ -23,6 +23,16 @@ public:
     void write_count(std::uint64_t) final;
 };
 
+/// Counts the pairs of each object as their `a`, together with other threads.
+class CountByObjectWriter final : public FullWriter {
+public:
+    explicit CountByObjectWriter(std::span<std::uint32_t> counts) : counts_(counts) {}
+    void write(std::span<const Pair> pairs) override;
+
+private:
+    std::span<std::uint32_t> counts_;
+};
+
 /// Steps without pairs.
 class TeamExecutor : public Executor {
 public:

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "base/stop.hpp"
 #include "octree/sample.hpp"
 
 namespace octopair {
@@ -41,11 +42,32 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
     return seconds;
 }
 
+std::vector<Entry> sample_of(const EntrySource& source) {
+    const Sample sample(source.size(), sample_stride, most_samples);
+    std::vector<std::size_t> positions(sample.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
+    std::vector<Entry> sampled(sample.size());
+    source.pick(positions, sampled);  // what is invalid is found by sort, with its position
+    return sampled;
+}
+
 }  // namespace
+
+PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop) {
+    // The sample is gone when the entries need the memory.
+    const std::vector<Entry> sampled = sample_of(source);
+    PlantedOctants octants;
+    octants.frame = Frame::fit(sampled, source.size());
+    Directory::Boxes cells(sampled.size());
+    octants.frame.cells(sampled, cells);
+    const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
+    octants.directory = Directory(octants.frame, std::move(cells), weight, stop);
+    return octants;
+}
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
     const auto begin = std::chrono::steady_clock::now();
-    plant(source, stop);
+    octants_ = plant_octants(source, stop);
     fill(source, executor, stop, begin);
 }
 
@@ -58,7 +80,7 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     const auto ranges = ranges_of(nodes().size(), blocks.size(), executor.width());
     memory_.resize(source.size(), blocks.size(), nodes().size(), ranges.size());
     executor.for_each(blocks.size(), [&](std::size_t i) {
-        encode_block(source, {frame_, directory_}, blocks[i], memory_, stop);
+        encode_block(source, {frame(), directory()}, blocks[i], memory_, stop);
     });
     seconds_.encode = seconds_since(clock);
 
@@ -72,7 +94,7 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) {
         const SortTarget target{entries_.span(), range_begins, ranges, std::size_t(entry_count()) + i};
-        sort_block(source, directory_, blocks[i], memory_, target, stop);
+        sort_block(source, directory(), blocks[i], memory_, target, stop);
     });
     for (const NumberedBlock& block : blocks) {
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
@@ -102,23 +124,31 @@ bool LinearOctree::crowded() const {
     return false;
 }
 
-/// Frame and directory, from a sample that is gone when the entries need the memory.
-void LinearOctree::plant(const EntrySource& source, std::stop_token stop) {
-    const std::vector<Entry> sampled = sample(source);
-    frame_ = Frame::fit(sampled, source.size());
-    Directory::Boxes cells(sampled.size());
-    frame_.cells(sampled, cells);
-    const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
-    directory_ = Directory(frame_, std::move(cells), weight, stop);
-}
-
-std::vector<Entry> LinearOctree::sample(const EntrySource& source) const {
-    const Sample sample(source.size(), sample_stride, most_samples);
-    std::vector<std::size_t> positions(sample.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
-    std::vector<Entry> sampled(sample.size());
-    source.pick(positions, sampled);  // what is invalid is found by sort, with its position
-    return sampled;
+void LinearOctree::assemble(PlantedOctants octants, std::span<const SortedList> lists, const std::stop_token& stop) {
+    auto clock = std::chrono::steady_clock::now();
+    octants_ = std::move(octants);
+    std::uint64_t all = 0;
+    for (const SortedList& list : lists) all += list.entries.size();
+    entries_.resize_discard(std::size_t(all));
+    begins_.resize(nodes().size() + 1);
+    std::uint64_t at = 0;
+    const auto append = [&](const SortedList& list, std::uint64_t begin, std::uint64_t end) {
+        const auto part = list.entries.subspan(begin, end - begin);
+        std::copy(part.begin(), part.end(), entries_.data() + at);
+        at += part.size();
+    };
+    for (std::size_t node = 0; node < nodes().size(); ++node) {
+        if (node % 256 == 0) throw_if_stopped(stop);
+        begins_[node] = at;
+        for (const SortedList& list : lists) append(list, list.home_begins[node], list.ghost_begins[node]);
+        for (const SortedList& list : lists) {
+            const bool last = node + 1 == nodes().size();
+            append(list, list.ghost_begins[node], last ? list.entries.size() : list.home_begins[node + 1]);
+        }
+    }
+    begins_.back() = at;
+    seconds_ = {};
+    seconds_.merge = seconds_since(clock);
 }
 
 }  // namespace octopair

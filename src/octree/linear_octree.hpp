@@ -31,6 +31,21 @@ struct BuildSeconds {
     double encode = 0, sort = 0, merge = 0;
 };
 
+/// The octree's space and its octants: a function of a sample of the objects.
+struct PlantedOctants {
+    Frame frame;
+    Directory directory{Frame{}, {}, 0, {}};
+};
+
+/// Throws Error{cancelled}.
+PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop);
+
+/// The entries of some objects, sorted by octant: in each those of boxes whose home it is, then the others.
+struct SortedList {
+    std::span<const Entry> entries;
+    std::span<const std::uint64_t> home_begins, ghost_begins;  ///< in each octant
+};
+
 class LinearOctree {
 public:
     LinearOctree() = default;
@@ -49,9 +64,12 @@ public:
     /// The same, in the octants that there are: sooner done, and as good while boxes are much where they were.
     void refill(const EntrySource& source, Executor& executor, std::stop_token stop);
 
-    const Frame& frame() const { return frame_; }
-    std::span<const Node> nodes() const { return directory_.nodes(); }
-    const Directory& directory() const { return directory_; }
+    /// Of lists whose objects follow each other: merges them, one octant after another, on the calling thread.
+    void assemble(PlantedOctants octants, std::span<const SortedList> lists, const std::stop_token& stop);
+
+    const Frame& frame() const { return octants_.frame; }
+    std::span<const Node> nodes() const { return octants_.directory.nodes(); }
+    const Directory& directory() const { return octants_.directory; }
     std::span<const Entry> entries(NodeIndex node) const {
         return entries_.span().subspan(begins_[node], begins_[node + 1] - begins_[node]);
     }
@@ -63,13 +81,10 @@ public:
 private:
     using Clock = std::chrono::steady_clock::time_point;
     void fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, Clock clock);
-    void plant(const EntrySource& source, std::stop_token stop);
-    std::vector<Entry> sample(const EntrySource& source) const;
     void join_ranges(std::span<const NumberedNodes> ranges, std::vector<std::uint64_t>& range_begins);
     bool crowded() const;
 
-    Frame frame_;
-    Directory directory_{Frame{}, {}, 0, {}};
+    PlantedOctants octants_;
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
     BuildMemory memory_{own_pages()};

@@ -1,0 +1,52 @@
+// The process engine: pairs are found by worker processes of the library's own, which share memory with the application.
+//
+// Result    the same bytes as from every engine.
+// Faults    a worker that dies or is stopped, at any moment, is noticed within a second and replaced, and its share of the
+//           work is done again. Work that ends three workers fails its call alone, with Error{engine_failed}. Memory that
+//           is exhausted is Error{resource_limit}, never a signal. Workers end with the engine, and within two seconds with
+//           the application, however that ends.
+// Copies    boxes are copied to shared memory, unless the engine allocated them (Engine::allocate_boxes). Pairs are not
+//           copied: a PairList keeps the memory that workers wrote to.
+// System    Linux 5.4 or later. CMake: link octopair::processes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "octopair/engine.hpp"
+
+namespace octopair {
+
+/// What is shared out.
+enum class Arrangement : std::uint8_t {
+    shared,  ///< every step
+    paper,   ///< workers build sorted lists; merging and scanning is the application's own, as in the paper: to compare
+};
+
+struct ProcessOptions {
+    unsigned workers = 0;  ///< 0: one per core; at most 256
+    Arrangement arrangement = Arrangement::shared;
+    /// The program of the workers, octopair-worker of the same version. Empty: what the environment variable
+    /// OCTOPAIR_WORKER names, or else as installed, or as built.
+    std::string worker_program = {};
+};
+
+/// Starts the workers. Throws Error{engine_failed} if they cannot be started, Error{resource_limit} if the system has no
+/// processes, descriptors or memory to give.
+std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options);
+std::unique_ptr<Engine> make_process_engine(unsigned workers = 0);
+
+/// What has happened to the workers of an engine since it was made.
+struct WorkerFaults {
+    std::uint64_t ended = 0;    ///< workers that died
+    std::uint64_t stopped = 0;  ///< workers that were stopped, and killed for it
+    /// Of these: how many had a share under way, by step: prepare, encode, merge, sort, scan, order.
+    std::array<std::uint64_t, 6> in_share = {};
+};
+
+/// Thread-safe. Throws Error{usage} unless make_process_engine made the engine.
+WorkerFaults worker_faults(const Engine& engine);
+
+}  // namespace octopair

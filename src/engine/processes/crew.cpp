@@ -1,0 +1,268 @@
+#include "engine/processes/crew.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "octopair/error.hpp"
+#include "octree/linear_octree.hpp"
+
+namespace octopair {
+
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr milliseconds look_interval(20);   // between looks at the workers
+constexpr milliseconds patience(2000);      // for a worker to leave a pass that failed
+constexpr unsigned most_strikes = 3;        // workers that a share may end
+constexpr unsigned most_failed_starts = 3;
+constexpr std::uint64_t preparing = ~std::uint64_t(0);  // the share of what comes before the first one
+
+SharedMemory make_desk(unsigned workers) {
+    SharedMemory memory = SharedMemory::create(DeskPlaces::bytes(workers));
+    DeskView::lay_out(memory, workers);
+    return memory;
+}
+
+}  // namespace
+
+Crew::Crew(std::string program, unsigned workers)
+    : program_(std::move(program)), desk_memory_(make_desk(workers)), view_(desk_memory_), crew_(workers) {
+    for (unsigned slot = 0; slot < workers; ++slot) start(slot);
+}
+
+Crew::~Crew() = default;
+
+std::shared_ptr<Region> Crew::add_region(SharedMemory memory) {
+    auto region = std::make_shared<Region>(std::move(memory));
+    introduce(region);
+    return region;
+}
+
+void Crew::introduce(const std::shared_ptr<Region>& region) {
+    if (region->number != 0) return;
+    region->number = next_region_++;
+    regions_.push_back(region);
+}
+
+std::uint32_t Crew::begin_job() {
+    strikes_.clear();
+    return ++job_;
+}
+
+/// Starts a worker for a slot, and gives it the desk.
+void Crew::start(unsigned slot) {
+    Member& member = crew_[slot];
+    member.process = nullptr;
+    view_.slot(slot).attached.store(0);
+    member.process = std::make_unique<WorkerProcess>(program_, slot);
+    if (!member.process->send_region(desk_region, desk_memory_)) {
+        member.process = nullptr;
+        throw Error(ErrorCode::engine_failed, "a worker process takes no mail");
+    }
+}
+
+/// Replaces the workers that ended between passes, and those that could not be started before.
+void Crew::revive() {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Member& member = crew_[slot];
+        if (member.process != nullptr && member.process->look() == ProcessState::runs) continue;
+        if (member.process != nullptr) {
+            ++(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
+        }
+        start(slot);
+    }
+}
+
+/// Gives the desk to a pass.
+void Crew::announce(const Pass& pass) {
+    if (++number_ == 0) ++number_;
+    Desk& desk = view_.desk();
+    desk.pass = pass;
+    desk.next_block.store(0);
+    desk.next_run.store(0);
+    desk.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs, std::uint64_t(1) << 62)));
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Slot& part = view_.slot(slot);
+        part.outcome = Outcome::none;
+        part.share.store(0);
+        part.preparing.store(1);
+        part.entries_scanned.store(0);
+        part.pages_taken.store(0);
+        part.ring_filled.store(0);
+        part.ring_taken.store(0);
+        part.asked.store(number_);
+        part.command.raise();
+    }
+}
+
+std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
+    taking_part_ = pass.workers;
+    needed_ = regions;
+    failure_ = nullptr;
+    forget_regions();
+    revive();
+    for (unsigned slot = 0; slot < taking_part_; ++slot) send_regions(slot);
+    announce(pass);
+
+    const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
+    Clock::time_point next_check = Clock::now() + look_interval;
+    for (;;) {
+        const std::uint32_t seen = view_.desk().for_client.count.load();
+        for (unsigned slot = 0; slot < taking_part_; ++slot) {
+            if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done) fail_as_worker(slot);
+        }
+        const bool over = all_finished();
+        if (failure_ == nullptr) {
+            try {
+                if (watch.stop.stop_requested() && !over) throw Error(ErrorCode::cancelled, "cancelled");
+                if (watch.look) watch.look();
+            } catch (...) {
+                fail(std::current_exception());
+            }
+        }
+        if (over) break;
+        if (Clock::now() >= next_check) {
+            check_members(watch);
+            next_check = Clock::now() + look_interval;
+            continue;
+        }
+        view_.desk().for_client.wait(seen, next_check - Clock::now(), 0);
+    }
+    if (failure_ != nullptr) std::rethrow_exception(std::exchange(failure_, nullptr));
+    shares_ = view_.slot(0).shares;
+    return number_;
+}
+
+bool Crew::finished(unsigned slot) const { return view_.slot(slot).finished.load() == number_; }
+
+/// A slot without a worker has nothing to end.
+bool Crew::all_finished() const {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (crew_[slot].process != nullptr && !finished(slot)) return false;
+    }
+    return true;
+}
+
+void Crew::check_members(const PassWatch& watch) {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Member& member = crew_[slot];
+        if (member.process == nullptr) continue;
+        const ProcessState state = member.process->look();
+        if (state == ProcessState::runs) {
+            if (view_.slot(slot).attached.load() != 0) member.failed_starts = 0;
+            continue;
+        }
+        lose(slot, state == ProcessState::stopped, watch);
+    }
+    if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
+}
+
+/// A worker has ended, or must because it does nothing any more: what it was at is left to another.
+void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
+    Member& member = crew_[slot];
+    const bool attached = view_.slot(slot).attached.load() != 0;
+    const std::string how = member.process->end();
+    member.process = nullptr;
+    ++(stopped ? faults_.stopped : faults_.ended);
+    try {
+        member.failed_starts = attached ? 0 : member.failed_starts + 1;
+        if (member.failed_starts >= most_failed_starts) {
+            member.failed_starts = 0;
+            throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
+        }
+        if (finished(slot)) return;
+        if (attached) strike(slot);
+        if (failure_ != nullptr) return;
+        if (watch.lost) watch.lost(slot);
+        Slot& part = view_.slot(slot);
+        part.share.store(0);
+        part.preparing.store(1);
+        start(slot);
+        send_regions(slot);
+        part.command.raise();
+    } catch (...) {
+        fail(std::current_exception());
+    }
+}
+
+/// Counts what a share did to a worker. Throws Error{engine_failed} if it is too much.
+void Crew::strike(unsigned slot) {
+    const Slot& part = view_.slot(slot);
+    std::uint64_t share = part.share.load();
+    Step step = Step::prepare;
+    if (share > 0 && share <= most_shares) {
+        const Share& record = view_.shares(share - 1, 1)[0];
+        const ShareState state = ShareState::of(record.state.load());
+        const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
+        if (!under_way || record.step >= step_names.size()) return;
+        step = Step(record.step);
+        ++faults_.in_share[std::size_t(step)];
+    } else {
+        if (part.preparing.load() == 0) return;
+        share = preparing;
+    }
+    if (++strikes_[share] < most_strikes) return;
+    throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +
+                                              ", has ended " + std::to_string(most_strikes) + " worker processes");
+}
+
+/// Ends the pass: its workers are told to stop.
+void Crew::fail(std::exception_ptr failure) {
+    if (failure_ != nullptr) return;
+    failure_ = std::move(failure);
+    failed_at_ = Clock::now();
+    view_.desk().stopped.store(number_);
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (crew_[slot].process != nullptr) (void)crew_[slot].process->stop_pass(number_);
+    }
+}
+
+void Crew::fail_as_worker(unsigned slot) {
+    const Slot& part = view_.slot(slot);
+    std::array<char, 256> message = part.message;
+    message.back() = 0;
+    switch (part.outcome) {
+        case Outcome::bad_box: return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
+        case Outcome::over_budget: return fail(std::make_exception_ptr(OverBudget{}));
+        default: break;
+    }
+    const bool known = part.error_code <= unsigned(ErrorCode::cancelled) && part.outcome == Outcome::failed;
+    fail(std::make_exception_ptr(
+        Error(known ? ErrorCode(part.error_code) : ErrorCode::engine_failed, std::string(message.data()))));
+}
+
+/// Workers that do not leave a pass that failed are killed.
+void Crew::end_sluggish() {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (crew_[slot].process == nullptr || finished(slot)) continue;
+        crew_[slot].process = nullptr;
+        ++faults_.stopped;
+    }
+}
+
+void Crew::send_regions(unsigned slot) {
+    for (const auto& region : needed_) {
+        if (crew_[slot].process->send_region(region->number, region->memory)) continue;
+        // It may just have ended; who takes no mail otherwise must.
+        (void)crew_[slot].process->end();
+        return;
+    }
+}
+
+void Crew::forget_regions() {
+    std::erase_if(regions_, [](const auto& region) { return region.expired(); });
+    for (Member& member : crew_) {
+        if (member.process == nullptr) continue;
+        member.process->forget_all_but([&](std::uint32_t number) {
+            return number == desk_region || std::any_of(regions_.begin(), regions_.end(), [&](const auto& weak) {
+                       const auto region = weak.lock();
+                       return region != nullptr && region->number == number;
+                   });
+        });
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,41 @@
+#include "engine/processes/paper_passes.hpp"
+
+#include "engine/processes/sorted_lists.hpp"
+
+namespace octopair {
+
+void PaperPasses::build(Call& call, double progress) {
+    call.progress.stage(progress, 1);
+    if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
+    std::vector<std::shared_ptr<Region>> regions = {arena_};
+    Pass pass;
+    inputs_.place(call.request, crew_, pass, regions);
+    pass.job = crew_.begin_job();
+    pass.kind = PassKind::lists;
+    pass.workers = crew_.workers();
+    pass.margin = call.request.options.margin;
+    pass.arena_region = arena_->number;
+    PassWatch watch;
+    watch.stop = call.stop.get_token();
+    try {
+        (void)crew_.run(pass, regions, watch);
+        octree().assemble(plant_octants(call.source, watch.stop), find_lists(), watch.stop);
+    } catch (const LinearOctree::Invalid& invalid) {
+        call.source.refuse(invalid.begin);
+    }
+    call.summary.entries = octree().entry_count();
+    call.summary.steps.merge = octree().seconds().merge;
+    for (unsigned slot = 0; slot < pass.workers; ++slot) {
+        call.summary.steps.encode = std::max(call.summary.steps.encode, crew_.view().slot(slot).encode_seconds);
+    }
+}
+
+std::vector<SortedList> PaperPasses::find_lists() const {
+    std::vector<SortedList> lists;
+    for (const Share& share : crew_.view().shares(0, crew_.shares())) {
+        lists.push_back(find_list(arena_->memory, share.first_run));
+    }
+    return lists;
+}
+
+}  // namespace octopair

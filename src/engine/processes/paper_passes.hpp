@@ -1,0 +1,28 @@
+// PaperPasses: the paper's arrangement. Workers build sorted lists; the client merges them and scans, alone.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/processes/crew.hpp"
+#include "engine/processes/shared_inputs.hpp"
+#include "engine/thread_passes.hpp"
+
+namespace octopair {
+
+class PaperPasses final : public ThreadPasses {
+public:
+    /// Both must outlive it.
+    PaperPasses(Crew& crew, const SharedArrays& arrays) : ThreadPasses(1), crew_(crew), inputs_(arrays) {}
+
+    void build(Call& call, double progress) override;
+
+private:
+    std::vector<SortedList> find_lists() const;
+
+    Crew& crew_;
+    SharedInputs inputs_;
+    std::shared_ptr<Region> arena_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,73 @@
+// The process engine: the steps of the algorithm in worker processes that share memory with the application.
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "engine/processes/crew.hpp"
+#include "engine/processes/paper_passes.hpp"
+#include "engine/processes/process_passes.hpp"
+#include "engine/processes/worker_program.hpp"
+#include "engine/search.hpp"
+#include "octopair/error.hpp"
+#include "octopair/processes.hpp"
+
+namespace octopair {
+
+namespace {
+
+unsigned worker_count(unsigned asked) {
+    if (asked > most_workers) {
+        throw Error(ErrorCode::usage, std::to_string(asked) + " workers; at most " + std::to_string(most_workers));
+    }
+    return asked > 0 ? asked : std::clamp(std::thread::hardware_concurrency(), 1u, most_workers);
+}
+
+std::unique_ptr<Passes> make_passes(Arrangement arrangement, Crew& crew, const SharedArrays& arrays) {
+    if (arrangement == Arrangement::paper) return std::make_unique<PaperPasses>(crew, arrays);
+    return std::make_unique<ProcessPasses>(crew, arrays);
+}
+
+class ProcessEngine final : public Engine {
+public:
+    explicit ProcessEngine(const ProcessOptions& options)
+        : crew_(find_worker_program(options.worker_program), worker_count(options.workers)),
+          passes_(make_passes(options.arrangement, crew_, *arrays_)),
+          search_(*passes_) {}
+
+    WorkerFaults faults() const {
+        const std::lock_guard lock(mutex_);
+        return crew_.faults();
+    }
+
+private:
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        const std::lock_guard lock(mutex_);
+        return search_.run(request, output, control);
+    }
+
+    mutable std::mutex mutex_;
+    std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();
+    Crew crew_;
+    std::unique_ptr<Passes> passes_;
+    Search search_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options) {
+    return std::make_unique<ProcessEngine>(options);
+}
+
+std::unique_ptr<Engine> make_process_engine(unsigned workers) {
+    return make_process_engine(ProcessOptions{.workers = workers});
+}
+
+WorkerFaults worker_faults(const Engine& engine) {
+    const auto* const processes = dynamic_cast<const ProcessEngine*>(&engine);
+    if (processes == nullptr) throw Error(ErrorCode::usage, "not an engine of worker processes");
+    return processes->faults();
+}
+
+}  // namespace octopair

@@ -1,0 +1,71 @@
+#include "engine/processes/ring_reader.hpp"
+
+#include <algorithm>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+RingSize ring_size(std::uint64_t pairs, unsigned slots) {
+    constexpr std::uint64_t most_block = 1 << 15;
+    const std::uint64_t a_slot = std::max<std::uint64_t>(2, pairs / slots);
+    const std::uint64_t block = std::clamp<std::uint64_t>(a_slot / 16, 1, most_block);
+    return {std::clamp<std::uint64_t>(a_slot / block, 2, most_ring_blocks), block};
+}
+
+void RingReader::take() {
+    // A share that is not begun yet has the number of another pass.
+    while (share_ < most_shares) {
+        const Share& share = crew_.view().shares(share_, 1)[0];
+        const ShareState state = ShareState::of(share.state.load());
+        if (state.pass != crew_.number() || state.slot >= pass_.workers) return;
+        if (share.step != unsigned(Step::scan)) {
+            if (state.status != ShareStatus::done) return;
+            ++share_;
+        } else if (!take_block(state.slot)) {
+            return;
+        }
+    }
+}
+
+/// Takes a block of the slot that has the next share; false if there is none.
+bool RingReader::take_block(unsigned number) {
+    Slot& slot = crew_.view().slot(number);
+    const std::uint64_t taken = slot.ring_taken.load();
+    const std::uint64_t filled = slot.ring_filled.load();
+    if (filled == taken) return false;
+    const RingEntry entry = crew_.view().ring_entry(number, taken);
+    const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs && entry.share <= share_;
+    if (!sound) throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
+    if (entry.share == share_) {
+        const std::uint64_t block = number * pass_.ring_blocks + taken % pass_.ring_blocks;
+        const std::span<const Pair> pairs{
+            pairs_.array<const Pair>(block * pass_.block_pairs * sizeof(Pair), pass_.block_pairs),
+            std::size_t(entry.pairs)};
+        const std::uint64_t known = std::min<std::uint64_t>(entry.pairs, delivered_ - std::min(delivered_, passed_));
+        passed_ += entry.pairs;
+        delivered_ = std::max(delivered_, passed_);
+        if (known < entry.pairs) deliver_(pairs.subspan(known));
+        if (entry.last != 0) {
+            ++share_;
+            delivered_ = passed_ = 0;
+        }
+    }
+    slot.ring_taken.store(taken + 1);
+    slot.command.raise();
+    return true;
+}
+
+void RingReader::forget_unfinished(unsigned number) {
+    Slot& slot = crew_.view().slot(number);
+    const std::uint64_t share = slot.share.load();
+    if (share == 0) return;
+    const ShareState state = ShareState::of(crew_.view().shares(share - 1, 1)[0].state.load());
+    if (!state.is(crew_.number(), ShareStatus::claimed)) return;
+    std::uint64_t filled = slot.ring_filled.load();
+    while (filled > slot.ring_taken.load() && crew_.view().ring_entry(number, filled - 1).share == share - 1) --filled;
+    slot.ring_filled.store(filled);
+    if (share - 1 == share_) passed_ = 0;
+}
+
+}  // namespace octopair
