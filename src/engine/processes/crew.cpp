@@ -1,7 +1,7 @@
 #include "engine/processes/crew.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <thread>
 #include <utility>
 
 #include "octopair/error.hpp"
@@ -16,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds look_interval(20);   // between looks at the workers
 constexpr milliseconds patience(2000);      // for a worker to leave a pass that failed
+constexpr unsigned most_looks = 4000;       // for the end of a pass, about 80 us, before going to sleep
 constexpr unsigned most_strikes = 3;        // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
 constexpr std::uint64_t preparing = ~std::uint64_t(0);  // the share of what comes before the first one
@@ -89,6 +90,7 @@ void Crew::announce(const Pass& pass) {
         part.outcome = Outcome::none;
         part.share.store(0);
         part.preparing.store(1);
+        part.waiting.store(0);
         part.entries_scanned.store(0);
         part.pages_taken.store(0);
         part.ring_filled.store(0);
@@ -100,12 +102,15 @@ void Crew::announce(const Pass& pass) {
 
 std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
     taking_part_ = pass.workers;
+    // A client that keeps looking would take time from workers that have no other core.
+    looks_ = taking_part_ < std::thread::hardware_concurrency() ? most_looks : 0;
     needed_ = regions;
     failure_ = nullptr;
     forget_regions();
     revive();
     for (unsigned slot = 0; slot < taking_part_; ++slot) send_regions(slot);
     announce(pass);
+    moved_at_ = Clock::now();
 
     const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
     Clock::time_point next_check = Clock::now() + look_interval;
@@ -129,7 +134,7 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
             next_check = Clock::now() + look_interval;
             continue;
         }
-        view_.desk().for_client.wait(seen, next_check - Clock::now(), 0);
+        view_.desk().for_client.wait(seen, next_check - Clock::now(), looks_);
     }
     if (failure_ != nullptr) std::rethrow_exception(std::exchange(failure_, nullptr));
     shares_ = view_.slot(0).shares;
@@ -158,6 +163,20 @@ void Crew::check_members(const PassWatch& watch) {
         lose(slot, state == ProcessState::stopped, watch);
     }
     if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
+    if (failure_ == nullptr && stalled()) {
+        fail(std::make_exception_ptr(
+            Error(ErrorCode::engine_failed, "worker processes wait for each other: their tables are damaged")));
+    }
+}
+
+/// Whether all that are not done have long been waiting for others.
+bool Crew::stalled() {
+    bool all_wait = true;
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        all_wait = all_wait && (finished(slot) || view_.slot(slot).waiting.load() != 0);
+    }
+    if (!all_wait || all_finished()) moved_at_ = Clock::now();
+    return Clock::now() - moved_at_ > patience;
 }
 
 /// A worker has ended, or must because it does nothing any more: what it was at is left to another.
@@ -180,6 +199,7 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
         Slot& part = view_.slot(slot);
         part.share.store(0);
         part.preparing.store(1);
+        part.waiting.store(0);
         start(slot);
         send_regions(slot);
         part.command.raise();

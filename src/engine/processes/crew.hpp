@@ -77,6 +77,7 @@ private:
     void check_members(const PassWatch& watch);
     void lose(unsigned slot, bool stopped, const PassWatch& watch);
     void strike(unsigned slot);
+    bool stalled();
     void fail(std::exception_ptr failure);
     void fail_as_worker(unsigned slot);
     void end_sluggish();
@@ -97,8 +98,9 @@ private:
     // Of the pass under way.
     std::span<const std::shared_ptr<Region>> needed_;
     unsigned taking_part_ = 0;
+    unsigned looks_ = 0;
     std::exception_ptr failure_;
-    std::chrono::steady_clock::time_point failed_at_;
+    std::chrono::steady_clock::time_point failed_at_, moved_at_;
     std::map<std::uint64_t, unsigned> strikes_;  // of the job: workers that each share ended
 };
 

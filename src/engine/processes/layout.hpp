@@ -77,6 +77,7 @@ struct alignas(64) Slot {
     std::atomic<std::uint32_t> finished;    ///< the pass whose outcome is below
     std::atomic<std::uint32_t> attached;    ///< whether the worker has found its way to here
     std::atomic<std::uint32_t> preparing;   ///< whether it is in a pass and has not come to a share
+    std::atomic<std::uint32_t> waiting;     ///< whether it waits for others to end a step
     std::atomic<std::uint64_t> share;       ///< 1 + the number of the share under way; 0 if there is none
     std::atomic<std::uint64_t> entries_scanned;
     std::atomic<std::uint64_t> pages_taken;
