@@ -14,10 +14,10 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds look_interval(20);   // between looks at the workers
-constexpr milliseconds patience(2000);      // for a worker to leave a pass that failed
-constexpr unsigned most_looks = 4000;       // for the end of a pass, about 80 us, before going to sleep
-constexpr unsigned most_strikes = 3;        // workers that a share may end
+constexpr milliseconds look_interval(20);  // between looks at the workers
+constexpr milliseconds patience(2000);     // for a worker to leave a pass that failed
+constexpr unsigned most_looks = 4000;      // for the end of a pass, about 80 us, before going to sleep
+constexpr unsigned most_strikes = 3;       // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
 constexpr std::uint64_t preparing = ~std::uint64_t(0);  // the share of what comes before the first one
 
@@ -117,7 +117,8 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
     for (;;) {
         const std::uint32_t seen = view_.desk().for_client.count.load();
         for (unsigned slot = 0; slot < taking_part_; ++slot) {
-            if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done) fail_as_worker(slot);
+            if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done)
+                fail_as_worker(slot);
         }
         const bool over = all_finished();
         if (failure_ == nullptr) {
@@ -245,9 +246,12 @@ void Crew::fail_as_worker(unsigned slot) {
     std::array<char, 256> message = part.message;
     message.back() = 0;
     switch (part.outcome) {
-        case Outcome::bad_box: return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
-        case Outcome::over_budget: return fail(std::make_exception_ptr(OverBudget{}));
-        default: break;
+        case Outcome::bad_box:
+            return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
+        case Outcome::over_budget:
+            return fail(std::make_exception_ptr(OverBudget{}));
+        default:
+            break;
     }
     const bool known = part.error_code <= unsigned(ErrorCode::cancelled) && part.outcome == Outcome::failed;
     fail(std::make_exception_ptr(

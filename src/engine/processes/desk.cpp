@@ -14,9 +14,8 @@ namespace {
 /// Throws Error{resource_limit} unless [begin, begin + count) lies within [0, most).
 void check_range(std::uint64_t begin, std::uint64_t count, std::uint64_t most) {
     if (begin <= most && count <= most - begin) return;
-    throw Error(ErrorCode::resource_limit, "the worker processes' tables have no room for " +
-                                               std::to_string(begin) + " + " + std::to_string(count) + " of " +
-                                               std::to_string(most));
+    throw Error(ErrorCode::resource_limit, "the worker processes' tables have no room for " + std::to_string(begin) +
+                                               " + " + std::to_string(count) + " of " + std::to_string(most));
 }
 
 std::array<char, 32> version_text() {
@@ -40,8 +39,8 @@ void DeskView::lay_out(SharedMemory& memory, unsigned slots) {
 
 DeskView::DeskView(SharedMemory& memory) : memory_(memory), desk_(memory.array<Desk>(0, 1)) {
     slot_count_ = desk_->slots.load();
-    const bool fits = desk_->mark == desk_mark && desk_->layout == layout_version &&
-                      desk_->version == version_text() && slot_count_ >= 1 && slot_count_ <= most_workers &&
+    const bool fits = desk_->mark == desk_mark && desk_->layout == layout_version && desk_->version == version_text() &&
+                      slot_count_ >= 1 && slot_count_ <= most_workers &&
                       memory.size() >= DeskPlaces::bytes(slot_count_);
     if (!fits) throw Error(ErrorCode::engine_failed, "the worker's program is of another version than the library");
     slots_ = memory.array<Slot>(DeskPlaces::slots, slot_count_);

@@ -72,13 +72,13 @@ struct Pass {
 enum class Outcome : std::uint32_t { none, done, failed, stopped, bad_box, over_budget };
 
 struct alignas(64) Slot {
-    Event command;                          ///< raised when `asked` has changed, or there is room in the ring
-    std::atomic<std::uint32_t> asked;       ///< the pass to do, by its number
-    std::atomic<std::uint32_t> finished;    ///< the pass whose outcome is below
-    std::atomic<std::uint32_t> attached;    ///< whether the worker has found its way to here
-    std::atomic<std::uint32_t> preparing;   ///< whether it is in a pass and has not come to a share
-    std::atomic<std::uint32_t> waiting;     ///< whether it waits for others to end a step
-    std::atomic<std::uint64_t> share;       ///< 1 + the number of the share under way; 0 if there is none
+    Event command;                         ///< raised when `asked` has changed, or there is room in the ring
+    std::atomic<std::uint32_t> asked;      ///< the pass to do, by its number
+    std::atomic<std::uint32_t> finished;   ///< the pass whose outcome is below
+    std::atomic<std::uint32_t> attached;   ///< whether the worker has found its way to here
+    std::atomic<std::uint32_t> preparing;  ///< whether it is in a pass and has not come to a share
+    std::atomic<std::uint32_t> waiting;    ///< whether it waits for others to end a step
+    std::atomic<std::uint64_t> share;      ///< 1 + the number of the share under way; 0 if there is none
     std::atomic<std::uint64_t> entries_scanned;
     std::atomic<std::uint64_t> pages_taken;
     std::atomic<std::uint64_t> ring_filled, ring_taken;  ///< entries ever
@@ -95,8 +95,8 @@ struct Desk {
     std::uint32_t layout;
     std::array<char, 32> version;
     std::atomic<std::uint32_t> slots;
-    Event among_workers;  ///< a worker has no more to do in a step
-    Event for_client;     ///< a worker has finished, or there are pairs to take
+    Event among_workers;                 ///< a worker has no more to do in a step
+    Event for_client;                    ///< a worker has finished, or there are pairs to take
     std::atomic<std::uint32_t> stopped;  ///< the pass that is not wanted any more
     std::atomic<std::uint64_t> next_block, next_run;
     std::atomic<std::int64_t> pages_left;
@@ -106,11 +106,11 @@ struct Desk {
 /// Of one share of a pass. What is left from earlier passes shows by the pass's number in `state`.
 struct Share {
     std::atomic<std::uint64_t> state;
-    std::uint64_t pairs;       ///< how many were found (list, count)
-    std::uint64_t first_run;   ///< of these pairs
+    std::uint64_t pairs;      ///< how many were found (list, count)
+    std::uint64_t first_run;  ///< of these pairs
     std::uint32_t runs;
     std::uint32_t step;
-    std::uint64_t commit;      ///< of its slot, with this share in it (ascending)
+    std::uint64_t commit;  ///< of its slot, with this share in it (ascending)
 };
 
 enum class ShareStatus : std::uint32_t { free, claimed, done };

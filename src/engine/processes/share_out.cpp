@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr unsigned looks = 2000;             // about 40 us: the others tend to end at the same time
+constexpr unsigned looks = 2000;  // about 40 us: the others tend to end at the same time
 constexpr milliseconds longest_sleep(100);
 
 }  // namespace
@@ -63,8 +63,7 @@ void ShareOut::wait_for_others(std::span<Share> records) {
     std::size_t done = 0;
     for (;;) {
         const std::uint32_t seen = event.count.load();
-        while (done < records.size() &&
-               ShareState::of(records[done].state.load()).is(self_.pass, ShareStatus::done)) {
+        while (done < records.size() && ShareState::of(records[done].state.load()).is(self_.pass, ShareStatus::done)) {
             ++done;
         }
         if (done == records.size()) return;

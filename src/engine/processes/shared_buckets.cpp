@@ -115,7 +115,8 @@ std::uint64_t SharedBuckets::last_commit(unsigned slot) const {
     std::uint64_t last = 0;
     for (Share& share : place_.view.shares(0, place_.shares.shares())) {
         const ShareState state = ShareState::of(share.state.load());
-        if (state.is(place_.shares.pass(), ShareStatus::done) && state.slot == slot && share.step == unsigned(Step::scan)) {
+        if (state.is(place_.shares.pass(), ShareStatus::done) && state.slot == slot &&
+            share.step == unsigned(Step::scan)) {
             last = std::max(last, share.commit);
         }
     }

@@ -69,8 +69,7 @@ SharedMemory SharedMemory::open(Descriptor file, std::uint64_t bytes) {
 
 SharedMemory::SharedMemory(Descriptor file, std::uint64_t bytes)
     : file_(std::move(file)), size_(bytes), committed_(std::size_t((bytes + granule - 1) / granule), false) {
-    void* const mapped =
-        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, file_.number(), 0);
+    void* const mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, file_.number(), 0);
     if (mapped == MAP_FAILED) throw_exhausted("cannot map", errno);
     data_ = static_cast<std::byte*>(mapped);
 }
@@ -86,8 +85,8 @@ SharedMemory::~SharedMemory() {
 }
 
 void SharedMemory::refuse(std::uint64_t bytes) const {
-    throw Error(ErrorCode::resource_limit, "shared memory: " + std::to_string(bytes) + " bytes more do not fit into " +
-                                               std::to_string(size_));
+    throw Error(ErrorCode::resource_limit,
+                "shared memory: " + std::to_string(bytes) + " bytes more do not fit into " + std::to_string(size_));
 }
 
 void SharedMemory::commit(std::uint64_t offset, std::uint64_t bytes) {

@@ -57,8 +57,12 @@ public:
                 case MailKind::region:
                     regions_.add(mail.number, SharedMemory::open(std::move(received->file), mail.bytes));
                     break;
-                case MailKind::forget: regions_.forget(mail.number); break;
-                case MailKind::stop: stop(mail.number); break;
+                case MailKind::forget:
+                    regions_.forget(mail.number);
+                    break;
+                case MailKind::stop:
+                    stop(mail.number);
+                    break;
             }
         }
     }

@@ -239,16 +239,21 @@ void WorkerProgram::scan(const Context& context) {
     const auto pairs = regions_.get(pass.pairs_region);
     const OutputPlace place{view_, *pairs, context.shares, context.stop};
     switch (pass.kind) {
-        case PassKind::count: return scan_into(context, *make_count_output());
-        case PassKind::count_by_object: return count_by_object(context, place);
-        case PassKind::list_octal: return scan_into(context, *make_list_output(place));
-        case PassKind::stream_octal: return scan_into(context, *make_stream_output(place, pass));
+        case PassKind::count:
+            return scan_into(context, *make_count_output());
+        case PassKind::count_by_object:
+            return count_by_object(context, place);
+        case PassKind::list_octal:
+            return scan_into(context, *make_list_output(place));
+        case PassKind::stream_octal:
+            return scan_into(context, *make_stream_output(place, pass));
         case PassKind::list_ascending: {
             SharedBuckets buckets(place, pass);
             scan_into(context, buckets);
             return buckets.order(context.shares);
         }
-        case PassKind::lists: break;
+        case PassKind::lists:
+            break;
     }
     throw Error(ErrorCode::engine_failed, "an unknown kind of pass");
 }
