@@ -1,9 +1,8 @@
 // The local engine: the steps of the algorithm on the threads of this process.
 
-#include <mutex>
-
 #include "engine/search.hpp"
 #include "engine/thread_passes.hpp"
+#include "engine/turns.hpp"
 #include "engine/writers.hpp"
 
 namespace octopair {
@@ -35,11 +34,11 @@ public:
 
 private:
     Summary run(const Request& request, const Output& output, const Control& control) override {
-        const std::lock_guard lock(mutex_);
+        const Turns::Turn turn(turns_, control.stop);
         return search_.run(request, output, control);
     }
 
-    std::mutex mutex_;
+    Turns turns_;
     LocalPasses passes_;
     Search search_{passes_};
 };
