@@ -8,6 +8,7 @@
 // Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "octopair/box_array.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -76,13 +78,24 @@ public:
     std::uint64_t count_pairs_between(const Objects& first, const Objects& second, const Options& options = {},
                                       std::stop_token stop = {});
 
+    /// Room for boxes (Box3f or Box3d) where this engine reads them without copying; waits for no call. Throws
+    /// Error{resource_limit} for more than there is room for, or than 2^32 - 1.
+    template <typename Element = Box3f>
+    BoxArray<Element> allocate_boxes(std::uint64_t count) {
+        return BoxArray<Element>(allocate_array(count, sizeof(Element)), count);
+    }
+
     struct Request;  ///< objects, the second set of a join, options: what every call above becomes (internal)
     struct Output;   ///< a list, a sink, or neither to count (internal)
     struct Control;  ///< stop token and progress (internal)
 
 private:
     Summary call(const Request& request, const Output& output, std::stop_token stop);
+    std::shared_ptr<void> allocate_array(std::uint64_t count, std::size_t element_bytes);
+
     virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
+    /// Aligned to 64 bytes; freed by the last who holds it, which may be after the engine. May throw std::bad_alloc.
+    virtual std::shared_ptr<void> allocate(std::size_t bytes);
 };
 
 /// Threads of this process. 0: one per core.

@@ -1,6 +1,7 @@
 // octopair: every colliding pair among millions of moving 3D objects. This header brings the whole library.
 #pragma once
 
+#include "octopair/box_array.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
 #include "octopair/objects.hpp"

@@ -3,6 +3,7 @@
 #include <new>
 #include <string>
 
+#include "base/memory.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "octopair/error.hpp"
@@ -80,6 +81,22 @@ std::uint64_t Engine::count_pairs(const Objects& objects, const Options& options
 std::uint64_t Engine::count_pairs_between(const Objects& first, const Objects& second, const Options& options,
                                           std::stop_token stop) {
     return call({first, &second, options}, {}, stop).pairs;
+}
+
+std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {
+    if (count > most_objects || count > std::numeric_limits<std::size_t>::max() / element_bytes) {
+        throw Error(ErrorCode::resource_limit,
+                    std::to_string(count) + " boxes; at most " + std::to_string(most_objects) + " can be allocated");
+    }
+    try {
+        return allocate(std::size_t(count) * element_bytes);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    }
+}
+
+std::shared_ptr<void> Engine::allocate(std::size_t bytes) {
+    return {allocate_pages(bytes), [bytes](void* memory) { free_pages(memory, bytes); }};
 }
 
 namespace {
