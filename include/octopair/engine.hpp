@@ -4,7 +4,8 @@
 //           threads, on any instruction set.
 // Errors    octopair::Error (error.hpp); the input is never modified; a failed call leaves the engine usable and the
 //           PairList empty.
-// Threads   an engine may be used from any thread; its calls run one after another; different engines are independent.
+// Threads   an engine may be used from any thread; its calls run one after another, as they came; different engines are
+//           independent.
 // Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output.
 #pragma once
 
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "octopair/box_array.hpp"
+#include "octopair/job.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -55,6 +57,8 @@ struct Summary {
 /// search and reaches the caller.
 using PairSink = std::function<void(std::span<const Pair>)>;
 
+class JobQueue;  // internal
+
 class Engine {
 public:
     Engine() = default;
@@ -78,6 +82,15 @@ public:
     std::uint64_t count_pairs_between(const Objects& first, const Objects& second, const Options& options = {},
                                       std::stop_token stop = {});
 
+    /// Jobs (job.hpp): the same calls, made on a thread of the engine's own; collected, or streamed to a `sink` that is
+    /// called there. Return at once. Throw what is wrong with options and sizes, as those calls do, and
+    /// Error{resource_limit} for want of memory or threads; what is wrong with a box or a padding fails the job. The
+    /// engine's end cancels its jobs.
+    Job submit(JobObjects objects, Options options = {});
+    Job submit_between(JobObjects first, JobObjects second, Options options = {});
+    Job submit_stream(JobObjects objects, PairSink sink, Options options = {});
+    Job submit_stream_between(JobObjects first, JobObjects second, PairSink sink, Options options = {});
+
     /// Room for boxes (Box3f or Box3d) where this engine reads them without copying; waits for no call. Throws
     /// Error{resource_limit} for more than there is room for, or than 2^32 - 1.
     template <typename Element = Box3f>
@@ -94,6 +107,8 @@ private:
     std::shared_ptr<void> allocate_array(std::uint64_t count, std::size_t element_bytes);
 
     virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
+    /// Every engine has one, as its last member: it ends the jobs before what they use goes.
+    virtual JobQueue& jobs() = 0;
     /// Aligned to 64 bytes; freed by the last who holds it, which may be after the engine. May throw std::bad_alloc.
     virtual std::shared_ptr<void> allocate(std::size_t bytes);
 };

@@ -2,8 +2,11 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "base/memory.hpp"
+#include "engine/job_queue.hpp"
+#include "engine/job_task.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "octopair/error.hpp"
@@ -83,6 +86,46 @@ std::uint64_t Engine::count_pairs_between(const Objects& first, const Objects& s
     return call({first, &second, options}, {}, stop).pairs;
 }
 
+namespace {
+
+[[noreturn]] void throw_out_of_memory() { throw Error(ErrorCode::resource_limit, "out of memory"); }
+
+void check(const Job::Task::Work& work) {
+    const Objects first = view(work.first);
+    if (!work.second) return check({first, nullptr, work.options});
+    const Objects second = view(*work.second);
+    check({first, &second, work.options});
+}
+
+Job submit_to(JobQueue& queue, Job::Task::Work work) {
+    check(work);
+    try {
+        const auto task = std::make_shared<Job::Task>(std::move(work));
+        queue.add(task);
+        return Job(task);
+    } catch (const std::bad_alloc&) {
+        throw_out_of_memory();
+    }
+}
+
+}  // namespace
+
+Job Engine::submit(JobObjects objects, Options options) {
+    return submit_to(jobs(), {std::move(objects), {}, {}, std::move(options)});
+}
+
+Job Engine::submit_between(JobObjects first, JobObjects second, Options options) {
+    return submit_to(jobs(), {std::move(first), std::move(second), {}, std::move(options)});
+}
+
+Job Engine::submit_stream(JobObjects objects, PairSink sink, Options options) {
+    return submit_to(jobs(), {std::move(objects), {}, std::move(sink), std::move(options)});
+}
+
+Job Engine::submit_stream_between(JobObjects first, JobObjects second, PairSink sink, Options options) {
+    return submit_to(jobs(), {std::move(first), std::move(second), std::move(sink), std::move(options)});
+}
+
 std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {
     if (count > most_objects || count > std::numeric_limits<std::size_t>::max() / element_bytes) {
         throw Error(ErrorCode::resource_limit,
@@ -91,7 +134,7 @@ std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t el
     try {
         return allocate(std::size_t(count) * element_bytes);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorCode::resource_limit, "out of memory");
+        throw_out_of_memory();
     }
 }
 

@@ -1,5 +1,6 @@
 // The local engine: the steps of the algorithm on the threads of this process.
 
+#include "engine/job_queue.hpp"
 #include "engine/search.hpp"
 #include "engine/thread_passes.hpp"
 #include "engine/turns.hpp"
@@ -37,10 +38,12 @@ private:
         const Turns::Turn turn(turns_, control.stop);
         return search_.run(request, output, control);
     }
+    JobQueue& jobs() override { return jobs_; }
 
     Turns turns_;
     LocalPasses passes_;
     Search search_{passes_};
+    JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 }  // namespace

@@ -1,0 +1,58 @@
+// Job, the handle: every call goes to the Task that it shares with the queue.
+#include "octopair/job.hpp"
+
+#include <utility>
+
+#include "engine/job_task.hpp"
+
+namespace octopair {
+
+Job::Job(std::shared_ptr<Task> task) noexcept : task_(std::move(task)) {}
+
+Job& Job::operator=(Job&& other) noexcept {
+    const std::shared_ptr<Task> next = std::move(other.task_);
+    if (next != task_) let_go();
+    task_ = next;
+    return *this;
+}
+
+Job::~Job() { let_go(); }
+
+void Job::let_go() noexcept {
+    if (task_ == nullptr) return;
+    task_->cancel();
+    task_->wait_elsewhere();
+}
+
+JobState Job::state() const noexcept { return task_ != nullptr ? task_->state() : JobState::cancelled; }
+
+double Job::progress() const noexcept { return task_ != nullptr ? task_->progress() : 0; }
+
+void Job::wait() const {
+    if (task_ != nullptr) task_->wait();
+}
+
+bool Job::wait_at_most(std::chrono::nanoseconds time) const { return task_ == nullptr || task_->wait_at_most(time); }
+
+void Job::cancel() noexcept {
+    // What the task lets go of may be this handle.
+    if (const std::shared_ptr<Task> task = task_) task->cancel();
+}
+
+namespace {
+
+[[noreturn]] void throw_empty() { throw Error(ErrorCode::usage, "the handle has no job"); }
+
+}  // namespace
+
+Summary Job::summary() const {
+    if (task_ == nullptr) throw_empty();
+    return task_->summary();
+}
+
+PairList Job::take_pairs() {
+    if (task_ == nullptr) throw_empty();
+    return task_->take_pairs();
+}
+
+}  // namespace octopair

@@ -1,0 +1,173 @@
+#include "engine/job_task.hpp"
+
+#include <exception>
+#include <new>
+#include <span>
+#include <utility>
+
+namespace octopair {
+
+namespace {
+
+template <typename Real>
+Boxes boxes_of(const std::vector<Box<Real>>& boxes) {
+    return std::span(boxes);
+}
+
+template <typename Element>
+Boxes boxes_of(const BoxArray<Element>& boxes) {
+    return boxes.boxes();
+}
+
+Objects objects_of(const OwnedObjects& owned) {
+    return {std::visit([](const auto& boxes) { return boxes_of(boxes); }, owned.boxes), owned.padding};
+}
+
+Objects objects_of(const BorrowedObjects& borrowed) { return borrowed.objects(); }
+
+}  // namespace
+
+Objects view(const JobObjects& objects) {
+    return std::visit([](const auto& either) { return objects_of(either); }, objects);
+}
+
+Job::Task::Task(Work work) : work_(std::move(work)) {
+    told_ = std::exchange(work_->options.progress, [this](double done) { tell(done); });
+    if (!work_->sink) pairs_.emplace();
+}
+
+void Job::Task::belong_to(std::thread::id thread) {
+    const std::lock_guard lock(mutex_);
+    queue_thread_ = thread;
+}
+
+void Job::Task::run(Engine& engine) noexcept {
+    if (!hold(JobState::running)) return;
+    try {
+        const Summary summary = call(engine);
+        progress_.store(1, std::memory_order_relaxed);
+        end({JobState::done, summary});
+    } catch (...) {
+        end(failure());
+    }
+}
+
+/// Makes this thread the one that holds the task, unless there is one.
+bool Job::Task::hold(JobState state) {
+    const std::lock_guard lock(mutex_);
+    if (holder_ != std::thread::id()) return false;
+    holder_ = std::this_thread::get_id();
+    state_ = state;
+    return true;
+}
+
+Summary Job::Task::call(Engine& engine) {
+    const Objects first = view(work_->first);
+    const Options& options = work_->options;
+    const std::stop_token stop = stop_.get_token();
+    if (!work_->second) {
+        return pairs_ ? engine.find_pairs(first, *pairs_, options, stop)
+                      : engine.stream_pairs(first, *work_->sink, options, stop);
+    }
+    const Objects second = view(*work_->second);
+    return pairs_ ? engine.find_pairs_between(first, second, *pairs_, options, stop)
+                  : engine.stream_pairs_between(first, second, *work_->sink, options, stop);
+}
+
+void Job::Task::tell(double done) {
+    progress_.store(done, std::memory_order_relaxed);
+    if (told_) told_(done);
+}
+
+/// What the exception under way makes of a job.
+Job::Task::Ending Job::Task::failure() noexcept {
+    try {
+        try {
+            throw;
+        } catch (const Error& error) {
+            return {error.code() == ErrorCode::cancelled ? JobState::cancelled : JobState::failed, {}, error};
+        } catch (const std::bad_alloc&) {
+            return {JobState::failed};
+        } catch (const std::exception& error) {
+            return {JobState::failed, {}, Error(ErrorCode::engine_failed, error.what())};
+        } catch (...) {
+            return {JobState::failed, {}, Error(ErrorCode::engine_failed, "an exception that is no std::exception")};
+        }
+    } catch (...) {  // no memory for the words
+        return {JobState::failed};
+    }
+}
+
+/// By the holder. The state changes last: whoever sees it finds the input let go of.
+void Job::Task::end(Ending ending) noexcept {
+    if (ending.state != JobState::done) pairs_.reset();
+    work_.reset();
+    told_ = nullptr;
+    const std::lock_guard lock(mutex_);
+    ending_ = std::move(ending);
+    state_ = ending_.state;
+    ended_.notify_all();
+}
+
+JobState Job::Task::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
+bool Job::Task::ended() const {
+    const std::lock_guard lock(mutex_);
+    return is_last();
+}
+
+void Job::Task::cancel() noexcept {
+    if (hold(JobState::queued)) {
+        end({JobState::cancelled});
+    } else {
+        stop_.request_stop();
+    }
+}
+
+void Job::Task::wait() const {
+    std::unique_lock lock(mutex_);
+    const std::thread::id here = std::this_thread::get_id();
+    if (!is_last() && (here == queue_thread_ || here == holder_)) {
+        throw Error(ErrorCode::usage, "a sink or a progress waits for a job of its own engine");
+    }
+    ended_.wait(lock, [&] { return is_last(); });
+}
+
+bool Job::Task::wait_at_most(std::chrono::nanoseconds time) const {
+    std::unique_lock lock(mutex_);
+    return ended_.wait_for(lock, time, [&] { return is_last(); });
+}
+
+void Job::Task::wait_elsewhere() const {
+    std::unique_lock lock(mutex_);
+    if (holder_ != std::this_thread::get_id()) ended_.wait(lock, [&] { return is_last(); });
+}
+
+void Job::Task::throw_unless_done() const {
+    if (state_ == JobState::done) return;
+    if (ending_.error) throw Error(*ending_.error);
+    if (state_ == JobState::cancelled) throw Error(ErrorCode::cancelled, "cancelled");
+    throw Error(ErrorCode::resource_limit, "out of memory");
+}
+
+Summary Job::Task::summary() const {
+    wait();
+    const std::lock_guard lock(mutex_);
+    throw_unless_done();
+    return ending_.summary;
+}
+
+PairList Job::Task::take_pairs() {
+    wait();
+    const std::lock_guard lock(mutex_);
+    throw_unless_done();
+    if (!pairs_) throw Error(ErrorCode::usage, "the job's pairs were taken before, or went to a sink");
+    PairList pairs = std::move(*pairs_);
+    pairs_.reset();
+    return pairs;
+}
+
+}  // namespace octopair

@@ -1,0 +1,53 @@
+// What the tests of jobs share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <semaphore>
+#include <vector>
+
+#include "octopair/octopair.hpp"
+
+namespace octopair::testing {
+
+/// Two boxes that touch: one pair, one batch.
+inline const std::vector<Box3f> touching_boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}};
+
+inline Objects objects_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
+
+/// The code of the Error that `call` throws, or nothing.
+template <typename Call>
+std::optional<ErrorCode> code_of(const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return std::nullopt;
+}
+
+/// A job that runs until it is let go on. Its sink does not hear of a stop.
+class HeldJob {
+public:
+    /// Returns when the job runs.
+    explicit HeldJob(Engine& engine)
+        : job_(engine.submit_stream(touching_boxes, [this](std::span<const Pair>) {
+              entered_.release();
+              go_on_.acquire();
+          })) {
+        entered_.acquire();
+    }
+    HeldJob(const HeldJob&) = delete;
+    HeldJob& operator=(const HeldJob&) = delete;
+    ~HeldJob() { let_go_on(); }
+
+    void let_go_on() { go_on_.release(); }
+    Job& job() { return job_; }
+
+private:
+    std::counting_semaphore<> entered_{0}, go_on_{0};
+    Job job_;
+};
+
+}  // namespace octopair::testing
