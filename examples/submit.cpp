@@ -1,0 +1,55 @@
+// A loop that goes on while its pairs are found: a job is submitted, asked now and then, and collected when it has ended.
+#include <octopair/octopair.hpp>
+
+#include <chrono>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+namespace {
+
+/// Cubes in a row: each touches the next.
+octopair::BoxArray<octopair::Box3f> row_of_cubes(octopair::Engine& engine, std::uint64_t count) {
+    auto array = engine.allocate_boxes(count);  // or any std::vector of boxes
+    float x = 0;
+    for (octopair::Box3f& box : array.boxes()) {
+        box = {{x, 0, 0}, {x + 1, 1, 1}};
+        x += 1;
+    }
+    return array;
+}
+
+/// The loop's own work: a ball that falls and springs back.
+struct Ball {
+    double height = 1, speed = 0;
+
+    void advance(double seconds) {
+        speed -= 9.81 * seconds;
+        height += speed * seconds;
+        if (height < 0 && speed < 0) speed = -speed;
+    }
+};
+
+}  // namespace
+
+int main() {
+    try {
+        const auto engine = octopair::make_local_engine();
+        octopair::Job job = engine->submit(row_of_cubes(*engine, 100'000));  // which are the job's from here on
+
+        Ball ball;
+        std::uint64_t frames = 0;
+        do {
+            ball.advance(1e-3);
+            ++frames;
+        } while (!job.wait_for(std::chrono::milliseconds(1)));  // job.cancel() would end it before
+        std::printf("%" PRIu64 " frames meanwhile\n", frames);
+
+        const octopair::PairList pairs = job.take_pairs();  // throws what went wrong, if anything did
+        std::printf("%" PRIu64 " pairs\n", pairs.size());
+    } catch (const octopair::Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return EXIT_FAILURE;
+    }
+}
