@@ -143,26 +143,28 @@ TEST(JobDeadlines, AllTheTimeThereIs) {
     }
 }
 
-TEST(JobTurns, ADirectCallIsNotPassedOver) {
+/// Whether a direct call that comes while a job runs is answered before the next job.
+bool comes_before_the_next_job(Engine& engine) {
+    HeldJob held(engine);
+    std::binary_semaphore answered(0);
+    bool in_time = false;
+    const Job next = engine.submit_stream(
+        touching_boxes, [&](auto) { in_time = answered.try_acquire_for(std::chrono::milliseconds(500)); });
+    const std::jthread caller([&] {
+        (void)engine.count_pairs(objects_of(touching_boxes));
+        answered.release();
+    });
+    std::this_thread::sleep_for(milliseconds(50));  // until the caller waits
+    held.let_go_on();
+    next.wait();
+    return in_time;
+}
+
+TEST(JobTurns, DirectCallsAreNotPassedOver) {
     const auto engine = make_local_engine(1);
-    const auto attempt = [&] {
-        HeldJob held(*engine);
-        std::binary_semaphore answered(0);
-        bool was_passed_over = false;
-        const Job next = engine->submit_stream(
-            touching_boxes, [&](auto) { was_passed_over = !answered.try_acquire_for(std::chrono::seconds(2)); });
-        {
-            const std::jthread caller([&] {
-                (void)engine->count_pairs(objects_of(touching_boxes));
-                answered.release();
-            });
-            std::this_thread::sleep_for(milliseconds(100));  // until it waits
-            held.let_go_on();
-            next.wait();
-        }
-        return !was_passed_over;
-    };
-    EXPECT_TRUE(attempt() || attempt() || attempt());
+    int in_time = 0;
+    for (int i = 0; i < 10; ++i) in_time += comes_before_the_next_job(*engine) ? 1 : 0;
+    EXPECT_GE(in_time, 8);  // a busy machine may have let a caller come late
 }
 
 }  // namespace
