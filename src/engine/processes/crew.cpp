@@ -48,6 +48,16 @@ void Crew::introduce(const std::shared_ptr<Region>& region) {
     regions_.push_back(region);
 }
 
+WorkerFaults Crew::faults() const {
+    const std::lock_guard lock(faults_mutex_);
+    return faults_;
+}
+
+void Crew::count_fault(std::uint64_t& fault) {
+    const std::lock_guard lock(faults_mutex_);
+    ++fault;
+}
+
 std::uint32_t Crew::begin_job() {
     strikes_.clear();
     return ++job_;
@@ -71,7 +81,7 @@ void Crew::revive() {
         Member& member = crew_[slot];
         if (member.process != nullptr && member.process->look() == ProcessState::runs) continue;
         if (member.process != nullptr) {
-            ++(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
+            count_fault(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
         }
         start(slot);
     }
@@ -186,7 +196,7 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
     const bool attached = view_.slot(slot).attached.load() != 0;
     const std::string how = member.process->end();
     member.process = nullptr;
-    ++(stopped ? faults_.stopped : faults_.ended);
+    count_fault(stopped ? faults_.stopped : faults_.ended);
     try {
         member.failed_starts = attached ? 0 : member.failed_starts + 1;
         if (member.failed_starts >= most_failed_starts) {
@@ -220,7 +230,7 @@ void Crew::strike(unsigned slot) {
         const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
         if (!under_way || record.step >= step_names.size()) return;
         step = Step(record.step);
-        ++faults_.in_share[std::size_t(step)];
+        count_fault(faults_.in_share[std::size_t(step)]);
     } else {
         if (part.preparing.load() == 0) return;
         share = preparing;
@@ -263,7 +273,7 @@ void Crew::end_sluggish() {
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         if (crew_[slot].process == nullptr || finished(slot)) continue;
         crew_[slot].process = nullptr;
-        ++faults_.stopped;
+        count_fault(faults_.stopped);
     }
 }
 

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -62,7 +63,8 @@ public:
 
     /// A new job: what its work has done to workers is counted anew.
     std::uint32_t begin_job();
-    WorkerFaults faults() const { return faults_; }
+    /// Thread-safe.
+    WorkerFaults faults() const;
 
 private:
     struct Member {
@@ -76,6 +78,7 @@ private:
     bool all_finished() const;
     void check_members(const PassWatch& watch);
     void lose(unsigned slot, bool stopped, const PassWatch& watch);
+    void count_fault(std::uint64_t& fault);
     void strike(unsigned slot);
     bool stalled();
     void fail(std::exception_ptr failure);
@@ -93,6 +96,7 @@ private:
     std::uint32_t number_ = 0;  // of the pass
     std::uint32_t job_ = 0;
     std::uint64_t shares_ = 0;
+    mutable std::mutex faults_mutex_;
     WorkerFaults faults_;
 
     // Of the pass under way.

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "engine/processes/crew.hpp"
 #include "engine/processes/paper_passes.hpp"
 #include "engine/processes/process_passes.hpp"
 #include "engine/processes/worker_program.hpp"
+#include "engine/job_queue.hpp"
 #include "engine/search.hpp"
+#include "engine/turns.hpp"
 #include "octopair/error.hpp"
 #include "octopair/processes.hpp"
 
@@ -36,22 +37,22 @@ public:
           passes_(make_passes(options.arrangement, crew_, *arrays_)),
           search_(*passes_) {}
 
-    WorkerFaults faults() const {
-        const std::lock_guard lock(mutex_);
-        return crew_.faults();
-    }
+    WorkerFaults faults() const { return crew_.faults(); }
 
 private:
     Summary run(const Request& request, const Output& output, const Control& control) override {
-        const std::lock_guard lock(mutex_);
+        const Turns::Turn turn(turns_, control.stop);
         return search_.run(request, output, control);
     }
+    std::shared_ptr<void> allocate(std::size_t bytes) override { return SharedArrays::allocate(arrays_, bytes); }
+    JobQueue& jobs() override { return jobs_; }
 
-    mutable std::mutex mutex_;
+    Turns turns_;
     std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();
     Crew crew_;
     std::unique_ptr<Passes> passes_;
     Search search_;
+    JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 }  // namespace

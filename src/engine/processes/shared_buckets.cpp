@@ -144,6 +144,7 @@ SharedBuckets::Strings SharedBuckets::committed_strings(unsigned slot) const {
 void SharedBuckets::order(ShareOut& shares) {
     pages_->set_unlimited();
     std::vector<Strings> of_slots;
+    of_slots.reserve(workers_);
     for (unsigned slot = 0; slot < workers_; ++slot) of_slots.push_back(committed_strings(slot));
     BucketSort sort(plan_, *pages_);
     std::vector<Pair*> spent;
