@@ -61,7 +61,8 @@ def complaints_of(path, parts):
     rules = list(EVERYWHERE) if path.name != "source_rules.py" else []
     if is_code:
         rules += IN_CODE
-        if parts[0] == "include" or (parts[0] == "src" and parts[1] != "cli"):
+        is_program = parts[1] == "cli" or path.stem.endswith("_main")
+        if parts[0] == "include" or (parts[0] == "src" and not is_program):
             rules += IN_LIBRARY
     for number, line in enumerate(lines, 1):
         for what, pattern in rules:

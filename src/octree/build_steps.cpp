@@ -64,9 +64,7 @@ void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t no
     valid.resize_discard(blocks);
 }
 
-void encode_block(const EntrySource& source, const Octants& octants, const NumberedBlock& block, BuildMemory& memory,
-                  const std::stop_token& stop) {
-    const auto& [frame, directory] = octants;
+void BuildSteps::encode(const NumberedBlock& block) const {
     const auto above = NodeIndex(memory.nodes);
     const ObjectBlock& objects = block.objects;
     std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
@@ -113,7 +111,7 @@ void encode_block(const EntrySource& source, const Octants& octants, const Numbe
     std::copy_n(ghost_counts.begin(), above, memory.ghost_part(memory.counts, block.number).begin());
 }
 
-void merge_nodes(const NumberedNodes& nodes, std::span<const std::size_t> blocks, BuildMemory& memory) {
+void BuildSteps::merge(const NumberedNodes& nodes, std::span<const std::size_t> blocks) const {
     std::uint64_t at = 0;
     for (NodeIndex node = nodes.begin; node < nodes.end; ++node) {
         memory.begins[node] = at;
@@ -143,8 +141,7 @@ std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const 
 
 }  // namespace
 
-void sort_block(const EntrySource& source, const Directory& directory, const NumberedBlock& block, BuildMemory& memory,
-                const SortTarget& target, const std::stop_token& stop) {
+void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) const {
     const auto above = NodeIndex(memory.nodes);
     const auto nodes = directory.nodes();
     const ObjectBlock& objects = block.objects;

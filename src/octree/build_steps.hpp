@@ -92,28 +92,15 @@ struct BuildMemory {
     }
 };
 
-/// Where octants begin and end, and how they are found.
-struct Octants {
-    const Frame& frame;
-    const Directory& directory;
-};
-
 struct NumberedBlock {
     std::size_t number;
     ObjectBlock objects;
 };
 
-/// Throws Error{cancelled}, as sort does.
-void encode_block(const EntrySource& source, const Octants& octants, const NumberedBlock& block, BuildMemory& memory,
-                  const std::stop_token& stop);
-
 struct NumberedNodes {
     std::size_t number;
     NodeIndex begin, end;
 };
-
-/// `blocks`: those whose entries go to one list, first to last.
-void merge_nodes(const NumberedNodes& nodes, std::span<const std::size_t> blocks, BuildMemory& memory);
 
 /// Where a block's entries go.
 struct SortTarget {
@@ -123,8 +110,20 @@ struct SortTarget {
     std::size_t spare;  ///< the index of an entry that is free: boxes too large for a leaf are written there
 };
 
-/// Sets memory.valid; stops at an object that is not a box.
-void sort_block(const EntrySource& source, const Directory& directory, const NumberedBlock& block, BuildMemory& memory,
-                const SortTarget& target, const std::stop_token& stop);
+/// The steps on some objects and octants. Borrows all.
+struct BuildSteps {
+    const EntrySource& source;
+    const Frame& frame;
+    const Directory& directory;
+    BuildMemory& memory;
+    const std::stop_token& stop;
+
+    /// Throws Error{cancelled}, as sort() does.
+    void encode(const NumberedBlock& block) const;
+    /// `blocks`: those whose entries go to one list, first to last.
+    void merge(const NumberedNodes& nodes, std::span<const std::size_t> blocks) const;
+    /// Sets memory.valid; stops at an object that is not a box.
+    void sort(const NumberedBlock& block, const SortTarget& target) const;
+};
 
 }  // namespace octopair

@@ -79,14 +79,13 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     const auto blocks = blocks_of(source.size(), executor.width());
     const auto ranges = ranges_of(nodes().size(), blocks.size(), executor.width());
     memory_.resize(source.size(), blocks.size(), nodes().size(), ranges.size());
-    executor.for_each(blocks.size(), [&](std::size_t i) {
-        encode_block(source, {frame(), directory()}, blocks[i], memory_, stop);
-    });
+    const BuildSteps steps{source, frame(), directory(), memory_, stop};
+    executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode(blocks[i]); });
     seconds_.encode = seconds_since(clock);
 
     std::vector<std::size_t> all(blocks.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
-    executor.for_each(ranges.size(), [&](std::size_t i) { merge_nodes(ranges[i], all, memory_); });
+    executor.for_each(ranges.size(), [&](std::size_t i) { steps.merge(ranges[i], all); });
     std::vector<std::uint64_t> range_begins;
     join_ranges(ranges, range_begins);
     seconds_.merge = seconds_since(clock);
@@ -94,7 +93,7 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) {
         const SortTarget target{entries_.span(), range_begins, ranges, std::size_t(entry_count()) + i};
-        sort_block(source, directory(), blocks[i], memory_, target, stop);
+        steps.sort(blocks[i], target);
     });
     for (const NumberedBlock& block : blocks) {
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};

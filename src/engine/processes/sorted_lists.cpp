@@ -19,19 +19,20 @@ SortedLists::SortedLists(const EntrySource& source, Arena& arena, std::size_t li
 
 void SortedLists::make(std::size_t list, const std::stop_token& stop) {
     const NumberedBlock& block = blocks_[list];
-    encode_block(source_, {octants_.frame, octants_.directory}, block, memory_, stop);
+    const BuildSteps steps{source_, octants_.frame, octants_.directory, memory_, stop};
+    steps.encode(block);
     const std::array whole = {NumberedNodes{list, 0, NodeIndex(memory_.nodes)}};
     const std::array alone = {list};
     // What is counted from the begin of a range is counted from that of the list.
     Buffer<std::uint64_t> begins(memory_.nodes);
     std::swap(begins, memory_.begins);
-    merge_nodes(whole[0], alone, memory_);
+    steps.merge(whole[0], alone);
     std::swap(begins, memory_.begins);
     const std::uint64_t entries = memory_.totals[list];
     entries_[list].commit(0, std::size_t(entries) + 1);
     std::vector<std::uint64_t> range_begins(list + 1, 0);
     const SortTarget target{entries_[list].span(), range_begins, whole, std::size_t(entries)};
-    sort_block(source_, octants_.directory, block, memory_, target, stop);
+    steps.sort(block, target);
     heads_[list] = {arena_.offset(entries_[list].data()),
                     entries,
                     arena_.offset(memory_.home_part(memory_.places, list).data()),
