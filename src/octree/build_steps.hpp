@@ -60,9 +60,10 @@ struct ObjectBlock {
 
 /// What steps leave for each other.
 struct BuildMemory {
-    explicit BuildMemory(PageSource& pages)
-        : homes(pages),
-          ghosts(pages),
+    /// `scratch`: for what nobody reads after the sort.
+    BuildMemory(PageSource& pages, PageSource& scratch)
+        : homes(scratch),
+          ghosts(scratch),
           ghost_counts(pages),
           counts(pages),
           places(pages),

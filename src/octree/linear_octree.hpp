@@ -49,9 +49,10 @@ struct SortedList {
 class LinearOctree {
 public:
     LinearOctree() = default;
-    /// Its entries, and what the steps leave for each other, are in pages of `pages`, which must outlive it. Where each
-    /// of several processes builds it with an executor that shares work out among them, these are the pages of all.
-    explicit LinearOctree(PageSource& pages) : entries_(pages), memory_(pages) {}
+    /// Its entries, and what the steps leave for each other, are in pages of `pages`; what nobody reads after the sort in
+    /// those of `scratch`. Both must outlive it. Where each of several processes builds it with an executor that shares
+    /// work out among them, these are the pages of all.
+    LinearOctree(PageSource& pages, PageSource& scratch) : entries_(pages), memory_(pages, scratch) {}
 
     /// Replaces what it held, in the same memory. Throws Error{cancelled}; where an object is not a box, throws Invalid
     /// with the first position to look at.
@@ -87,7 +88,7 @@ private:
     PlantedOctants octants_;
     std::vector<std::uint64_t> begins_ = {0, 0};  // of each node's entries, and the end
     Buffer<Entry> entries_;
-    BuildMemory memory_{own_pages()};
+    BuildMemory memory_{own_pages(), own_pages()};
     BuildSeconds seconds_;
 };
 

@@ -7,7 +7,7 @@
 namespace octopair {
 
 SortedLists::SortedLists(const EntrySource& source, Arena& arena, std::size_t lists, const std::stop_token& stop)
-    : source_(source), arena_(arena), octants_(plant_octants(source, stop)), memory_(arena), heads_(arena) {
+    : source_(source), arena_(arena), octants_(plant_octants(source, stop)), memory_(arena, arena), heads_(arena) {
     memory_.resize(source.size(), lists, octants_.directory.nodes().size(), lists);
     heads_.resize_discard(lists);
     for (std::size_t i = 0; i < lists; ++i) {

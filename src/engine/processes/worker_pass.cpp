@@ -92,14 +92,17 @@ struct WorkerProgram::Job {
           first(pass.first, regions),
           second(pass.second, regions),
           memory(regions.get(pass.arena_region)),
+          scratch_memory(regions.get(pass.pairs_region != 0 ? pass.pairs_region : pass.arena_region)),
           arena(*memory),
+          scratch(*scratch_memory),
           source(first.objects, pass.join != 0 ? &second.objects : nullptr, pass.margin),
-          octree(arena) {}
+          octree(arena, scratch) {}
 
     std::uint32_t number;
     Set first, second;
-    std::shared_ptr<SharedMemory> memory;
+    std::shared_ptr<SharedMemory> memory, scratch_memory;
     Arena arena;
+    Arena scratch;  ///< where pairs will be: what nobody reads after the sort makes room for them
     BoxSource source;
     LinearOctree octree;
     bool built = false;
