@@ -1,7 +1,8 @@
 // Executor: how the steps of the algorithm are shared out. The steps themselves know no threads.
 //
 // Shares are numbered; an executor may run them in any order and side by side, and hands each a place to put its pairs
-// such that pairs end up in the order of the shares.
+// such that pairs end up in the order of the shares. It may run one again that ended half-way, and may be one of several
+// in processes that all go through the same steps: then a share runs in one of them.
 #pragma once
 
 #include <cstddef>

@@ -136,6 +136,55 @@ std::vector<std::string> kinds() {
     return names;
 }
 
+/// The entries of some objects, sorted, and what was found of them.
+struct OwnedList {
+    std::vector<Entry> entries;
+    std::vector<std::uint64_t> home_begins, ghost_begins;
+};
+
+/// Of objects [begin, end), as a worker of the paper's arrangement makes it.
+OwnedList sorted_list(const EntrySource& source, const PlantedOctants& octants, ObjectBlock objects) {
+    BuildMemory memory(own_pages(), own_pages());
+    memory.resize(source.size(), 1, octants.directory.nodes().size(), 1);
+    const std::stop_token stop;
+    const BuildSteps steps{source, octants.frame, octants.directory, memory, stop};
+    const std::array<std::size_t, 1> alone = {0};
+    const std::array<NumberedNodes, 1> nodes = {NumberedNodes{0, 0, NodeIndex(memory.nodes)}};
+    steps.encode({0, objects});
+    steps.merge(nodes[0], alone);
+    OwnedList list;
+    list.entries.resize(std::size_t(memory.totals[0]) + 1);
+    const std::array<std::uint64_t, 1> begin = {0};
+    // Twice: a step that is done again does the same.
+    for (int i = 0; i < 2; ++i) steps.sort({0, objects}, {list.entries, begin, nodes, list.entries.size() - 1});
+    list.entries.pop_back();
+    const auto homes = memory.home_part(memory.places, 0), ghosts = memory.ghost_part(memory.places, 0);
+    list.home_begins.assign(homes.begin(), homes.end());
+    list.ghost_begins.assign(ghosts.begin(), ghosts.end());
+    return list;
+}
+
+TEST_P(Scene, MergedListsAreTheSameOctree) {
+    for (const std::size_t count : {1, 2, 5}) {
+        const PlantedOctants octants = plant_octants(source_, {});
+        std::vector<OwnedList> owned;
+        std::vector<SortedList> lists;
+        for (std::size_t i = 0; i < count; ++i) {
+            const ObjectBlock objects{boxes_.size() * i / count, boxes_.size() * (i + 1) / count};
+            owned.push_back(sorted_list(source_, octants, objects));
+        }
+        for (const OwnedList& list : owned) lists.push_back({list.entries, list.home_begins, list.ghost_begins});
+        LinearOctree merged;
+        merged.assemble(octants, lists, {});
+        ASSERT_EQ(merged.entry_count(), octree_.entry_count());
+        for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
+            const auto expected = octree_.entries(node), found = merged.entries(node);
+            ASSERT_EQ(found.size(), expected.size());
+            ASSERT_EQ(std::memcmp(found.data(), expected.data(), expected.size_bytes()), 0);
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Scene, testing::ValuesIn(kinds()), [](const auto& instance) {
     std::string name = instance.param;
     std::replace(name.begin(), name.end(), '-', '_');

@@ -4,11 +4,11 @@
 #include <memory>
 #include <thread>
 
+#include "engine/job_queue.hpp"
 #include "engine/processes/crew.hpp"
 #include "engine/processes/paper_passes.hpp"
 #include "engine/processes/process_passes.hpp"
 #include "engine/processes/worker_program.hpp"
-#include "engine/job_queue.hpp"
 #include "engine/search.hpp"
 #include "engine/turns.hpp"
 #include "octopair/error.hpp"
