@@ -83,7 +83,7 @@ std::string in_words(const siginfo_t& info) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) {
+WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_(::getpid()) {
     SocketPair sockets = make_socket_pair();
     const SpawnSettings settings(sockets.theirs.number());
     std::string name = "octopair-worker", number = std::to_string(slot);
@@ -113,11 +113,13 @@ ProcessState WorkerProcess::look() const {
 
 std::string WorkerProcess::end() {
     if (!handle_.open()) return "before";
-    (void)::syscall(SYS_pidfd_send_signal, handle_.number(), SIGKILL, nullptr, 0);
-    (void)ended(handle_, -1);
     siginfo_t info{};
-    // The application may have told the system to forget its children, or waited for all of them itself.
-    while (::waitid(wait_by_handle, id_t(handle_.number()), &info, WEXITED) != 0 && errno == EINTR) {
+    if (::getpid() == owner_) {
+        (void)::syscall(SYS_pidfd_send_signal, handle_.number(), SIGKILL, nullptr, 0);
+        (void)ended(handle_, -1);
+        // The application may have told the system to forget its children, or waited for all of them itself.
+        while (::waitid(wait_by_handle, id_t(handle_.number()), &info, WEXITED) != 0 && errno == EINTR) {
+        }
     }
     handle_ = Descriptor();
     socket_ = Descriptor();
