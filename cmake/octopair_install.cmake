@@ -1,4 +1,4 @@
-# The installed tree: headers, the library with its CMake package, the program with its manual and completion.
+# The installed tree: headers, the libraries with their CMake package, the programs, the manual and the completion.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
     return()
@@ -9,6 +9,13 @@ install(DIRECTORY include/octopair DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES
 install(FILES ${PROJECT_BINARY_DIR}/include/octopair/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/octopair)
 install(TARGETS octopair EXPORT octopair_targets)
 install(EXPORT octopair_targets NAMESPACE octopair:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+if(OCTOPAIR_WITH_PROCESSES)
+    install(TARGETS octopair_worker EXPORT octopair_processes_targets
+            RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/octopair)
+    install(TARGETS octopair_processes octopair_processes_with_worker EXPORT octopair_processes_targets)
+    install(EXPORT octopair_processes_targets NAMESPACE octopair::
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+endif()
 configure_package_config_file(cmake/octopair-config.cmake.in ${PROJECT_BINARY_DIR}/octopair-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/octopair-config-version.cmake COMPATIBILITY SameMinorVersion)

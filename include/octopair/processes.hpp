@@ -17,6 +17,12 @@
 
 #include "octopair/engine.hpp"
 
+/// Where the package that a program is built with has octopair-worker: what links octopair::processes of an installed
+/// octopair is compiled with it.
+#ifndef OCTOPAIR_WORKER_PROGRAM
+#define OCTOPAIR_WORKER_PROGRAM ""
+#endif
+
 namespace octopair {
 
 /// What is shared out.
@@ -29,14 +35,17 @@ struct ProcessOptions {
     unsigned workers = 0;  ///< 0: one per core; at most 256
     Arrangement arrangement = Arrangement::shared;
     /// The program of the workers, octopair-worker of the same version. Empty: what the environment variable
-    /// OCTOPAIR_WORKER names, or else as installed, or as built.
+    /// OCTOPAIR_WORKER names; or else octopair-worker beside the application's program, in ../libexec/octopair from
+    /// there, in the package, as configured, or as built.
     std::string worker_program = {};
 };
 
 /// Starts the workers. Throws Error{engine_failed} if they cannot be started, Error{resource_limit} if the system has no
-/// processes, descriptors or memory to give.
-std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options);
-std::unique_ptr<Engine> make_process_engine(unsigned workers = 0);
+/// processes, descriptors or memory to give. Leave `packaged_worker` to the package.
+std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options,
+                                            const char* packaged_worker = OCTOPAIR_WORKER_PROGRAM);
+std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,
+                                            const char* packaged_worker = OCTOPAIR_WORKER_PROGRAM);
 
 /// What has happened to the workers of an engine since it was made.
 struct WorkerFaults {

@@ -1,28 +1,72 @@
 #!/usr/bin/env bash
-# Builds and runs a consumer of octopair outside the tree.
+# Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM
+#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES
 #
-# installed: `cmake --install BUILD` to a fresh prefix, found there by find_package; the program too, if PROGRAM is ON.
+# installed: `cmake --install BUILD` to a fresh prefix, which is then moved, and found there by find_package; the program
+# too, if PROGRAM is ON. With PROCESSES also what uses octopair::processes: it must run the workers' program of that tree,
+# told by no environment.
 set -euo pipefail
-how=$1 root=$2 build=$3 compiler=$4 with_program=$5
+how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+unset OCTOPAIR_WORKER
+prefix="$work/moved prefix"
+
+# From now on the workers' program of the installed tree leaves a mark when it is started.
+watch_worker() {
+    local program=$prefix/libexec/octopair/octopair-worker
+    mv "$program" "$program.real"
+    printf '#!/bin/sh\ntouch "%s/started"\nexec "%s.real" "$@"\n' "$work" "$program" > "$program"
+    chmod +x "$program"
+}
+
+# Runs a command, which must start the workers' program of the installed tree.
+starts_worker() {
+    rm -f "$work/started"
+    "$@"
+    test -f "$work/started" || { echo "$1 runs no worker of the installed tree" && exit 1; }
+}
+
+try_program() {
+    "$prefix/bin/octopair" info
+    test -f "$prefix/share/man/man1/octopair.1"
+    test -f "$prefix/share/bash-completion/completions/octopair"
+    [ "$with_processes" = ON ] || return 0
+    printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,1\n' > "$work/boxes.csv"
+    starts_worker "$prefix/bin/octopair" detect "$work/boxes.csv" --engine processes --quiet --output "$work/pairs.csv"
+    [ "$(cat "$work/pairs.csv")" = $'a,b\n0,2' ]
+}
+
+# A consumer's build: NAME TARGET OPTION...
+build_consumer() {
+    local name=$1 target=$2
+    shift 2
+    cmake -S "$work/consumer" -B "$work/$name" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler" "$@"
+    cmake --build "$work/$name" --target "$target"
+}
 
 cp -r "$root/tests/install/consumer" "$work/consumer"
-options=(-G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler")
 if [ "$how" = installed ]; then
     cmake --install "$build" --prefix "$work/prefix" > "$work/install.log"
-    options+=(-DCMAKE_PREFIX_PATH="$work/prefix")
-    if [ "$with_program" = ON ]; then
-        "$work/prefix/bin/octopair" info
-        test -f "$work/prefix/share/man/man1/octopair.1"
-        test -f "$work/prefix/share/bash-completion/completions/octopair"
-    fi
+    mv "$work/prefix" "$prefix"
+    [ "$with_processes" != ON ] || watch_worker
+    [ "$with_program" != ON ] || try_program
+    options=(-DCMAKE_PREFIX_PATH="$prefix")
 else
-    options+=(-DOCTOPAIR_SOURCE="$root")
+    options=(-DOCTOPAIR_SOURCE="$root")
 fi
-cmake -S "$work/consumer" -B "$work/build" "${options[@]}"
-cmake --build "$work/build" --target consumer
-"$work/build/consumer"
-echo "a consumer of octopair ($how) finds its pair"
+
+if [ "$with_processes" = ON ] && [ "$how" = subdirectory ]; then
+    build_consumer both all "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
+    "$work/both/consumer"
+    "$work/both/process_consumer"
+else
+    build_consumer plain consumer "${options[@]}"
+    "$work/plain/consumer"
+    if [ "$with_processes" = ON ]; then
+        build_consumer processes process_consumer "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
+        starts_worker "$work/processes/process_consumer"
+    fi
+fi
+echo "a consumer of octopair ($how) finds its pairs"

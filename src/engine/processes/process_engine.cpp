@@ -32,8 +32,8 @@ std::unique_ptr<Passes> make_passes(Arrangement arrangement, Crew& crew, const S
 
 class ProcessEngine final : public Engine {
 public:
-    explicit ProcessEngine(const ProcessOptions& options)
-        : crew_(find_worker_program(options.worker_program), worker_count(options.workers)),
+    ProcessEngine(const ProcessOptions& options, const std::string& packaged_worker)
+        : crew_(find_worker_program(options.worker_program, packaged_worker), worker_count(options.workers)),
           passes_(make_passes(options.arrangement, crew_, *arrays_)),
           search_(*passes_) {}
 
@@ -57,12 +57,12 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options) {
-    return std::make_unique<ProcessEngine>(options);
+std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options, const char* packaged_worker) {
+    return std::make_unique<ProcessEngine>(options, packaged_worker);
 }
 
-std::unique_ptr<Engine> make_process_engine(unsigned workers) {
-    return make_process_engine(ProcessOptions{.workers = workers});
+std::unique_ptr<Engine> make_process_engine(unsigned workers, const char* packaged_worker) {
+    return make_process_engine(ProcessOptions{.workers = workers}, packaged_worker);
 }
 
 WorkerFaults worker_faults(const Engine& engine) {

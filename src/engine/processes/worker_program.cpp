@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> places() {
+std::vector<std::string> places(const std::string& packaged) {
     std::vector<std::string> found;
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -24,6 +24,7 @@ std::vector<std::string> places() {
         found.push_back(folder / "octopair-worker");
         found.push_back(folder.parent_path() / OCTOPAIR_WORKER_FOLDER / "octopair-worker");
     }
+    if (!packaged.empty()) found.push_back(packaged);
     found.emplace_back(OCTOPAIR_WORKER_INSTALLED);
     found.emplace_back(OCTOPAIR_WORKER_BUILT);
     return found;
@@ -31,12 +32,12 @@ std::vector<std::string> places() {
 
 }  // namespace
 
-std::string find_worker_program(const std::string& asked) {
+std::string find_worker_program(const std::string& asked, const std::string& packaged) {
     if (!asked.empty()) return asked;
     const char* const named = std::getenv("OCTOPAIR_WORKER");
     if (named != nullptr && *named != 0) return named;
     std::string looked;
-    for (const std::string& place : places()) {
+    for (const std::string& place : places(packaged)) {
         if (::access(place.c_str(), X_OK) == 0) return place;
         looked += (looked.empty() ? "" : ", ") + place;
     }
