@@ -70,7 +70,7 @@ int run_paper(BenchRequest request) {
 }
 
 void add_numbers(CLI::App& command, BenchRequest& request) {
-    constexpr unsigned most_threads = 1024, most_rounds = 1000;
+    constexpr unsigned most_rounds = 1000;
     command
         .add_option_function<std::vector<std::string>>(
             "--objects",

@@ -6,44 +6,19 @@
 #include <optional>
 
 #include "cli/detection.hpp"
+#include "cli/engine_choice.hpp"
 #include "cli/event_detection.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
 #include "cli/subcommands.hpp"
+#include "cli/words.hpp"
 #include "io/atomic_file.hpp"
 #include "io/pair_writer.hpp"
-#include "octopair/error.hpp"
 
 namespace octopair::cli {
 
 namespace {
-
-constexpr unsigned most_threads = 1024;
-
-/// An option of a few words, those of `later` known but not there yet.
-struct Words {
-    std::string_view option;
-    std::vector<std::string_view> present;
-    std::vector<std::string_view> later;
-};
-
-/// Throws Error{usage} unless `word` is one that is present.
-void check_word(const Words& words, const std::string& word) {
-    if (std::find(words.present.begin(), words.present.end(), word) != words.present.end()) return;
-    const bool known = std::find(words.later.begin(), words.later.end(), word) != words.later.end();
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: '{}' {}; this version has: {}", words.option, word,
-                            known ? "does not exist yet" : "is not known", fmt::join(words.present, ", ")));
-}
-
-void check_engine(const std::string& engine) {
-    const bool address = engine.find(':') != std::string::npos;
-    if (address) {
-        throw Error(ErrorCode::usage, "--engine: servers cannot be reached yet; this version has: local");
-    }
-    check_word({"--engine", {"local"}, {"processes", "mpi"}}, engine);
-}
 
 int run_detect(const DetectRequest& request) {
     const Interrupt interrupt;
@@ -121,29 +96,6 @@ void add_result(CLI::App& command, DetectRequest& request) {
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
-void add_where(CLI::App& command, DetectRequest& request) {
-    command
-        .add_option_function<std::string>("--engine", check_engine, "where to look for pairs: local (the only one yet)")
-        ->type_name("ENGINE");
-    command
-        .add_option_function<std::string>(
-            "--threads",
-            [&request](const std::string& text) {
-                request.threads = unsigned(parse_count("--threads", text, most_threads));
-            },
-            "threads (default 0: one a core)")
-        ->type_name("N");
-    command
-        .add_option_function<std::string>(
-            "--workers",
-            [](const std::string& text) {
-                (void)parse_count("--workers", text);
-                throw Error(ErrorCode::usage, "--workers: the local engine has threads and no workers");
-            },
-            "worker processes of other engines (none yet)")
-        ->type_name("N");
-}
-
 }  // namespace
 
 void add_detect(CLI::App& app, Action& action) {
@@ -151,8 +103,9 @@ void add_detect(CLI::App& app, Action& action) {
     const auto request = std::make_shared<DetectRequest>();
     add_what(*command, *request);
     add_result(*command, *request);
-    add_where(*command, *request);
+    add_engine_options(*command, request->engine);
     command->callback([request, &action] {
+        check_engine_choice(request->engine);
         if (!request->output.empty()) (void)io::pair_format(request->output);
         if (request->events) check_event_options(*request);
         action = [request] { return run_detect(*request); };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <thread>
 
 #include "cli/input_set.hpp"
 #include "cli/join.hpp"
@@ -28,7 +27,7 @@ public:
 
     DetectReport run() {
         read();
-        const auto engine = make_local_engine(request_.threads);
+        const auto engine = make_engine(request_.engine);
         if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
         try {
             request_.count_only ? count(*engine) : stream(*engine);
@@ -53,8 +52,7 @@ private:
         first_.padding = padding_->inputs();
         second_.padding = padding_->against();
         report_.objects = a.objects + b.objects;
-        const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-        report_.threads = request_.threads > 0 ? request_.threads : cores;
+        report_.crew = crew_of(request_.engine);
         report_.seconds.read = seconds_since(start_);
     }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/engine_choice.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
 
@@ -24,7 +25,7 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
-    unsigned threads = 0;
+    EngineChoice engine;
     std::string stats;  ///< a file, or empty
     bool quiet = false;
 };
@@ -49,7 +50,7 @@ struct DetectReport {
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;
-    unsigned threads = 1;
+    EngineCrew crew;
 };
 
 /// Does it all but the stats. Throws Error.

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "cli/frame_set.hpp"
@@ -136,14 +135,14 @@ private:
         report_.frames = frames.frames;
         report_.moving = frames.moving;
         report_.objects = sizes.inputs + sizes.against;
-        report_.threads = request_.threads > 0 ? request_.threads : std::max(1u, std::thread::hardware_concurrency());
+        report_.crew = crew_of(request_.engine);
     }
 
     template <typename Real>
     void find() {
         constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
         SceneOfFiles<Real> scene(*inputs_, against_ ? &*against_ : nullptr,
-                                 {request_.threads, precision, request_.margin});
+                                 {request_.engine.threads.value_or(0), precision, request_.margin});
         check_frames(scene);
         open_writer();
         for (std::uint64_t frame = 0; frame < report_.frames && !report_.truncated; ++frame) {
@@ -229,6 +228,9 @@ private:
 
 void check_event_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--events: " + why); };
+    if (request.engine.kind != EngineKind::local) {
+        refuse("not with --engine processes: they come from a scene, which the local engine alone keeps");
+    }
     if (request.count_only) refuse("not with --count-only");
     if (request.order == Order::octal) refuse("not with --order octal: the pairs of a frame are ascending");
     if (!request.output.empty()) (void)io::event_format(request.output);

@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "cli/engine_choice.hpp"
 #include "cli/subcommands.hpp"
 #include "io/output_stream.hpp"
 #include "octopair/version.hpp"
@@ -34,7 +35,7 @@ int run_info() {
     io::StandardOutput out({});
     out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
     out.write(fmt::format("build            {}, {}\n", compiler, checks));
-    out.write("engines          local\n");
+    out.write(fmt::format("engines          {}\n", fmt::join(engine_names(), ", ")));
     out.write("stages           pairs\n");
     out.write(fmt::format("inputs           {}\n", inputs));
     out.write(fmt::format("instruction set  {}\n", sweep_instruction_set()));

@@ -8,6 +8,8 @@
 
 namespace octopair::cli {
 
+inline constexpr unsigned most_threads = 1024;  ///< that an option may ask for
+
 /// A whole number from 0 to `most`. Throws Error{usage} that names `option`.
 std::uint64_t parse_count(std::string_view option, const std::string& text,
                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());

@@ -5,6 +5,11 @@ _octopair_kinds() {
     "$1" generate --help 2>/dev/null | sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p'
 }
 
+# The engines that it was built with.
+_octopair_engines() {
+    "$1" info 2>/dev/null | sed -n 's/^engines *//p' | tr -d ,
+}
+
 _octopair() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local subcommand=${COMP_WORDS[1]}
@@ -23,8 +28,8 @@ _octopair() {
             fi
             return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
-        --engine) mapfile -t COMPREPLY < <(compgen -W "local" -- "$current"); return ;;
-        --margin | --limit | --threads | --seed | --frames | --rounds) return ;;
+        --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
+        --margin | --limit | --threads | --workers | --seed | --frames | --rounds) return ;;
         --against | --json | --padding | --output | --stats) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
@@ -37,7 +42,7 @@ _octopair() {
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
-                    --count-only --events --limit --fail-on-collision --engine --threads --stats --quiet --help" -- "$current")
+                    --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;

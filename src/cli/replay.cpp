@@ -16,8 +16,6 @@ namespace octopair::cli {
 
 namespace {
 
-constexpr unsigned most_threads = 1024;
-
 struct ReplayRequest {
     std::string file;
     unsigned threads = 0;  // 0: one a core

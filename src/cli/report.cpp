@@ -12,7 +12,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// The larger of this process and a child that read a mesh file.
+/// The largest of this process, the child that read a mesh file, and the workers.
 std::uint64_t peak_rss_bytes() {
     std::uint64_t peak = 0;
     for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -30,6 +30,10 @@ std::string duration(double seconds) {
 std::string speed(double objects_per_second) {
     return objects_per_second < 1e6 ? grouped(std::uint64_t(objects_per_second)) + " objects/s"
                                     : fmt::format("{:.1f} million objects/s", objects_per_second / 1e6);
+}
+
+std::string plural(unsigned count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 /// Those that are known.
@@ -68,20 +72,16 @@ std::string summary_text(const DetectReport& report) {
     }
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
-    return text + fmt::format(" on {} thread{}\n", report.threads, report.threads == 1 ? "" : "s");
+    const EngineCrew& crew = report.crew;
+    return text + " on " + (crew.workers > 0 ? plural(crew.workers, "worker") : plural(crew.threads, "thread")) + '\n';
 }
 
 std::string stats_json(const DetectReport& report) {
-    nlohmann::ordered_json stats = {{"objects", report.objects},
-                                    {"frames", report.frames},
-                                    {"pairs", report.pairs},
-                                    {"truncated", report.truncated},
-                                    {"engine", "local"},
-                                    {"threads", report.threads},
-                                    {"workers", 0},
-                                    {"entries", report.entries},
-                                    {"peak_rss_bytes", peak_rss_bytes()},
-                                    {"seconds", seconds_json(report)}};
+    nlohmann::ordered_json stats = {
+        {"objects", report.objects},      {"frames", report.frames},      {"pairs", report.pairs},
+        {"truncated", report.truncated},  {"engine", report.crew.engine}, {"threads", report.crew.threads},
+        {"workers", report.crew.workers}, {"entries", report.entries},    {"peak_rss_bytes", peak_rss_bytes()},
+        {"seconds", seconds_json(report)}};
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }

@@ -1,0 +1,104 @@
+#include "cli/engine_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "cli/numbers.hpp"
+#include "cli/words.hpp"
+#include "octopair/error.hpp"
+#include "octopair/processes.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr unsigned most_workers = 256;  // octopair/processes.hpp
+
+#ifdef OCTOPAIR_WITH_PROCESSES
+constexpr bool with_processes = true;
+constexpr const char* engine_help = "where to look for pairs: local (default, threads) or processes (workers)";
+#else
+constexpr bool with_processes = false;
+constexpr const char* engine_help = "where to look for pairs: local (the only one that was built)";
+#endif
+
+EngineKind parse_engine(const std::string& word) {
+    if (word.find(':') != std::string::npos) {
+        throw Error(ErrorCode::usage, fmt::format("--engine: servers cannot be reached yet; this version has: {}",
+                                                  fmt::join(engine_names(), ", ")));
+    }
+    if (word == "processes" && !with_processes) {
+        throw Error(ErrorCode::usage, "--engine: this octopair was built without 'processes'; it has: local");
+    }
+    check_word({"--engine", engine_names(), {"mpi"}}, word);
+    return word == "processes" ? EngineKind::processes : EngineKind::local;
+}
+
+unsigned one_a_core_unless(const std::optional<unsigned>& asked, unsigned most) {
+    if (asked.value_or(0) > 0) return *asked;
+    return std::clamp(std::thread::hardware_concurrency(), 1u, most);
+}
+
+/// A whole number from 0 to `most`.
+struct CountOption {
+    const char* name;
+    const char* description;
+    unsigned most;
+};
+
+void add_count(CLI::App& command, const CountOption& option, std::optional<unsigned>& value) {
+    command
+        .add_option_function<std::string>(
+            option.name,
+            [option, &value](const std::string& text) {
+                value = unsigned(parse_count(option.name, text, option.most));
+            },
+            option.description)
+        ->type_name("N");
+}
+
+}  // namespace
+
+std::vector<std::string_view> engine_names() {
+    std::vector<std::string_view> names = {"local"};
+    if (with_processes) names.emplace_back("processes");
+    return names;
+}
+
+void add_engine_options(CLI::App& command, EngineChoice& choice) {
+    command
+        .add_option_function<std::string>(
+            "--engine", [&choice](const std::string& word) { choice.kind = parse_engine(word); }, engine_help)
+        ->type_name("ENGINE");
+    add_count(command, {"--threads", "threads of the local engine (default 0: one a core)", most_threads},
+              choice.threads);
+    add_count(command, {"--workers", "worker processes, with --engine processes (default 0: one a core)", most_workers},
+              choice.workers);
+}
+
+void check_engine_choice(const EngineChoice& choice) {
+    if (choice.kind == EngineKind::local && choice.workers) {
+        throw Error(ErrorCode::usage, "--workers: the local engine has threads; workers need --engine processes");
+    }
+    if (choice.kind == EngineKind::processes && choice.threads) {
+        throw Error(ErrorCode::usage, "--threads: --engine processes has a thread a worker; --workers says how many");
+    }
+}
+
+std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
+#ifdef OCTOPAIR_WITH_PROCESSES
+    if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
+#endif
+    return make_local_engine(choice.threads.value_or(0));
+}
+
+EngineCrew crew_of(const EngineChoice& choice) {
+    if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
+    return {"local", one_a_core_unless(choice.threads, ~0u), 0};
+}
+
+}  // namespace octopair::cli

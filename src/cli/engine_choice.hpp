@@ -1,0 +1,47 @@
+// Which engine finds the pairs, and on how many threads or workers: the one place that knows the engines.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "octopair/engine.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace octopair::cli {
+
+enum class EngineKind : std::uint8_t { local, processes };
+
+/// As it was asked for; 0 threads or workers are one a core.
+struct EngineChoice {
+    EngineKind kind = EngineKind::local;
+    std::optional<unsigned> threads, workers;
+};
+
+/// Who looked for the pairs: threads of this process, or workers.
+struct EngineCrew {
+    std::string_view engine = "local";
+    unsigned threads = 0;
+    unsigned workers = 0;
+};
+
+/// Those that this program was built with, as --engine names them.
+std::vector<std::string_view> engine_names();
+
+/// --engine, --threads, --workers.
+void add_engine_options(CLI::App& command, EngineChoice& choice);
+
+/// Throws Error{usage} for threads or workers of an engine that has none.
+void check_engine_choice(const EngineChoice& choice);
+
+/// Throws what the makers of engines throw.
+std::unique_ptr<Engine> make_engine(const EngineChoice& choice);
+
+EngineCrew crew_of(const EngineChoice& choice);
+
+}  // namespace octopair::cli
