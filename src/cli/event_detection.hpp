@@ -1,8 +1,8 @@
-// `octopair detect --events`: the pairs that begin and end from frame to frame, found by a Scene.
+// `octopair detect --events`: the pairs that begin and end from frame to frame.
 //
 // Result    what the frames' full results differ in, frame by frame: first what ended, then what began, each ascending.
 //           Before the first frame there are no pairs.
-// Memory    two frames beside the scene; a scene is given only the boxes that differ from the frame before.
+// Memory    two frames and a scene, or a frame and the pairs of two (event_source.hpp).
 #pragma once
 
 #include "cli/detection.hpp"

@@ -39,7 +39,7 @@ public:
 
 private:
     pid_t id_ = -1;
-    pid_t owner_;  // a process that this one forks may not end its workers
+    pid_t owner_;        // a process that this one forks may not end its workers
     Descriptor handle_;  // pidfd
     Descriptor socket_;
     std::set<std::uint32_t> regions_;

@@ -1,0 +1,117 @@
+// Events by a scene, which is given only the boxes that differ from the frame before.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cli/event_source.hpp"
+#include "octopair/scene.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// A set of objects in a scene, and their boxes in this frame and the one before.
+template <typename Real>
+class MovingObjects {
+public:
+    explicit MovingObjects(const FrameSet& set)
+        : set_(set), now_(std::size_t(set.objects())), ids_(std::size_t(set.objects())) {}
+
+    void read(std::uint64_t frame, const std::stop_token& stop) {
+        if (frame > 0 && !set_.frames().moving) return;
+        std::swap(now_, before_);
+        now_.resize_discard(ids_.size());
+        set_.read(frame, now_.span(), stop);
+    }
+
+    void add(Scene& scene, std::span<const double> padding, std::span<const Traits> traits) {
+        scene.add({std::span<const Box<Real>>(now_.span()), padding}, ids_, traits);
+    }
+
+    /// Those whose boxes differ from the frame before, a run at a time.
+    void move(Scene& scene) const {
+        if (!set_.frames().moving) return;
+        for (std::size_t begin = 0; begin < ids_.size(); ++begin) {
+            std::size_t end = begin;
+            while (end < ids_.size() && differs(end)) ++end;
+            if (end == begin) continue;
+            scene.move(std::span(ids_).subspan(begin, end - begin), now_.span().subspan(begin, end - begin));
+            begin = end;  // which does not differ
+        }
+    }
+
+private:
+    bool differs(std::size_t i) const {
+        const Box<Real>&now = now_[i], &before = before_[i];
+        return !std::equal(now.min, now.min + 3, before.min) || !std::equal(now.max, now.max + 3, before.max);
+    }
+
+    const FrameSet& set_;
+    Buffer<Box<Real>> now_, before_;
+    std::vector<ObjectId> ids_;
+};
+
+/// A new scene numbers objects in the order in which they are added: the inputs', then those of the other set.
+template <typename Real>
+class SceneEvents final : public EventSource {
+public:
+    SceneEvents(const FrameSets& sets, const SceneOptions& options)
+        : paddings_(sets.paddings), inputs_(sets.inputs), first_(sets.inputs.objects()), scene_(options) {
+        if (sets.against != nullptr) against_.emplace(*sets.against);
+    }
+
+    void read(std::uint64_t frame, const std::stop_token& stop) override {
+        inputs_.read(frame, stop);
+        if (against_) against_->read(frame, stop);
+    }
+
+    FrameEvents find(const std::stop_token& stop) override {
+        std::exchange(added_, true) ? move() : add();
+        const StepResult& step = scene_.step(stop);
+        return {in_own_set(step.ended, ended_), in_own_set(step.began, began_), step.pairs()};
+    }
+
+private:
+    void add() {
+        if (!against_) return inputs_.add(scene_, paddings_.inputs(), {});
+        // Objects of one set pair with those of the other alone.
+        inputs_.add(scene_, paddings_.inputs(), std::array{Traits{.groups = 1, .mask = 2}});
+        against_->add(scene_, paddings_.against(), std::array{Traits{.groups = 2, .mask = 1}});
+    }
+
+    void move() {
+        inputs_.move(scene_);
+        if (against_) against_->move(scene_);
+    }
+
+    std::span<const Pair> in_own_set(std::span<const Pair> pairs, std::vector<Pair>& renumbered) const {
+        if (!against_) return pairs;
+        renumbered.clear();
+        for (const auto [a, b] : pairs) renumbered.push_back({a, b - std::uint32_t(first_)});
+        return renumbered;
+    }
+
+    const Paddings& paddings_;
+    MovingObjects<Real> inputs_;
+    std::optional<MovingObjects<Real>> against_;
+    std::uint64_t first_;  // number of the other set's first object in the scene
+    Scene scene_;
+    bool added_ = false;
+    std::vector<Pair> ended_, began_;
+};
+
+}  // namespace
+
+template <typename Real>
+std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request) {
+    constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
+    const SceneOptions options{request.engine.threads.value_or(0), precision, request.margin};
+    return std::make_unique<SceneEvents<Real>>(sets, options);
+}
+
+template std::unique_ptr<EventSource> make_scene_events<float>(const FrameSets&, const DetectRequest&);
+template std::unique_ptr<EventSource> make_scene_events<double>(const FrameSets&, const DetectRequest&);
+
+}  // namespace octopair::cli
