@@ -15,7 +15,7 @@ TEST_F(Usage, HelpAndVersionAreAnswers) {
         EXPECT_EQ(outcome.err, "") << what;
     }
     EXPECT_NE(run("generate --help").out.find("brownian"), std::string::npos);
-    EXPECT_NE(run("info").out.find("engines          local\n"), std::string::npos);
+    EXPECT_NE(run("info").out.find("engines          local"), std::string::npos);
 }
 
 TEST_F(Usage, WrongOptionsAreRefused) {
@@ -41,7 +41,6 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "detect a.npy --objects edge",
         "detect a.npy --stage objects",
         "detect a.npy --stage features",
-        "detect a.npy --engine processes",
         "detect a.npy --engine mpi",
         "detect a.npy --engine unix:/run/octopair",
         "detect a.npy --engine localhost:7000",
@@ -93,8 +92,8 @@ TEST_F(Usage, WhatIsNotThereYetIsSaid) {
     save_boxes("a.npy", {0});
     EXPECT_EQ(run("detect a.npy --stage objects").err,
               "octopair: --stage: 'objects' does not exist yet; this version has: pairs\n");
-    EXPECT_EQ(run("detect a.npy --engine processes").err,
-              "octopair: --engine: 'processes' does not exist yet; this version has: local\n");
+    EXPECT_TRUE(run("detect a.npy --engine mpi")
+                    .err.starts_with("octopair: --engine: 'mpi' does not exist yet; this version has: local"));
     EXPECT_EQ(run("detect a.npy --stage pairs --engine local --quiet").status, 0);
 }
 
