@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes what was measured into a page: the text between <!-- begin NAME --> and <!-- end NAME -->.
+"""Writes what was measured into pages: the text between <!-- begin NAME --> and <!-- end NAME -->.
 
-    bench/page.py RESULTS PAGE
+    bench/page.py RESULTS PAGE...
 
 RESULTS: the folder that bench/results fills. What stands outside those marks is written by people and stays as it is. A
 mark whose files are missing stays as well.
@@ -22,7 +22,7 @@ def load(path):
 
 def machine(results):
     """What measured."""
-    others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json")]
+    others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
     said = files[0]
     commits = sorted({file["commit"] for file in files})
@@ -170,8 +170,84 @@ def frame_memory(results):
     return "\n".join(lines)
 
 
+def engine_results(results):
+    """Each contest with what it is, as the first cell of its rows."""
+    for contest in load(results / "engines.json")["results"]:
+        yield f"{contest['scene']}, {contest['objects']:,}, {contest['order']}", contest
+
+
+def engines(results):
+    """A row for each scene, order and engine; how many times slower than local."""
+    lines = ["| boxes, order | milliseconds | median | against local | first call | start of the engine |",
+             "|---|---|--:|--:|--:|--:|"]
+    for title, contest in engine_results(results):
+        local = contest["rows"][0]["median_seconds"]
+        for row in contest["rows"]:
+            times = [milliseconds(row[key]) for key in ("median_seconds", "first_seconds", "start_seconds")]
+            name = row["engine"] + ("" if row["agrees"] else ", other pairs")
+            cells = [title, name, times[0], f"{row['median_seconds'] / local:.2f} x", *times[1:]]
+            lines.append("| " + " | ".join(cells) + " |")
+            title = ""
+    return "\n".join(lines)
+
+
+def aim_value(aim, value):
+    """What an aim bounds: a ratio, or milliseconds."""
+    return f"{value:.2f}" if aim["measure"] == "ratio" else f"{value * 1e3:.2f} ms"
+
+
+def engine_aims(results):
+    """Aims and what was measured, times and memory."""
+    lines = ["| boxes, order | what | aim | measured | |", "|---|---|--:|--:|---|"]
+    for title, contest in engine_results(results):
+        for aim in contest["aims"]:
+            what = f"{aim['engine']} {'/' if aim['measure'] == 'ratio' else '-'} {aim['against']}"
+            bound = f"at {'most' if aim['at_most'] else 'least'} {aim_value(aim, aim['bound'])}"
+            cells = [title, what, bound, aim_value(aim, aim["reached"]), "" if aim["kept"] else "missed"]
+            lines.append("| " + " | ".join(cells) + " |")
+    for row in load(results / "engines.json")["memory"]:
+        if "most_bytes" not in row:
+            continue
+        objects = row["objects"]
+        cells = [f"{row['scene']}, {objects:,}, {row['order']}", f"{row['engine']}: bytes an object",
+                 f"at most {row['most_bytes'] / objects:.0f}", f"{row['highest_bytes'] / objects:.0f}",
+                 "" if row["highest_bytes"] <= row["most_bytes"] else "missed"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def engine_memory(results):
+    """Bytes an object of all processes together, beyond boxes and pairs."""
+    lines = ["| boxes, order | engine | engine alone, MB | bytes an object: kept | highest |", "|---|---|--:|--:|--:|"]
+    for row in load(results / "engines.json")["memory"]:
+        objects = row["objects"]
+        sizes = [f"{row[name] / objects:.0f}" for name in ("kept_bytes", "highest_bytes")]
+        cells = [f"{row['scene']}, {objects:,}, {row['order']}", row["engine"], f"{row['idle_bytes'] / 1e6:.1f}",
+                 *sizes]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def engine_choice(results):
+    """Local and processes side by side, octal order, for who must choose."""
+    lines = ["| milliseconds | local | processes | difference |", "|---|--:|--:|--:|"]
+    starts = {}
+    for _, contest in engine_results(results):
+        if contest["order"] != "octal":
+            continue
+        rows = {row["engine"]: row for row in contest["rows"]}
+        local, other = (rows[name]["median_seconds"] for name in ("local", "processes"))
+        starts = {name: milliseconds(rows[name]["start_seconds"]) for name in ("local", "processes")}
+        cells = [f"{contest['objects']:,} boxes, {contest['scene']}", milliseconds(local), milliseconds(other),
+                 milliseconds(other - local)]
+        lines.append("| " + " | ".join(cells) + " |")
+    lines.append(f"| to make the engine | {starts['local']} | {starts['processes']} | |")
+    return "\n".join(lines)
+
+
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "scenes": scenes, "frames": frames,
-          "frame_goals": frame_goals, "frame_memory": frame_memory}
+          "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
+          "engine_memory": engine_memory, "engine_choice": engine_choice}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
     BLOCKS[f"peers_{table}"] = lambda results, table=table: peers(results, table)
 
@@ -191,10 +267,11 @@ def fill(page, results):
 
 
 def main(words):
-    if len(words) != 2:
-        sys.exit("page.py RESULTS PAGE")
-    results, page = map(pathlib.Path, words)
-    page.write_text(fill(page.read_text(encoding="utf-8"), results), encoding="utf-8")
+    if len(words) < 2:
+        sys.exit("page.py RESULTS PAGE...")
+    results, *pages = map(pathlib.Path, words)
+    for page in pages:
+        page.write_text(fill(page.read_text(encoding="utf-8"), results), encoding="utf-8")
 
 
 if __name__ == "__main__":

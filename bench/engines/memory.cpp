@@ -1,0 +1,133 @@
+#include "engines/memory.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "engines/contenders.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::bench {
+
+namespace {
+
+constexpr unsigned calls = 5;
+
+/// The proportional set size of one process; 0 if it is not to be seen.
+double bytes_of(const std::string& process) {
+    std::ifstream rollup("/proc/" + process + "/smaps_rollup");
+    for (std::string line; std::getline(rollup, line);) {
+        if (line.starts_with("Pss:")) return std::strtod(line.c_str() + 4, nullptr) * 1024;
+    }
+    return 0;
+}
+
+/// Of this process and its children.
+double bytes_of_all() {
+    double bytes = bytes_of("self");
+    for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+        std::ifstream children(thread.path() / "children");
+        for (std::string child; children >> child;) bytes += bytes_of(child);
+    }
+    return bytes;
+}
+
+/// Looks again and again from a thread of its own.
+class Watch {
+public:
+    Watch() : thread_([this] { look(); }) {}
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+    ~Watch() {
+        over_ = true;
+        thread_.join();
+    }
+    double highest() const { return highest_; }
+
+private:
+    void look() {
+        while (!over_) {
+            highest_ = std::max(highest_.load(), bytes_of_all());
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+
+    std::atomic<bool> over_ = false;
+    std::atomic<double> highest_ = 0;
+    std::thread thread_;
+};
+
+EngineMemoryUse measure_here(const EngineMemoryCase& which, unsigned width) {
+    const std::vector<Contender> all = contenders();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == which.engine; });
+    if (found == all.end()) throw std::out_of_range("no engine " + which.engine);
+    const std::vector<Box3f> boxes = samples::make_scene(which.kind, which.objects, 1);
+    EngineMemoryUse use;
+    const double before = bytes_of_all();
+    const std::unique_ptr<Engine> engine = found->make(width);
+    const PlacedBoxes placed = found->place(*engine, boxes);
+    PairList list;
+    const auto call = [&] { engine->find_pairs({placed.boxes}, list, {.order = which.order}); };
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until its workers have begun
+    use.idle = bytes_of_all() - before;
+    call();
+    {
+        Watch watch;
+        for (unsigned i = 0; i < calls; ++i) call();
+        use.highest = watch.highest() - before;
+    }
+    use.kept = bytes_of_all() - before;
+    use.pairs = list.size();
+    // Boxes that lie where the engine has its own memory are the input; an application would have no others.
+    const double input = placed.keeper != nullptr ? double(placed.boxes.size_bytes()) : 0;
+    const double beside = input + double(use.pairs) * sizeof(Pair);
+    use.kept -= beside;
+    use.highest = std::max(use.highest - beside, use.kept);
+    return use;
+}
+
+}  // namespace
+
+std::vector<EngineMemoryCase> engine_memory_cases() {
+    std::vector<EngineMemoryCase> cases;
+    for (const char* kind : {"uniform", "dense"}) {
+        for (const Order order : {Order::octal, Order::ascending}) {
+            for (const Contender& contender : contenders()) cases.push_back({contender.name, kind, 1'000'000, order});
+        }
+    }
+    return cases;
+}
+
+EngineMemoryUse measure_memory(const EngineMemoryCase& which, unsigned width) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    const pid_t child = ::fork();
+    if (child < 0) throw std::runtime_error("no process");
+    if (child == 0) {
+        EngineMemoryUse use;
+        try {
+            use = measure_here(which, width);
+        } catch (...) {
+            ::_exit(1);
+        }
+        ::_exit(::write(ends[1], &use, sizeof use) == ssize_t(sizeof use) ? 0 : 1);
+    }
+    ::close(ends[1]);
+    EngineMemoryUse use;
+    const bool told = ::read(ends[0], &use, sizeof use) == ssize_t(sizeof use);
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (!told || status != 0) throw std::runtime_error("the process that measures memory failed");
+    return use;
+}
+
+}  // namespace octopair::bench
