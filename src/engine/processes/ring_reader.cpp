@@ -6,6 +6,14 @@
 
 namespace octopair {
 
+namespace {
+
+[[noreturn]] void throw_damaged() {
+    throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
+}
+
+}  // namespace
+
 RingSize ring_size(std::uint64_t pairs, unsigned slots) {
     constexpr std::uint64_t most_block = 1 << 15;
     const std::uint64_t a_slot = std::max<std::uint64_t>(2, pairs / slots);
@@ -14,6 +22,17 @@ RingSize ring_size(std::uint64_t pairs, unsigned slots) {
 }
 
 void RingReader::take() {
+    take_next();
+    // A share whose last block was taken may be done again all the same, by a worker that took over.
+    for (unsigned slot = 0; slot < pass_.workers; ++slot) {
+        while (const auto entry = front(slot)) {
+            if (entry->share >= share_) break;
+            give_back(slot);
+        }
+    }
+}
+
+void RingReader::take_next() {
     // A share that is not begun yet has the number of another pass.
     while (share_ < most_shares) {
         const Share& share = crew_.view().shares(share_, 1)[0];
@@ -28,16 +47,32 @@ void RingReader::take() {
     }
 }
 
-/// Takes a block of the slot that has the next share; false if there is none.
-bool RingReader::take_block(unsigned number) {
-    Slot& slot = crew_.view().slot(number);
+/// What is next in the ring of a slot.
+std::optional<RingEntry> RingReader::front(unsigned number) const {
+    const Slot& slot = crew_.view().slot(number);
     const std::uint64_t taken = slot.ring_taken.load();
     const std::uint64_t filled = slot.ring_filled.load();
-    if (filled == taken) return false;
+    if (filled == taken) return std::nullopt;
     const RingEntry entry = crew_.view().ring_entry(number, taken);
-    const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs && entry.share <= share_;
-    if (!sound) throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
+    const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs;
+    if (!sound) throw_damaged();
+    return entry;
+}
+
+void RingReader::give_back(unsigned number) {
+    Slot& slot = crew_.view().slot(number);
+    slot.ring_taken.fetch_add(1);
+    slot.command.raise();
+}
+
+/// Takes a block of the slot that has the next share; false if there is none.
+bool RingReader::take_block(unsigned number) {
+    const auto next = front(number);
+    if (!next) return false;
+    const RingEntry entry = *next;
+    if (entry.share > share_) throw_damaged();
     if (entry.share == share_) {
+        const std::uint64_t taken = crew_.view().slot(number).ring_taken.load();
         const std::uint64_t block = number * pass_.ring_blocks + taken % pass_.ring_blocks;
         const std::span<const Pair> pairs{
             pairs_.array<const Pair>(block * pass_.block_pairs * sizeof(Pair), pass_.block_pairs),
@@ -51,8 +86,7 @@ bool RingReader::take_block(unsigned number) {
             delivered_ = passed_ = 0;
         }
     }
-    slot.ring_taken.store(taken + 1);
-    slot.command.raise();
+    give_back(number);
     return true;
 }
 

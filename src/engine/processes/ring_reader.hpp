@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "engine/processes/crew.hpp"
 #include "engine/search.hpp"
@@ -33,6 +34,9 @@ public:
     bool complete(std::uint64_t shares) const { return share_ == shares; }
 
 private:
+    void take_next();
+    std::optional<RingEntry> front(unsigned slot) const;
+    void give_back(unsigned slot);
     bool take_block(unsigned slot);
 
     Crew& crew_;
