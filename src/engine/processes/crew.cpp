@@ -19,12 +19,17 @@ constexpr milliseconds patience(2000);     // for a worker to leave a pass that 
 constexpr unsigned most_looks = 4000;      // for the end of a pass, about 80 us, before going to sleep
 constexpr unsigned most_strikes = 3;       // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
-constexpr std::uint64_t preparing = ~std::uint64_t(0);  // the share of what comes before the first one
+constexpr std::uint64_t preparing = ~std::uint64_t(0);  // less its slot: the share of what a worker does before the first
 
 SharedMemory make_desk(unsigned workers) {
     SharedMemory memory = SharedMemory::create(DeskPlaces::bytes(workers));
     DeskView::lay_out(memory, workers);
     return memory;
+}
+
+/// Whether a pass is another attempt at what the one before it was to do: the same shares.
+bool same_work(const Pass& a, const Pass& b) {
+    return a.job == b.job && a.kind == b.kind && a.built == b.built && a.bounds.rows.begin == b.bounds.rows.begin;
 }
 
 }  // namespace
@@ -56,11 +61,6 @@ WorkerFaults Crew::faults() const {
 void Crew::count_fault(std::uint64_t& fault) {
     const std::lock_guard lock(faults_mutex_);
     ++fault;
-}
-
-std::uint32_t Crew::begin_job() {
-    strikes_.clear();
-    return ++job_;
 }
 
 /// Starts a worker for a slot, and gives it the desk.
@@ -111,6 +111,8 @@ void Crew::announce(const Pass& pass) {
 }
 
 std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
+    if (!same_work(pass, last_pass_)) strikes_.clear();
+    last_pass_ = pass;
     taking_part_ = pass.workers;
     // A client that keeps looking would take time from workers that have no other core.
     looks_ = taking_part_ < std::thread::hardware_concurrency() ? most_looks : 0;
@@ -233,7 +235,7 @@ void Crew::strike(unsigned slot) {
         count_fault(faults_.in_share[std::size_t(step)]);
     } else {
         if (part.preparing.load() == 0) return;
-        share = preparing;
+        share = preparing - slot;
     }
     if (++strikes_[share] < most_strikes) return;
     throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +

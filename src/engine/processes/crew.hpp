@@ -61,8 +61,8 @@ public:
     std::uint64_t shares() const { return shares_; }
     std::uint32_t number() const { return number_; }
 
-    /// A new job: what its work has done to workers is counted anew.
-    std::uint32_t begin_job();
+    /// The number of a new job.
+    std::uint32_t begin_job() { return ++job_; }
     /// Thread-safe.
     WorkerFaults faults() const;
 
@@ -96,6 +96,7 @@ private:
     std::uint32_t number_ = 0;  // of the pass
     std::uint32_t job_ = 0;
     std::uint64_t shares_ = 0;
+    Pass last_pass_;
     mutable std::mutex faults_mutex_;
     WorkerFaults faults_;
 
@@ -105,7 +106,7 @@ private:
     unsigned looks_ = 0;
     std::exception_ptr failure_;
     std::chrono::steady_clock::time_point failed_at_, moved_at_;
-    std::map<std::uint64_t, unsigned> strikes_;  // of the job: workers that each share ended
+    std::map<std::uint64_t, unsigned> strikes_;  // workers that each share ended, in all attempts at the pass
 };
 
 }  // namespace octopair
