@@ -97,6 +97,7 @@ void RingReader::forget_unfinished(unsigned number) {
     const ShareState state = ShareState::of(crew_.view().shares(share - 1, 1)[0].state.load());
     if (!state.is(crew_.number(), ShareStatus::claimed)) return;
     std::uint64_t filled = slot.ring_filled.load();
+    if (filled - slot.ring_taken.load() > pass_.ring_blocks) throw_damaged();
     while (filled > slot.ring_taken.load() && crew_.view().ring_entry(number, filled - 1).share == share - 1) --filled;
     slot.ring_filled.store(filled);
     if (share - 1 == share_) passed_ = 0;
