@@ -19,7 +19,8 @@ constexpr milliseconds patience(2000);     // for a worker to leave a pass that 
 constexpr unsigned most_looks = 4000;      // for the end of a pass, about 80 us, before going to sleep
 constexpr unsigned most_strikes = 3;       // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
-constexpr std::uint64_t preparing = ~std::uint64_t(0);  // less its slot: the share of what a worker does before the first
+constexpr std::uint64_t preparing =
+    ~std::uint64_t(0);  // less its slot: the share of what a worker does before the first
 
 SharedMemory make_desk(unsigned workers) {
     SharedMemory memory = SharedMemory::create(DeskPlaces::bytes(workers));
