@@ -151,6 +151,26 @@ TEST_F(Engines, StatsSayWhereItRan) {
     EXPECT_NE(run("info").out.find("engines          local, processes\n"), std::string::npos);
 }
 
+TEST_F(Engines, SameEvents) {
+    generate("brownian", 5'000, "moving.npy", " --frames 6");
+    generate("uniform", 3'000, "still.npy");
+    for (const char* const more : {"", " --margin 0.01", " --limit 70", " --against still.npy"}) {
+        compare(std::string("moving.npy --events") + more);
+        compare(std::string("still.npy --events") + more);
+    }
+    compare_files("moving.npy --events", "e.jsonl");
+    ASSERT_EQ(run("detect moving.npy --events --quiet --stats s.json --output e.csv" + (on_workers + std::string("2")))
+                  .status,
+              0);
+    const auto stats = nlohmann::json::parse(content("s.json"));
+    EXPECT_EQ(stats["engine"], "processes");
+    ASSERT_EQ(run("detect moving.npy --events --quiet --stats t.json --output e.csv").status, 0);
+    const auto expected = nlohmann::json::parse(content("t.json"));
+    EXPECT_EQ(stats["pairs"], expected["pairs"]);
+    EXPECT_EQ(stats["began"], expected["began"]);
+    EXPECT_EQ(stats["ended"], expected["ended"]);
+}
+
 TEST_F(Engines, WhatGoesTogether) {
     save_boxes("a.npy", {0});
     for (const auto& [arguments, message] : std::map<std::string, std::string>{
@@ -160,9 +180,7 @@ TEST_F(Engines, WhatGoesTogether) {
              {"--engine local --workers 2", "--workers: the local engine has threads; workers need --engine processes"},
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
-             {"--engine threads", "--engine: 'threads' is not known; this version has: local, processes"},
-             {"--events --engine processes",
-              "--events: not with --engine processes: they come from a scene, which the local engine alone keeps"}}) {
+             {"--engine threads", "--engine: 'threads' is not known; this version has: local, processes"}}) {
         const Outcome outcome = run("detect a.npy " + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;
         EXPECT_EQ(outcome.err, "octopair: " + message + "\n");
