@@ -14,13 +14,14 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds look_interval(20);  // between looks at the workers
-constexpr milliseconds patience(2000);     // for a worker to leave a pass that failed
-constexpr unsigned most_looks = 4000;      // for the end of a pass, about 80 us, before going to sleep
-constexpr unsigned most_strikes = 3;       // workers that a share may end
+constexpr milliseconds look_interval(20);     // between looks at the workers
+constexpr milliseconds patience(2000);        // for a worker to leave a pass that failed
+constexpr milliseconds start_patience(5000);  // for a worker to find its slot
+constexpr unsigned most_looks = 4000;         // for the end of a pass, about 80 us, before going to sleep
+constexpr unsigned most_strikes = 3;          // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
-constexpr std::uint64_t preparing =
-    ~std::uint64_t(0);  // less its slot: the share of what a worker does before the first
+/// Less its slot: the share of what a worker does before the first.
+constexpr std::uint64_t preparing = ~std::uint64_t(0);
 
 SharedMemory make_desk(unsigned workers) {
     SharedMemory memory = SharedMemory::create(DeskPlaces::bytes(workers));
@@ -67,13 +68,21 @@ void Crew::count_fault(std::uint64_t& fault) {
 /// Starts a worker for a slot, and gives it the desk.
 void Crew::start(unsigned slot) {
     Member& member = crew_[slot];
-    member.process = nullptr;
-    view_.slot(slot).attached.store(0);
-    member.process = std::make_unique<WorkerProcess>(program_, slot);
-    if (!member.process->send_region(desk_region, desk_memory_)) {
+    std::string how;
+    for (unsigned i = 0; i < most_failed_starts; ++i) {
         member.process = nullptr;
-        throw Error(ErrorCode::engine_failed, "a worker process takes no mail");
+        view_.slot(slot).attached.store(0);
+        member.process = std::make_unique<WorkerProcess>(program_, slot);
+        member.started_at = Clock::now();
+        if (member.process->send_region(desk_region, desk_memory_)) return;
+        how = member.process->end();
     }
+    member.process = nullptr;
+    throw_cannot_start(how);
+}
+
+void Crew::throw_cannot_start(const std::string& how) const {
+    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
 }
 
 /// Replaces the workers that ended between passes, and those that could not be started before.
@@ -171,10 +180,11 @@ void Crew::check_members(const PassWatch& watch) {
         if (member.process == nullptr) continue;
         const ProcessState state = member.process->look();
         if (state == ProcessState::runs) {
-            if (view_.slot(slot).attached.load() != 0) member.failed_starts = 0;
-            continue;
+            const bool attached = view_.slot(slot).attached.load() != 0;
+            if (attached) member.failed_starts = 0;
+            if (attached || Clock::now() - member.started_at < start_patience) continue;
         }
-        lose(slot, state == ProcessState::stopped, watch);
+        lose(slot, state != ProcessState::ended, watch);
     }
     if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
     if (failure_ == nullptr && stalled()) {
@@ -204,7 +214,7 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
         member.failed_starts = attached ? 0 : member.failed_starts + 1;
         if (member.failed_starts >= most_failed_starts) {
             member.failed_starts = 0;
-            throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
+            throw_cannot_start(how);
         }
         if (finished(slot)) return;
         if (attached) strike(slot);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -70,8 +71,10 @@ private:
     struct Member {
         std::unique_ptr<WorkerProcess> process;  ///< none where it could not be started
         unsigned failed_starts = 0;              ///< one after another
+        std::chrono::steady_clock::time_point started_at = {};
     };
     void start(unsigned slot);
+    [[noreturn]] void throw_cannot_start(const std::string& how) const;
     void revive();
     void announce(const Pass& pass);
     bool finished(unsigned slot) const;
