@@ -22,6 +22,8 @@ namespace {
 
 constexpr auto wait_by_handle = idtype_t(3);  // P_PIDFD, which not all headers have
 
+constexpr unsigned looks_per_long_look = 8;
+
 [[noreturn]] void throw_cannot_start(const std::string& program, int error) {
     const bool exhausted = error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
     throw Error(exhausted ? ErrorCode::resource_limit : ErrorCode::engine_failed,
@@ -104,11 +106,22 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
 
 WorkerProcess::~WorkerProcess() { (void)end(); }
 
-ProcessState WorkerProcess::look() const {
+ProcessState WorkerProcess::look() {
     if (!handle_.open() || ended(handle_, 0)) return ProcessState::ended;
     siginfo_t info{};
     const int result = ::waitid(wait_by_handle, id_t(handle_.number()), &info, WSTOPPED | WNOHANG);
-    return result == 0 && info.si_pid != 0 ? ProcessState::stopped : ProcessState::runs;
+    if (result == 0 && info.si_pid != 0) return ProcessState::stopped;
+    if (++looks_ % looks_per_long_look != 0 || !shown_as_stopped()) return ProcessState::runs;
+    return ended(handle_, 0) ? ProcessState::ended : ProcessState::stopped;
+}
+
+/// A stop is told once, and may have been told to the application, waiting for its children.
+bool WorkerProcess::shown_as_stopped() const {
+    const Descriptor file(::open(("/proc/" + std::to_string(id_) + "/stat").c_str(), O_RDONLY | O_CLOEXEC));
+    std::array<char, 128> text{};
+    if (!file.open() || ::read(file.number(), text.data(), text.size() - 1) <= 0) return false;
+    const char* const name_end = std::strrchr(text.data(), ')');
+    return name_end != nullptr && std::strncmp(name_end, ") T", 3) == 0;
 }
 
 std::string WorkerProcess::end() {

@@ -27,7 +27,7 @@ public:
     WorkerProcess(const WorkerProcess&) = delete;
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-    ProcessState look() const;
+    ProcessState look();
     /// Kills it and waits for its end; returns how it ended, in words.
     std::string end();
 
@@ -38,8 +38,11 @@ public:
     bool stop_pass(std::uint32_t pass);
 
 private:
+    bool shown_as_stopped() const;
+
     pid_t id_ = -1;
-    pid_t owner_;        // a process that this one forks may not end its workers
+    unsigned looks_ = 0;
+    pid_t owner_;  // a process that this one forks may not end its workers
     Descriptor handle_;  // pidfd
     Descriptor socket_;
     std::set<std::uint32_t> regions_;
