@@ -8,6 +8,8 @@ namespace octopair {
 
 namespace {
 
+constexpr unsigned most_at_once = 16;  // blocks; then the client has a look at other things
+
 [[noreturn]] void throw_damaged() {
     throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
 }
@@ -34,7 +36,7 @@ void RingReader::take() {
 
 void RingReader::take_next() {
     // A share that is not begun yet has the number of another pass.
-    while (share_ < most_shares) {
+    for (unsigned blocks = 0; share_ < most_shares;) {
         const Share& share = crew_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
         if (state.pass != crew_.number() || state.slot >= pass_.workers) return;
@@ -43,6 +45,8 @@ void RingReader::take_next() {
             ++share_;
         } else if (!take_block(state.slot)) {
             return;
+        } else if (++blocks == most_at_once) {
+            return crew_.view().desk().for_client.raise();
         }
     }
 }

@@ -26,7 +26,7 @@ public:
     RingReader(Crew& crew, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
         : crew_(crew), pairs_(pairs), pass_(pass), deliver_(deliver) {}
 
-    /// Hands out what is there. What `deliver` throws is passed on.
+    /// Hands out some of what is there; if that is not all, the client's event is raised. What `deliver` throws is passed on.
     void take();
     /// The worker of a slot is gone, and another will do its share again: what it left of it is dropped.
     void forget_unfinished(unsigned slot);
