@@ -118,6 +118,7 @@ std::vector<Entrant> hold(const Contest& contest, unsigned width) {
     }
     judge(runners);
     std::vector<Entrant> entrants;
+    entrants.reserve(runners.size());
     for (const auto& runner : runners) entrants.push_back(runner->entrant);
     return entrants;
 }

@@ -9,7 +9,7 @@
 
 #include "octopair/engine.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 }
 
