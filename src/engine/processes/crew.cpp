@@ -110,7 +110,6 @@ void Crew::announce(const Pass& pass) {
         part.outcome = Outcome::none;
         part.share.store(0);
         part.preparing.store(1);
-        part.waiting.store(0);
         part.entries_scanned.store(0);
         part.pages_taken.store(0);
         part.ring_filled.store(0);
@@ -132,7 +131,6 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
     revive();
     for (unsigned slot = 0; slot < taking_part_; ++slot) send_regions(slot);
     announce(pass);
-    moved_at_ = Clock::now();
 
     const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
     Clock::time_point next_check = Clock::now() + look_interval;
@@ -187,20 +185,6 @@ void Crew::check_members(const PassWatch& watch) {
         lose(slot, state != ProcessState::ended, watch);
     }
     if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
-    if (failure_ == nullptr && stalled()) {
-        fail(std::make_exception_ptr(
-            Error(ErrorCode::engine_failed, "worker processes wait for each other: their tables are damaged")));
-    }
-}
-
-/// Whether all that are not done have long been waiting for others.
-bool Crew::stalled() {
-    bool all_wait = true;
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
-        all_wait = all_wait && (finished(slot) || view_.slot(slot).waiting.load() != 0);
-    }
-    if (!all_wait || all_finished()) moved_at_ = Clock::now();
-    return Clock::now() - moved_at_ > patience;
 }
 
 /// A worker has ended, or must because it does nothing any more: what it was at is left to another.
@@ -223,7 +207,6 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
         Slot& part = view_.slot(slot);
         part.share.store(0);
         part.preparing.store(1);
-        part.waiting.store(0);
         start(slot);
         send_regions(slot);
         part.command.raise();

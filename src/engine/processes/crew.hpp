@@ -83,7 +83,6 @@ private:
     void lose(unsigned slot, bool stopped, const PassWatch& watch);
     void count_fault(std::uint64_t& fault);
     void strike(unsigned slot);
-    bool stalled();
     void fail(std::exception_ptr failure);
     void fail_as_worker(unsigned slot);
     void end_sluggish();
@@ -108,7 +107,7 @@ private:
     unsigned taking_part_ = 0;
     unsigned looks_ = 0;
     std::exception_ptr failure_;
-    std::chrono::steady_clock::time_point failed_at_, moved_at_;
+    std::chrono::steady_clock::time_point failed_at_;
     std::map<std::uint64_t, unsigned> strikes_;  // workers that each share ended, in all attempts at the pass
 };
 

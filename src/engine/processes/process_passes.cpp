@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "engine/processes/ring_reader.hpp"
 #include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
@@ -181,9 +182,10 @@ void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double prog
     pass_.block_pairs = size.block_pairs;
     RingReader reader(crew_, pairs->memory, pass_, deliver);
     PassWatch watch;
-    watch.look = [&] { reader.take(); };
+    watch.look = [&] { (void)reader.take(); };
     watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
     run(call, progress, std::move(watch));
+    while (reader.take()) throw_if_stopped(call.stop.get_token());
     regions_.pop_back();
     if (!reader.complete(crew_.shares())) throw_damaged();
 }

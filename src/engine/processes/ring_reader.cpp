@@ -23,8 +23,8 @@ RingSize ring_size(std::uint64_t pairs, unsigned slots) {
     return {std::clamp<std::uint64_t>(a_slot / block, 2, most_ring_blocks), block};
 }
 
-void RingReader::take() {
-    take_next();
+bool RingReader::take() {
+    const bool more = take_next();
     // A share whose last block was taken may be done again all the same, by a worker that took over.
     for (unsigned slot = 0; slot < pass_.workers; ++slot) {
         while (const auto entry = front(slot)) {
@@ -32,23 +32,26 @@ void RingReader::take() {
             give_back(slot);
         }
     }
+    return more;
 }
 
-void RingReader::take_next() {
+bool RingReader::take_next() {
     // A share that is not begun yet has the number of another pass.
     for (unsigned blocks = 0; share_ < most_shares;) {
         const Share& share = crew_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
-        if (state.pass != crew_.number() || state.slot >= pass_.workers) return;
+        if (state.pass != crew_.number() || state.slot >= pass_.workers) return false;
         if (share.step != unsigned(Step::scan)) {
-            if (state.status != ShareStatus::done) return;
+            if (state.status != ShareStatus::done) return false;
             ++share_;
         } else if (!take_block(state.slot)) {
-            return;
+            return false;
         } else if (++blocks == most_at_once) {
-            return crew_.view().desk().for_client.raise();
+            crew_.view().desk().for_client.raise();
+            return true;
         }
     }
+    return false;
 }
 
 /// What is next in the ring of a slot.

@@ -26,15 +26,16 @@ public:
     RingReader(Crew& crew, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
         : crew_(crew), pairs_(pairs), pass_(pass), deliver_(deliver) {}
 
-    /// Hands out some of what is there; if that is not all, the client's event is raised. What `deliver` throws is passed on.
-    void take();
+    /// Hands out some of what is there; true, and the client's event is raised, if that is not all. What `deliver` throws
+    /// is passed on.
+    bool take();
     /// The worker of a slot is gone, and another will do its share again: what it left of it is dropped.
     void forget_unfinished(unsigned slot);
     /// Whether it has handed out all of so many shares.
     bool complete(std::uint64_t shares) const { return share_ == shares; }
 
 private:
-    void take_next();
+    bool take_next();
     std::optional<RingEntry> front(unsigned slot) const;
     void give_back(unsigned slot);
     bool take_block(unsigned slot);
