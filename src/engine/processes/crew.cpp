@@ -17,8 +17,11 @@ using Clock = std::chrono::steady_clock;
 constexpr milliseconds look_interval(20);     // between looks at the workers
 constexpr milliseconds patience(2000);        // for a worker to leave a pass that failed
 constexpr milliseconds start_patience(5000);  // for a worker to find its slot
-constexpr unsigned most_looks = 4000;         // for the end of a pass, about 80 us, before going to sleep
-constexpr unsigned most_strikes = 3;          // workers that a share may end
+constexpr milliseconds standstill(5000);      // while all workers wait for something to happen
+constexpr milliseconds fruitful(60000);       // a worker that lived so long did something
+constexpr unsigned most_fruitless = 10;
+constexpr unsigned most_looks = 4000;  // for the end of a pass, about 80 us, before going to sleep
+constexpr unsigned most_strikes = 3;   // workers that a share may end
 constexpr unsigned most_failed_starts = 3;
 /// Less its slot: the share of what a worker does before the first.
 constexpr std::uint64_t preparing = ~std::uint64_t(0);
@@ -72,6 +75,8 @@ void Crew::start(unsigned slot) {
     for (unsigned i = 0; i < most_failed_starts; ++i) {
         member.process = nullptr;
         view_.slot(slot).attached.store(0);
+        view_.slot(slot).waits.store(0);
+        view_.slot(slot).command.waiting.store(0);
         member.process = std::make_unique<WorkerProcess>(program_, slot);
         member.started_at = Clock::now();
         if (member.process->send_region(desk_region, desk_memory_)) return;
@@ -90,6 +95,8 @@ void Crew::revive() {
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         Member& member = crew_[slot];
         if (member.process != nullptr && member.process->look() == ProcessState::runs) continue;
+        // What it left undone is not wanted any more.
+        view_.slot(slot).asked.store(view_.slot(slot).finished.load());
         if (member.process != nullptr) {
             count_fault(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
         }
@@ -107,6 +114,7 @@ void Crew::announce(const Pass& pass) {
     desk.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs, std::uint64_t(1) << 62)));
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         Slot& part = view_.slot(slot);
+        crew_[slot].fruitless = 0;
         part.outcome = Outcome::none;
         part.share.store(0);
         part.preparing.store(1);
@@ -133,6 +141,7 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
     announce(pass);
 
     const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
+    changed_at_ = Clock::now();
     Clock::time_point next_check = Clock::now() + look_interval;
     for (;;) {
         const std::uint32_t seen = view_.desk().for_client.count.load();
@@ -185,6 +194,35 @@ void Crew::check_members(const PassWatch& watch) {
         lose(slot, state != ProcessState::ended, watch);
     }
     if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
+    if (failure_ == nullptr) check_standstill();
+}
+
+/// Workers that all wait for each other do so because of what was left in the tables: it would be for ever.
+void Crew::check_standstill() {
+    const std::uint64_t now = events();
+    if (now != last_events_ || !all_wait()) {
+        last_events_ = now;
+        changed_at_ = Clock::now();
+    } else if (Clock::now() - changed_at_ > standstill) {
+        fail(std::make_exception_ptr(Error(ErrorCode::engine_failed, "worker processes wait for what does not come")));
+    }
+}
+
+bool Crew::all_wait() const {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (!finished(slot) && view_.slot(slot).waits.load() == 0) return false;
+    }
+    return true;
+}
+
+/// How much has happened in the pass, so to speak.
+std::uint64_t Crew::events() const {
+    std::uint64_t events = view_.desk().among_workers.count.load() + view_.desk().for_client.count.load();
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        const Slot& part = view_.slot(slot);
+        events += part.command.count.load() + part.ring_filled.load() + part.ring_taken.load() + part.share.load();
+    }
+    return events;
 }
 
 /// A worker has ended, or must because it does nothing any more: what it was at is left to another.
@@ -224,16 +262,24 @@ void Crew::strike(unsigned slot) {
         const Share& record = view_.shares(share - 1, 1)[0];
         const ShareState state = ShareState::of(record.state.load());
         const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
-        if (!under_way || record.step >= step_names.size()) return;
+        if (!under_way || record.step >= step_names.size()) return check_fruits(slot);
         step = Step(record.step);
         count_fault(faults_.in_share[std::size_t(step)]);
     } else {
-        if (part.preparing.load() == 0) return;
+        if (part.preparing.load() == 0) return check_fruits(slot);
         share = preparing - slot;
     }
     if (++strikes_[share] < most_strikes) return;
     throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +
                                               ", has ended " + std::to_string(most_strikes) + " worker processes");
+}
+
+/// Throws Error{engine_failed} where worker after worker of a slot ends between two shares.
+void Crew::check_fruits(unsigned slot) {
+    Member& member = crew_[slot];
+    member.fruitless = Clock::now() - member.started_at > fruitful ? 1 : member.fruitless + 1;
+    if (member.fruitless < most_fruitless) return;
+    throw Error(ErrorCode::engine_failed, "worker processes keep ending between their shares");
 }
 
 /// Ends the pass: its workers are told to stop.

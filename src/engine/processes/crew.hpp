@@ -72,6 +72,7 @@ private:
         std::unique_ptr<WorkerProcess> process;  ///< none where it could not be started
         unsigned failed_starts = 0;              ///< one after another
         std::chrono::steady_clock::time_point started_at = {};
+        unsigned fruitless = 0;  ///< workers that soon ended outside of any share, one after another
     };
     void start(unsigned slot);
     [[noreturn]] void throw_cannot_start(const std::string& how) const;
@@ -83,6 +84,10 @@ private:
     void lose(unsigned slot, bool stopped, const PassWatch& watch);
     void count_fault(std::uint64_t& fault);
     void strike(unsigned slot);
+    void check_fruits(unsigned slot);
+    void check_standstill();
+    bool all_wait() const;
+    std::uint64_t events() const;
     void fail(std::exception_ptr failure);
     void fail_as_worker(unsigned slot);
     void end_sluggish();
@@ -108,6 +113,8 @@ private:
     unsigned looks_ = 0;
     std::exception_ptr failure_;
     std::chrono::steady_clock::time_point failed_at_;
+    std::uint64_t last_events_ = 0;  // as of the last change, at
+    std::chrono::steady_clock::time_point changed_at_;
     std::map<std::uint64_t, unsigned> strikes_;  // workers that each share ended, in all attempts at the pass
 };
 

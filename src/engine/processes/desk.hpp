@@ -10,6 +10,18 @@
 
 namespace octopair {
 
+/// Shows in a worker's slot that it waits, as long as it lives.
+class Waiting {
+public:
+    explicit Waiting(Slot& slot) : slot_(slot) { slot_.waits.store(1); }
+    ~Waiting() { slot_.waits.store(0); }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+
+private:
+    Slot& slot_;
+};
+
 class DeskView {
 public:
     /// `memory` must outlive it. Throws Error{engine_failed} if it is not a desk of this version.

@@ -31,9 +31,7 @@ void ShareOut::run(Step step, std::uint64_t count, const Body& body) {
         do_share({i, first + i, record}, body);
     }
     view_.desk().among_workers.raise();
-    slot_.waiting.store(1);
     wait_for_others(records);
-    slot_.waiting.store(0);
 }
 
 /// True if the share is this slot's to do: free until now, or claimed by a worker that died.
@@ -68,6 +66,7 @@ void ShareOut::wait_for_others(std::span<Share> records) {
         }
         if (done == records.size()) return;
         throw_if_stopped(stop_);
+        const Waiting waiting(slot_);
         event.wait(seen, longest_sleep, looks);
     }
 }

@@ -98,6 +98,7 @@ private:
             const std::uint32_t seen = slot_.command.count.load();
             if (filled - slot_.ring_taken.load() < pass_.ring_blocks) break;
             throw_if_stopped(place_.stop);
+            const Waiting waiting(slot_);
             slot_.command.wait(seen, std::chrono::milliseconds(100), 0);
         }
         held_ = 0;

@@ -80,6 +80,7 @@ public:
             const std::uint32_t seen = slot.command.count.load();
             const std::uint32_t asked = slot.asked.load();
             if (asked == slot.finished.load()) {
+                const Waiting waiting(slot);
                 slot.command.wait(seen, longest_sleep, looks);
                 continue;
             }

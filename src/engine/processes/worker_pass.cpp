@@ -188,7 +188,6 @@ void WorkerProgram::run(const Pass& pass, const ShareOut::Self& self, std::stop_
     }
     slot.share.store(0);
     slot.preparing.store(0);
-    slot.waiting.store(0);
 }
 
 Outcome WorkerProgram::take_part(const Context& context) {
