@@ -72,13 +72,13 @@ struct Pass {
 enum class Outcome : std::uint32_t { none, done, failed, stopped, bad_box, over_budget };
 
 struct alignas(64) Slot {
-    Event command;                          ///< raised when `asked` has changed, or there is room in the ring
-    std::atomic<std::uint32_t> asked;       ///< the pass to do, by its number
-    std::atomic<std::uint32_t> finished;    ///< the pass whose outcome is below
-    std::atomic<std::uint32_t> attached;    ///< whether the worker has found its way to here
-    std::atomic<std::uint32_t> preparing;   ///< whether it is in a pass and has not come to a share
-    std::atomic<std::uint32_t> waits;       ///< whether it can do nothing before the client or another worker has
-    std::atomic<std::uint64_t> share;       ///< 1 + the number of the share under way; 0 if there is none
+    Event command;                         ///< raised when `asked` has changed, or there is room in the ring
+    std::atomic<std::uint32_t> asked;      ///< the pass to do, by its number
+    std::atomic<std::uint32_t> finished;   ///< the pass whose outcome is below
+    std::atomic<std::uint32_t> attached;   ///< whether the worker has found its way to here
+    std::atomic<std::uint32_t> preparing;  ///< whether it is in a pass and has not come to a share
+    std::atomic<std::uint32_t> waits;      ///< whether it can do nothing before the client or another worker has
+    std::atomic<std::uint64_t> share;      ///< 1 + the number of the share under way; 0 if there is none
     std::atomic<std::uint64_t> entries_scanned;
     std::atomic<std::uint64_t> pages_taken;
     std::atomic<std::uint64_t> ring_filled, ring_taken;  ///< entries ever

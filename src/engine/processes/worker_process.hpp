@@ -42,7 +42,7 @@ private:
 
     pid_t id_ = -1;
     unsigned looks_ = 0;
-    pid_t owner_;  // a process that this one forks may not end its workers
+    pid_t owner_;        // a process that this one forks may not end its workers
     Descriptor handle_;  // pidfd
     Descriptor socket_;
     std::set<std::uint32_t> regions_;
