@@ -73,11 +73,11 @@ EngineMemoryUse measure_here(const EngineMemoryCase& which, unsigned width) {
     EngineMemoryUse use;
     const double before = bytes_of_all();
     const std::unique_ptr<Engine> engine = found->make(width);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until its workers have begun
+    use.idle = bytes_of_all() - before;
     const PlacedBoxes placed = found->place(*engine, boxes);
     PairList list;
     const auto call = [&] { engine->find_pairs({placed.boxes}, list, {.order = which.order}); };
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until its workers have begun
-    use.idle = bytes_of_all() - before;
     call();
     {
         Watch watch;
