@@ -40,6 +40,16 @@ int retried(Call&& call) {
     return result;
 }
 
+/// One that nobody can execute, which some systems ask for and older ones do not know.
+Descriptor create_file() {
+    constexpr unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
+    constexpr unsigned not_executable = 8;  // MFD_NOEXEC_SEAL of Linux 6.3, which not all headers have
+    Descriptor file(::memfd_create("octopair", flags | not_executable));
+    if (!file.open() && errno == EINVAL) file = Descriptor(::memfd_create("octopair", flags));
+    if (!file.open()) throw_exhausted("cannot create", errno);
+    return file;
+}
+
 }  // namespace
 
 std::uint64_t roomy_bytes() {
@@ -52,8 +62,7 @@ std::uint64_t roomy_bytes() {
 SharedMemory SharedMemory::create(std::uint64_t bytes) {
     // Beyond this limit the system would not only refuse, but send a signal that ends the process.
     if (bytes > soft_limit(RLIMIT_FSIZE)) throw_exhausted("larger than files may be", EFBIG);
-    Descriptor file(::memfd_create("octopair", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-    if (!file.open()) throw_exhausted("cannot create", errno);
+    Descriptor file = create_file();
     if (retried([&] { return ::ftruncate(file.number(), off_t(bytes)); }) != 0) throw_exhausted("cannot size", errno);
     if (::fcntl(file.number(), F_ADD_SEALS, seals) != 0) throw_exhausted("cannot seal", errno);
     return {std::move(file), bytes};
