@@ -1,0 +1,46 @@
+// An application that ends badly, for tests: it makes an engine, prints the ids of its workers, and then does what it is
+// told to, until it is killed.
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "processes/asked.hpp"
+#include "processes/leftovers.hpp"
+
+namespace octopair::testing {
+namespace {
+
+void print_workers() {
+    for (const pid_t worker : children_of(::getpid())) std::printf("%d\n", int(worker));
+    std::printf("done\n");
+    (void)std::fflush(stdout);
+}
+
+[[noreturn]] void live(const std::string& how) {
+    const Scene scene("clustered", how == "busy" ? 200'000 : 10, 1);
+    // Never destroyed.
+    Engine* const engine = make_process_engine(3).release();
+    (void)ask(*engine, scene, {});
+    print_workers();
+    if (how == "exit") std::exit(0);
+    if (how == "fork" && ::fork() == 0) {
+        // A child that keeps all that is open, longer than the application lives.
+        (void)::sleep(20);
+        ::_exit(0);
+    }
+    for (;;) {
+        if (how == "busy") {
+            (void)ask(*engine, scene, {});
+        } else {
+            (void)::pause();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octopair::testing
+
+int main(int count, char** arguments) { octopair::testing::live(count > 1 ? arguments[1] : ""); }

@@ -1,0 +1,217 @@
+// What an application may do beside its calls: ignore its children or wait for them, take signals all the time, throw from
+// its sinks, ask for what cannot be.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "processes/asked.hpp"
+#include "processes/fault_plan.hpp"
+#include "processes/leftovers.hpp"
+#include "samples/random.hpp"
+#include "support/compare.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Answer;
+using testing::Asked;
+using testing::Fault;
+using testing::FaultKind;
+using testing::How;
+using testing::Scene;
+
+class Applications : public testing::Processes {
+protected:
+    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
+        SCOPED_TRACE(asked.describe());
+        const Answer expected = testing::ask(*local_, scene, asked);
+        const Answer answer = testing::ask(engine, scene, asked);
+        EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
+        EXPECT_EQ(answer.count, expected.count);
+        EXPECT_EQ(answer.truncated, expected.truncated);
+    }
+
+    /// Calls that all kinds of faults happen to.
+    void call_with_faults() {
+        testing::MappedPlan plan;
+        {
+            const auto engine = testing::make_faulty_engine(3);
+            for (int i = 0; i < 12; ++i) {
+                const auto kind = FaultKind(i % 3);
+                plan.set(std::vector<Fault>{{.step = Step::encode, .kind = kind}, {.step = Step::scan, .kind = kind}});
+                expect_right(*engine, scene_, {.how = i % 2 == 0 ? How::list : How::stream});
+            }
+            const WorkerFaults faults = worker_faults(*engine);
+            EXPECT_EQ(faults.ended, 16u);
+            EXPECT_EQ(faults.stopped, 8u);
+        }
+        EXPECT_TRUE(testing::comes_true([] { return testing::children_of(::getpid()).empty(); },
+                                        std::chrono::milliseconds(500)));
+    }
+
+    const std::unique_ptr<Engine> local_ = make_local_engine(1);
+    const Scene scene_{"clustered", 14'000, 1};
+};
+
+TEST_F(Applications, MayIgnoreTheirChildren) {
+    const auto before = ::signal(SIGCHLD, SIG_IGN);
+    call_with_faults();
+    (void)::signal(SIGCHLD, before);
+}
+
+/// Waits for all children of the process, as they end, until it is destroyed.
+class Waiter {
+public:
+    explicit Waiter(int options)
+        : thread_([options](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  int status = 0;
+                  while (::waitpid(-1, &status, WNOHANG | options) > 0) {
+                  }
+                  std::this_thread::sleep_for(std::chrono::microseconds(200));
+              }
+          }) {}
+
+private:
+    std::jthread thread_;
+};
+
+TEST_F(Applications, MayWaitForAllChildren) {
+    const Waiter waiter(0);
+    call_with_faults();
+}
+
+TEST_F(Applications, MayWaitForStoppedChildrenToo) {
+    const Waiter waiter(WUNTRACED | WCONTINUED);
+    call_with_faults();
+}
+
+std::atomic<std::uint64_t> timer_signals = 0;
+
+/// A signal every millisecond, which interrupts whatever is under way.
+class Interrupter {
+public:
+    Interrupter() {
+        struct sigaction action {};
+        action.sa_handler = [](int) { timer_signals.fetch_add(1); };
+        (void)::sigaction(SIGALRM, &action, &before_);
+        const itimerval every{{0, 1000}, {0, 1000}};
+        (void)::setitimer(ITIMER_REAL, &every, nullptr);
+    }
+    ~Interrupter() {
+        const itimerval never{};
+        (void)::setitimer(ITIMER_REAL, &never, nullptr);
+        (void)::sigaction(SIGALRM, &before_, nullptr);
+    }
+    Interrupter(const Interrupter&) = delete;
+    Interrupter& operator=(const Interrupter&) = delete;
+
+private:
+    struct sigaction before_ {};
+};
+
+TEST_F(Applications, MayBeInterruptedAllTheTime) {
+    const Scene large("uniform", testing::scaled(1'000'000, 10), 1);  // whose copy takes a while to make room for
+    const Interrupter interrupter;
+    call_with_faults();
+    const auto engine = make_process_engine(2);
+    for (const Asked& asked : testing::all_ways()) expect_right(*engine, large, asked);
+    EXPECT_GT(timer_signals.load(), 100u);
+}
+
+TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
+    const auto engine = make_process_engine(3), paper = make_process_engine({.workers = 3, .arrangement = Arrangement::paper});
+    const auto message = [&](Engine& asked_engine, const Scene& scene, const Asked& asked) -> std::string {
+        try {
+            (void)testing::ask(asked_engine, scene, asked);
+        } catch (const Error& error) {
+            return std::to_string(int(error.code())) + error.what();
+        }
+        return "no error";
+    };
+    samples::RandomStream random(testing::test_seed(1), 1);
+    for (int i = 0; i < 30; ++i) {
+        Scene bad = scene_;
+        for (auto wrong = 1 + random.below(3); wrong > 0; --wrong) {
+            const std::size_t index = random.below(bad.first.size());
+            bad.first[index].max[random.below(3)] = i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : -1e30f;
+            if (i % 5 == 0) bad.second[index / 2].min[0] = std::numeric_limits<float>::infinity();
+            if (i % 7 == 0) bad.padding[index] = -1;
+        }
+        bad.wide_first = testing::Scene("uniform", 1, 1).wide_first;
+        Asked asked = testing::random_call(random.next());
+        asked.wide = false;
+        SCOPED_TRACE(asked.describe());
+        const std::string expected = message(*local_, bad, asked);
+        EXPECT_EQ(message(*engine, bad, asked), expected);
+        EXPECT_EQ(message(*paper, bad, asked), expected);
+        EXPECT_NE(expected, "no error");
+    }
+    expect_right(*engine, scene_, {});
+    EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+}
+
+TEST_F(Applications, MayThrowFromTheirSinks) {
+    struct Mine {};
+    const Scene scene("world10", 14'000, 1);
+    const auto engine = make_process_engine(3);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        for (const int at : {1, 2, 4}) {
+            int calls = 0;
+            Options options;
+            options.order = order;
+            options.buffer_bytes = 0;
+            const PairSink sink = [&](std::span<const Pair>) {
+                if (++calls == at) throw Mine();
+            };
+            EXPECT_THROW(engine->stream_pairs(scene.objects({}), sink, options), Mine);
+            EXPECT_EQ(calls, at);
+            options.progress = [&, told = 0](double) mutable {
+                if (++told == std::min(at, 2)) throw Mine();
+            };
+            PairList list;
+            EXPECT_THROW(engine->find_pairs(scene.objects({}), list, options), Mine);
+            EXPECT_EQ(list.size(), 0u);
+        }
+        expect_right(*engine, scene, {.how = How::stream, .order = order});
+    }
+    EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+}
+
+TEST_F(Applications, MayLimitThePairs) {
+    const Scene scene("world10", 14'000, 1);
+    const auto engine = make_process_engine(3);
+    const std::uint64_t all = testing::ask(*local_, scene, {.how = How::count}).count;
+    for (const std::uint64_t limit : {std::uint64_t(0), std::uint64_t(1), all / 2, all - 1, all, all + 1}) {
+        for (Asked asked : testing::all_ways()) {
+            asked.limit = limit;
+            expect_right(*engine, scene, asked);
+        }
+    }
+    EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+}
+
+TEST_F(Applications, MayCallFromManyThreads) {
+    const auto engine = make_process_engine(2);
+    std::vector<std::jthread> threads;
+    for (std::uint64_t i = 0; i < 4; ++i) {
+        threads.emplace_back([&, i] {
+            for (std::uint64_t call = 0; call < 5; ++call) {
+                const Asked asked = testing::random_call(i * 10 + call);
+                EXPECT_EQ(testing::ask(*engine, scene_, asked), testing::ask(*make_local_engine(1), scene_, asked));
+                (void)worker_faults(*engine);
+            }
+        });
+    }
+}
+
+TEST_F(Applications, HaveNoFaultsOfOtherEngines) { EXPECT_THROW((void)worker_faults(*local_), Error); }
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,115 @@
+#include "processes/asked.hpp"
+
+#include "samples/random.hpp"
+#include "samples/scenes.hpp"
+#include "support/kinds.hpp"
+
+namespace octopair::testing {
+
+namespace {
+
+Options options_of(const Asked& asked) {
+    Options options;
+    options.order = asked.order;
+    options.margin = asked.margin;
+    options.limit = asked.limit;
+    if (asked.windows) options.buffer_bytes = 0;
+    return options;
+}
+
+std::vector<Box3f> boxes_of(const std::string& kind, std::uint64_t objects, std::uint64_t seed) {
+    if (kind != "crowd") return make_boxes(kind, objects, seed);
+    std::vector<Box3f> boxes = make_boxes("uniform", objects - objects / 40, seed);
+    const std::vector<Box3f> crowd = make_boxes("coincident", objects / 40, seed);
+    boxes.insert(boxes.end(), crowd.begin(), crowd.end());
+    return boxes;
+}
+
+}  // namespace
+
+std::string Asked::describe() const {
+    constexpr const char* names[] = {"list", "stream", "count"};
+    std::string text = names[int(how)];
+    text += order == Order::octal ? " octal" : " ascending";
+    if (windows) text += ", in windows";
+    if (join) text += ", join";
+    if (padded) text += ", padded";
+    if (wide) text += ", float64";
+    if (margin > 0) text += ", margin " + std::to_string(margin);
+    if (limit) text += ", limit " + std::to_string(*limit);
+    return text;
+}
+
+Scene::Scene(const std::string& name, std::uint64_t objects, std::uint64_t seed)
+    : kind(name),
+      first(boxes_of(name, objects, seed)),
+      second(boxes_of(name, objects / 2, seed + 1)),
+      wide_first(widened(first)),
+      wide_second(widened(second)) {
+    samples::RandomStream random(seed, 3);
+    for (std::size_t i = 0; i < first.size(); ++i) padding.push_back(random.uniform(0, 1e-3));
+}
+
+Objects Scene::objects(const Asked& asked) const {
+    Objects all;
+    if (asked.wide) {
+        all.boxes = std::span(wide_first);
+    } else {
+        all.boxes = std::span(first);
+    }
+    if (asked.padded) all.padding = padding;
+    return all;
+}
+
+Objects Scene::others(const Asked& asked) const {
+    if (asked.wide) return {std::span(wide_second), {}};
+    return {std::span(second), {}};
+}
+
+Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_token stop) {
+    const Options options = options_of(asked);
+    const Objects objects = scene.objects(asked), others = scene.others(asked);
+    Answer answer;
+    if (asked.how == How::list) {
+        PairList list;
+        const Summary summary = asked.join ? engine.find_pairs_between(objects, others, list, options, stop)
+                                           : engine.find_pairs(objects, list, options, stop);
+        answer = {list.to_vector(), summary.pairs, summary.truncated};
+    } else if (asked.how == How::stream) {
+        const PairSink sink = [&](std::span<const Pair> batch) {
+            answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end());
+        };
+        const Summary summary = asked.join ? engine.stream_pairs_between(objects, others, sink, options, stop)
+                                           : engine.stream_pairs(objects, sink, options, stop);
+        answer.count = summary.pairs;
+        answer.truncated = summary.truncated;
+    } else {
+        answer.count = asked.join ? engine.count_pairs_between(objects, others, options, stop)
+                                  : engine.count_pairs(objects, options, stop);
+    }
+    return answer;
+}
+
+std::vector<Asked> all_ways() {
+    std::vector<Asked> ways;
+    for (const Order order : {Order::octal, Order::ascending}) {
+        ways.push_back({.how = How::list, .order = order});
+        ways.push_back({.how = How::stream, .order = order});
+        ways.push_back({.how = How::stream, .order = order, .windows = true});
+    }
+    ways.push_back({.how = How::count});
+    return ways;
+}
+
+Asked random_call(std::uint64_t seed) {
+    samples::RandomStream random(seed, 11);
+    const std::vector<Asked> ways = all_ways();
+    Asked asked = ways[random.below(ways.size())];
+    asked.join = random.below(4) == 0;
+    asked.wide = random.below(3) == 0;
+    asked.padded = random.below(4) == 0;
+    if (random.below(3) == 0) asked.margin = random.uniform(0, 1e-3);
+    return asked;
+}
+
+}  // namespace octopair::testing

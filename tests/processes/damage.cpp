@@ -1,0 +1,88 @@
+#include "processes/damage.hpp"
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "engine/processes/layout.hpp"
+#include "samples/random.hpp"
+
+namespace octopair::testing {
+
+namespace {
+
+/// Where the desk is mapped in this process.
+std::byte* find_desk() {
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+        if (line.find("memfd:octopair") == std::string::npos) continue;
+        auto* const begin = reinterpret_cast<std::byte*>(std::strtoull(line.c_str(), nullptr, 16));
+        std::uint64_t mark = 0;
+        std::memcpy(&mark, begin, sizeof mark);
+        if (mark == desk_mark) return begin;
+    }
+    return nullptr;
+}
+
+class Damage final : public ShareObserver {
+public:
+    Damage(std::uint64_t seed, unsigned slot) : random_(seed, slot), slot_(slot) {
+        // One that takes over does something else than the one before.
+        for (auto i = std::uint64_t(::getpid()) % 64; i > 0; --i) (void)random_.below(2);
+    }
+
+    void begin(Step) override { perhaps(40); }
+    void tick() override { perhaps(300); }
+    void end() override { perhaps(40); }
+
+private:
+    void perhaps(std::uint64_t one_in) {
+        if (random_.below(one_in) != 0) return;
+        if (desk_ == nullptr) desk_ = find_desk();
+        if (desk_ != nullptr) write();
+    }
+
+    void write() {
+        const std::uint64_t shares = 200;
+        switch (random_.below(6)) {
+            case 0:
+                return scribble(DeskPlaces::slots + slot_ * sizeof(Slot), sizeof(Slot));
+            case 1:
+                return scribble(DeskPlaces::shares + random_.below(shares) * sizeof(Share), sizeof(Share));
+            case 2:
+                return scribble(DeskPlaces::runs + random_.below(shares) * sizeof(Run), sizeof(Run));
+            case 3:
+                return scribble(DeskPlaces::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
+                                sizeof(RingEntry));
+            case 4:
+                return scribble(DeskPlaces::logs + slot_ * most_logged * sizeof(LoggedPage), 64);
+            default:
+                return scribble(DeskPlaces::commits + 2 * slot_ * sizeof(Commit), 256);
+        }
+    }
+
+    /// Overwrites a word of [offset, offset + size), or a few.
+    void scribble(std::uint64_t offset, std::uint64_t size) {
+        const std::uint64_t words = random_.below(3) == 0 ? 4 : 1;
+        for (std::uint64_t i = 0; i < words; ++i) {
+            const std::uint64_t value = random_.next() >> random_.below(64);
+            std::memcpy(desk_ + offset + random_.below(size / 8) * 8, &value, sizeof value);
+        }
+    }
+
+    samples::RandomStream random_;
+    unsigned slot_;
+    std::byte* desk_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<ShareObserver> make_damage(std::uint64_t seed, unsigned slot) {
+    return std::make_unique<Damage>(seed, slot);
+}
+
+}  // namespace octopair::testing

@@ -1,0 +1,154 @@
+// A thousand and more faults, at every step of every kind of call: the pairs are those of the local engine, and the
+// engine's account of its workers is that of the plan, fault by fault.
+//
+// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>, with the same test.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+
+#include "processes/asked.hpp"
+#include "processes/fault_plan.hpp"
+#include "processes/leftovers.hpp"
+#include "samples/random.hpp"
+#include "support/compare.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using samples::RandomStream;
+using testing::Answer;
+using testing::Asked;
+using testing::Fault;
+using testing::FaultKind;
+using testing::How;
+using testing::Moment;
+
+constexpr std::array fault_steps = {Step::encode, Step::merge, Step::sort, Step::scan, Step::order};
+constexpr std::uint64_t faults_a_case = testing::scaled(115, 8);
+constexpr unsigned most_of_a_step = 2;  // in one call: the third of a share would end it
+constexpr unsigned most_tries = 20;
+
+/// What is asked in one case, and of what.
+struct FaultCase {
+    const char* name;
+    const char* scene;
+    std::uint64_t objects;
+    unsigned workers;
+    How how;
+    Order order;
+    bool windows = false;
+};
+
+void PrintTo(const FaultCase& a_case, std::ostream* out) { *out << a_case.name; }
+
+Fault random_fault(Step step, RandomStream& random) {
+    Fault fault;
+    fault.step = step;
+    fault.kind = FaultKind(random.below(3));
+    fault.moment = Moment(random.below(3));
+    fault.ticks = std::uint32_t(random.below(random.below(2) == 0 ? 2 : 30));
+    fault.pass_by = step == Step::scan || step == Step::order ? std::uint32_t(random.below(60)) : 0;
+    return fault;
+}
+
+/// Faults for one call, in the order of the steps.
+std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
+    std::vector<Fault> faults;
+    for (const Step step : fault_steps) {
+        if (step == Step::order && !ordered) continue;
+        for (auto i = random.below(most_of_a_step + 1); i > 0; --i) faults.push_back(random_fault(step, random));
+    }
+    return faults;
+}
+
+class Faults : public testing::Processes, public ::testing::WithParamInterface<FaultCase> {
+protected:
+    /// Makes one call until all faults that were planned for it have been taken.
+    void fail_within(Engine& engine, const Asked& asked, std::span<const Fault> faults) {
+        const auto local = make_local_engine(2);
+        const Answer expected = testing::ask(*local, scene_, asked);
+        plan_.set(faults);
+        for (unsigned tries = 0; !plan_.empty() && tries < most_tries; ++tries) {
+            const Answer answer = testing::ask(engine, scene_, asked);
+            EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
+            EXPECT_EQ(answer.count, expected.count);
+            EXPECT_EQ(answer.truncated, expected.truncated);
+        }
+        plan_.set({});
+    }
+
+    /// What happened must be all that the engine counted.
+    void expect_accounted(const Engine& engine) {
+        const testing::FaultCounts happened = plan_.happened();
+        const WorkerFaults counted = worker_faults(engine);
+        std::uint64_t ended = 0, stopped = 0;
+        for (std::size_t step = 0; step < happened.size(); ++step) {
+            const auto [kills, crashes, stops] = happened[step];
+            EXPECT_EQ(counted.in_share[step], kills + crashes + stops) << step_names[step];
+            ended += kills + crashes;
+            stopped += stops;
+        }
+        EXPECT_EQ(counted.ended, ended);
+        EXPECT_EQ(counted.stopped, stopped);
+    }
+
+    /// Every step that the call has, by every kind of fault.
+    void expect_all_kinds(bool ordered) {
+        if (testing::sanitized) return;
+        const testing::FaultCounts happened = plan_.happened();
+        for (const Step step : fault_steps) {
+            if (step == Step::order && !ordered) continue;
+            for (const std::uint64_t count : happened[std::size_t(step)]) {
+                EXPECT_GT(count, 0u) << step_names[std::size_t(step)];
+            }
+        }
+    }
+
+    std::uint64_t happened() const {
+        std::uint64_t all = 0;
+        for (const auto& kinds : plan_.happened()) all = std::accumulate(kinds.begin(), kinds.end(), all);
+        return all;
+    }
+
+    testing::MappedPlan plan_;
+    testing::Scene scene_{GetParam().scene, GetParam().objects, 1};
+};
+
+TEST_P(Faults, ChangeNoPair) {
+    const std::uint64_t seed = testing::test_seed(1);
+    SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+    const FaultCase& a_case = GetParam();
+    const bool ordered = a_case.order == Order::ascending && a_case.how != How::count;
+    const auto engine = testing::make_faulty_engine(a_case.workers);
+    for (std::uint64_t call = 0; happened() < faults_a_case && !HasFailure(); ++call) {
+        ASSERT_LT(call, 50 * faults_a_case) << "too few faults happen";
+        RandomStream random(seed, call);
+        Asked asked = testing::random_call(random.next());
+        asked.how = a_case.how;
+        asked.order = a_case.order;
+        asked.windows = a_case.windows;
+        SCOPED_TRACE("call " + std::to_string(call) + ": " + asked.describe());
+        fail_within(*engine, asked, random_faults(ordered, random));
+    }
+    expect_accounted(*engine);
+    expect_all_kinds(ordered);
+    RecordProperty("faults", int(happened()));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , Faults,
+    ::testing::Values(FaultCase{"ListOctal", "uniform", 16'000, 3, How::list, Order::octal},
+                      FaultCase{"ListOctalOfACrowd", "crowd", 14'000, 2, How::list, Order::octal},
+                      FaultCase{"ListAscending", "clustered", 16'000, 3, How::list, Order::ascending},
+                      FaultCase{"ListAscendingOfACrowd", "crowd", 14'000, 3, How::list, Order::ascending},
+                      FaultCase{"StreamOctal", "rods", 16'000, 3, How::stream, Order::octal, true},
+                      FaultCase{"StreamOctalByOne", "clustered", 8'000, 1, How::stream, Order::octal, true},
+                      FaultCase{"StreamAscending", "rods", 13'000, 2, How::stream, Order::ascending},
+                      FaultCase{"StreamWindows", "world10", 16'000, 3, How::stream, Order::ascending, true},
+                      FaultCase{"Count", "uniform", 21'000, 5, How::count, Order::octal}),
+    [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,99 @@
+// A worker that fails: octopair-worker, with faults that a plan asks for (fault_plan.hpp) and damage to the memory that
+// it shares with the client (damage.hpp).
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/processes/worker.hpp"
+#include "processes/damage.hpp"
+#include "processes/fault_plan.hpp"
+
+namespace octopair::testing {
+namespace {
+
+[[noreturn]] void end_by(int signal) {
+    // Also where a sanitizer handles it.
+    (void)::signal(signal, SIG_DFL);
+    (void)::raise(signal);
+    ::_exit(99);
+}
+
+class PlannedFaults final : public ShareObserver {
+public:
+    explicit PlannedFaults(MappedPlan& plan) : plan_(plan) {}
+
+    void begin(Step step) override {
+        step_ = step;
+        // One whose pass was given up before its moment is dropped.
+        fault_ = take(step);
+        ticks_ = 0;
+        if (fault_ && fault_->moment == Moment::begin) happen();
+    }
+    void tick() override {
+        if (fault_ && fault_->moment == Moment::tick && ticks_++ == fault_->ticks) happen();
+    }
+    void end() override {
+        if (fault_) happen();
+    }
+
+private:
+    std::optional<Fault> take(Step step) {
+        for (;;) {
+            std::uint32_t next = plan_->next.load();
+            if (next >= plan_->end.load()) return std::nullopt;
+            const Fault fault = plan_->faults.at(next % FaultPlan::most);
+            if (fault.step != step) return std::nullopt;
+            if (plan_->passed.fetch_add(1) < fault.pass_by) return std::nullopt;
+            if (!plan_->next.compare_exchange_strong(next, next + 1)) continue;
+            plan_->passed.store(0);
+            return fault;
+        }
+    }
+
+    void happen() {
+        const Fault fault = *fault_;
+        fault_.reset();
+        plan_->happened.at(std::size_t(step_)).at(std::size_t(fault.kind)).fetch_add(1);
+        switch (fault.kind) {
+            case FaultKind::kill:
+                end_by(SIGKILL);
+            case FaultKind::crash:
+                end_by(SIGSEGV);
+            case FaultKind::stop:
+                (void)::raise(SIGSTOP);
+        }
+    }
+
+    MappedPlan& plan_;
+    Step step_ = Step::prepare;
+    std::optional<Fault> fault_;
+    std::uint32_t ticks_ = 0;
+};
+
+std::unique_ptr<ShareObserver> make_observer(unsigned slot, MappedPlan& plan) {
+    if (const char* const seed = std::getenv(damage_variable)) {
+        return make_damage(std::strtoull(seed, nullptr, 10), slot);
+    }
+    if (plan) return std::make_unique<PlannedFaults>(plan);
+    return nullptr;
+}
+
+}  // namespace
+}  // namespace octopair::testing
+
+int main(int count, char** arguments) {
+    if (count != 2) return 2;
+    const auto slot = unsigned(std::strtoul(arguments[1], nullptr, 10));
+    octopair::testing::MappedPlan plan{octopair::testing::MappedPlan::Named{}};
+    const auto observer = octopair::testing::make_observer(slot, plan);
+    try {
+        octopair::run_worker(octopair::Descriptor(octopair::worker_socket), slot, observer.get(), [] { ::_exit(0); });
+    } catch (const std::exception&) {
+        return 1;
+    }
+}

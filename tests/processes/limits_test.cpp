@@ -1,0 +1,182 @@
+// Too few descriptors, too little memory, files that may not grow: typed errors, never a signal, and an engine that goes
+// on to work.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "processes/asked.hpp"
+#include "processes/leftovers.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Answer;
+using testing::Asked;
+using testing::How;
+using testing::Scene;
+
+/// Lowers a limit of this process, and of what it starts, while it lives.
+class Lowered {
+public:
+    Lowered(decltype(RLIMIT_AS) resource, rlim_t to) : resource_(resource) {
+        (void)::getrlimit(resource_, &before_);
+        const rlimit lower{to, before_.rlim_max};
+        EXPECT_EQ(::setrlimit(resource_, &lower), 0);
+    }
+    ~Lowered() { (void)::setrlimit(resource_, &before_); }
+    Lowered(const Lowered&) = delete;
+    Lowered& operator=(const Lowered&) = delete;
+
+private:
+    decltype(RLIMIT_AS) resource_;
+    rlimit before_{};
+};
+
+class WorkerLimits : public testing::Processes {
+protected:
+    enum class End { right, refused };
+    /// The right answer, or an Error of the resources or of the engine.
+    End right_or_refused(Engine& engine, const Scene& scene, const Asked& asked) {
+        const Answer expected = testing::ask(*local_, scene, asked);
+        try {
+            EXPECT_EQ(testing::ask(engine, scene, asked), expected);
+            return End::right;
+        } catch (const Error& error) {
+            EXPECT_TRUE(error.code() == ErrorCode::resource_limit || error.code() == ErrorCode::engine_failed)
+                << error.what();
+            EXPECT_GT(std::string(error.what()).size(), 10u);
+            return End::refused;
+        }
+    }
+    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
+        EXPECT_EQ(testing::ask(engine, scene, asked), testing::ask(*local_, scene, asked));
+    }
+
+    const std::unique_ptr<Engine> local_ = make_local_engine(1);
+    const Scene scene_{"clustered", 14'000, 1};
+    const Scene crowd_{"coincident", 5'000, 1};  // 100 MB of pairs
+};
+
+rlim_t used_descriptors() {
+    const int lowest = ::dup(0);
+    ::close(lowest);
+    return rlim_t(lowest);
+}
+
+TEST_F(WorkerLimits, OfDescriptorsWhileItIsMade) {
+    unsigned made = 0, refused = 0;
+    const rlim_t used = used_descriptors();
+    for (rlim_t more = 0; more < 24; ++more) {
+        const Lowered lowered(RLIMIT_NOFILE, used + more);
+        try {
+            const auto engine = make_process_engine(2);
+            ++made;
+            if (right_or_refused(*engine, scene_, {}) == End::refused) ++refused;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(made, 2u);
+    EXPECT_GT(refused, 2u);
+}
+
+TEST_F(WorkerLimits, OfDescriptorsLater) {
+    const auto engine = make_process_engine(3);
+    expect_right(*engine, scene_, {});
+    for (rlim_t more = 0; more < 12; ++more) {
+        for (const pid_t worker : testing::children_of(::getpid())) (void)::kill(worker, SIGKILL);
+        {
+            const Lowered lowered(RLIMIT_NOFILE, used_descriptors() - rlim_t(6) + more);
+            (void)right_or_refused(*engine, scene_, {.how = How::stream});
+        }
+        expect_right(*engine, scene_, {.how = How::stream});
+    }
+}
+
+TEST_F(WorkerLimits, OfFilesWhileItIsMade) {
+    for (const rlim_t bytes : {rlim_t(0), rlim_t(4096), rlim_t(1) << 20, rlim_t(1) << 30}) {
+        const Lowered lowered(RLIMIT_FSIZE, bytes);
+        try {
+            const auto engine = make_process_engine(2);
+            (void)right_or_refused(*engine, scene_, {});
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+        }
+    }
+}
+
+TEST_F(WorkerLimits, OfFilesThatPairsDoNotFitInto) {
+    for (const rlim_t bytes : {rlim_t(1) << 14, rlim_t(1) << 20, rlim_t(16) << 20, rlim_t(64) << 20}) {
+        const auto engine = make_process_engine(2);
+        const Lowered lowered(RLIMIT_FSIZE, bytes);
+        for (const Order order : {Order::octal, Order::ascending}) {
+            SCOPED_TRACE(std::to_string(bytes) + ", order " + std::to_string(int(order)));
+            try {
+                (void)testing::ask(*engine, crowd_, {.how = How::list, .order = order});
+                ADD_FAILURE() << "fitted";
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+            }
+            if (bytes >= rlim_t(16) << 20) expect_right(*engine, scene_, {.how = How::list, .order = order});
+        }
+        if (bytes >= rlim_t(16) << 20) expect_right(*engine, crowd_, {.how = How::count});
+        EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+    }
+}
+
+rlim_t mapped_bytes() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return rlim_t(pages) * rlim_t(::sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(WorkerLimits, OfAddressSpace) {
+    if (testing::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    unsigned made = 0, refused = 0;
+    for (const unsigned shift : {20u, 26u, 28u, 30u, 31u, 32u, 33u, 34u, 36u}) {
+        const Lowered lowered(RLIMIT_AS, mapped_bytes() + (rlim_t(1) << shift));
+        try {
+            const auto engine = make_process_engine(2);
+            ++made;
+            if (right_or_refused(*engine, scene_, {.order = Order::ascending}) == End::refused) ++refused;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(made, 1u);
+    EXPECT_GT(refused, 1u);
+}
+
+/// What a child that may start no more processes exits with. The super-user may start any number; nobody else.
+int fail_without_processes() {
+    if (::getuid() == 0 && ::setuid(65534) != 0) return 0;
+    const rlimit none{1, 1};
+    if (::setrlimit(RLIMIT_NPROC, &none) != 0) return 0;
+    try {
+        const auto engine = make_process_engine(2);
+        (void)engine->count_pairs(Objects{std::span<const Box3f>()});
+        return 1;
+    } catch (const Error& error) {
+        return error.code() == ErrorCode::resource_limit || error.code() == ErrorCode::engine_failed ? 0 : 2;
+    }
+}
+
+TEST_F(WorkerLimits, OfProcesses) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) ::_exit(fail_without_processes());
+    int status = -1;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+}  // namespace
+}  // namespace octopair

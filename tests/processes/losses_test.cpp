@@ -1,0 +1,167 @@
+// Workers that are lost outside of any plan: between calls, all at once, at random times, and again and again at the same
+// work.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "processes/asked.hpp"
+#include "processes/fault_plan.hpp"
+#include "processes/leftovers.hpp"
+#include "samples/random.hpp"
+#include "support/compare.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::Answer;
+using testing::Asked;
+using testing::Fault;
+using testing::FaultKind;
+using testing::How;
+using testing::Moment;
+using testing::Scene;
+
+class WorkerLosses : public testing::Processes {
+protected:
+    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
+        SCOPED_TRACE(asked.describe());
+        const Answer expected = testing::ask(*make_local_engine(2), scene, asked);
+        const Answer answer = testing::ask(engine, scene, asked);
+        EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
+        EXPECT_EQ(answer.count, expected.count);
+    }
+};
+
+/// Ends or stops workers of this process; whether it found any.
+bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {
+    const auto workers = testing::children_of(::getpid());
+    for (std::size_t i = 0; i < std::min(most, workers.size()); ++i) {
+        (void)::kill(workers[(i + choice) % workers.size()], signal);
+    }
+    return !workers.empty();
+}
+
+TEST_F(WorkerLosses, BetweenCallsAreMadeGood) {
+    const Scene scene("clustered", 16'000, 1);
+    const auto engine = make_process_engine(3);
+    std::uint64_t ended = 0, stopped = 0;
+    for (const int signal : {SIGKILL, SIGSTOP, SIGTERM, SIGSEGV}) {
+        for (const std::size_t most : {1u, 3u}) {
+            ASSERT_TRUE(signal_workers(signal, most));
+            std::this_thread::sleep_for(milliseconds(50));
+            (signal == SIGSTOP ? stopped : ended) += most;
+            expect_right(*engine, scene, {.how = How::list, .order = Order::ascending});
+            expect_right(*engine, scene, {.how = How::stream, .order = Order::octal, .windows = true});
+        }
+    }
+    const WorkerFaults faults = worker_faults(*engine);
+    EXPECT_EQ(faults.ended, ended);
+    EXPECT_EQ(faults.stopped, stopped);
+    EXPECT_EQ(faults.in_share, decltype(faults.in_share){});
+}
+
+TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
+    const Scene scene("clustered", 6'000, 1);  // few enough for one worker
+    testing::MappedPlan plan;
+    const auto engine = testing::make_faulty_engine(3);
+    for (const Step step : {Step::encode, Step::merge, Step::sort, Step::scan, Step::order}) {
+        for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
+            const Asked asked{.how = How::list, .order = Order::ascending};
+            const Fault fault{.step = step, .kind = kind, .moment = kind == FaultKind::kill ? Moment::begin : Moment::end};
+            plan.set(std::vector<Fault>(3, fault));
+            try {
+                (void)testing::ask(*engine, scene, asked);
+                ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::engine_failed) << error.what();
+                EXPECT_NE(std::string(error.what()).find(step_names[std::size_t(step)]), std::string::npos)
+                    << error.what();
+            }
+            expect_right(*engine, scene, asked);
+            plan.set(std::vector<Fault>(2, fault));
+            expect_right(*engine, scene, asked);
+            EXPECT_TRUE(plan.empty());
+        }
+    }
+}
+
+TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
+    const Scene scene("world10", 6'000, 1);
+    testing::MappedPlan plan;
+    const auto engine = testing::make_faulty_engine(2);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        for (std::uint32_t ticks = 0; ticks < 12; ++ticks) {
+            const Fault fault{.step = Step::scan, .moment = Moment::tick, .ticks = ticks, .pass_by = ticks / 2};
+            plan.set(std::vector<Fault>(2, fault));
+            expect_right(*engine, scene, {.how = How::stream, .order = order, .windows = true});
+        }
+    }
+}
+
+/// Signals workers from another thread, every so often, as long as it lives.
+class Disturber {
+public:
+    Disturber(int signal, std::size_t at_once, milliseconds pause, std::uint64_t seed)
+        : thread_([=](std::stop_token stop) {
+              samples::RandomStream random(seed, 5);
+              while (!stop.stop_requested()) {
+                  std::this_thread::sleep_for(pause + milliseconds(random.below(20)));
+                  (void)signal_workers(signal, at_once, random.below(8));
+              }
+          }) {}
+
+private:
+    std::jthread thread_;
+};
+
+class Disturbed : public WorkerLosses {
+protected:
+    void call_while_disturbed(int signal, std::size_t at_once) {
+        const std::uint64_t seed = testing::test_seed(1);
+        SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        const Scene scene("rods", 13'000, seed), crowd("crowd", 13'000, seed);
+        const auto engine = make_process_engine(3);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+        {
+            const milliseconds pause(at_once == 1 ? 60 : 250);
+            const Disturber disturber(signal, at_once, testing::sanitized ? 5 * pause : pause, seed);
+            for (std::uint64_t i = 0; std::chrono::steady_clock::now() < end && !HasFailure(); ++i) {
+                expect_right(*engine, i % 2 == 0 ? scene : crowd, testing::random_call(seed + i));
+            }
+        }
+        expect_right(*engine, scene, {});
+        const WorkerFaults faults = worker_faults(*engine);
+        EXPECT_GT(faults.ended + faults.stopped, 0u);
+    }
+};
+
+TEST_F(Disturbed, ByKillsAtRandomTimes) { call_while_disturbed(SIGKILL, 1); }
+TEST_F(Disturbed, ByStopsAtRandomTimes) { call_while_disturbed(SIGSTOP, 1); }
+TEST_F(Disturbed, ByTheEndOfAllWorkersAtOnce) { call_while_disturbed(SIGKILL, 3); }
+
+TEST_F(WorkerLosses, OutliveTheEngineNowhere) {
+    for (unsigned workers = 1; workers <= 6; ++workers) {
+        auto engine = make_process_engine(workers);
+        EXPECT_EQ(testing::children_of(::getpid()).size(), workers);
+        (void)signal_workers(workers % 2 == 0 ? SIGSTOP : SIGKILL, workers / 2);
+        engine = nullptr;
+        EXPECT_TRUE(testing::children_of(::getpid()).empty());
+    }
+}
+
+TEST_F(WorkerLosses, LeaveAListThatOutlivesItsEngine) {
+    const Scene scene("clustered", 16'000, 1);
+    PairList list;
+    (void)make_process_engine(2)->find_pairs(scene.objects({}), list);
+    std::vector<Pair> expected = testing::ask(*make_local_engine(1), scene, {.order = Order::ascending}).pairs;
+    EXPECT_TRUE(testing::same_bytes(list.to_vector(), expected));
+    list = PairList();
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,123 @@
+// Workers against threads, on random calls about random and degenerate scenes.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+
+#include "octopair/processes.hpp"
+#include "processes/leftovers.hpp"
+#include "support/cases.hpp"
+#include "support/compare.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Case;
+
+/// One call about the objects of a case, by any engine.
+struct AnyCall {
+    const Case& asked;
+    Order order;
+    bool streamed;
+    bool limited;
+
+    std::vector<Pair> made_by(Engine& engine) const {
+        Options options;
+        options.order = order;
+        options.margin = asked.margin;
+        options.buffer_bytes = asked.buffer_bytes;
+        if (limited) options.limit = asked.limit;
+        const Objects first = asked.first.view();
+        std::vector<Pair> found;
+        if (streamed) {
+            const PairSink sink = [&](auto batch) { found.insert(found.end(), batch.begin(), batch.end()); };
+            asked.second ? engine.stream_pairs_between(first, asked.second->view(), sink, options)
+                         : engine.stream_pairs(first, sink, options);
+        } else {
+            PairList list;
+            asked.second ? engine.find_pairs_between(first, asked.second->view(), list, options)
+                         : engine.find_pairs(first, list, options);
+            found = list.to_vector();
+        }
+        return found;
+    }
+    std::uint64_t counted_by(Engine& engine) const {
+        Options options;
+        options.margin = asked.margin;
+        if (limited) options.limit = asked.limit;
+        const Objects first = asked.first.view();
+        return asked.second ? engine.count_pairs_between(first, asked.second->view(), options)
+                            : engine.count_pairs(first, options);
+    }
+};
+
+/// Kept from case to case: what a call leaves behind must not show in the next.
+class Engines {
+public:
+    Engine& local() { return *local_; }
+    Engine& workers(unsigned count, Arrangement arrangement) {
+        std::unique_ptr<Engine>& engine = engines_[{count, arrangement}];
+        if (!engine) engine = make_process_engine({.workers = count, .arrangement = arrangement});
+        return *engine;
+    }
+
+private:
+    std::unique_ptr<Engine> local_ = make_local_engine(2);
+    std::map<std::pair<unsigned, Arrangement>, std::unique_ptr<Engine>> engines_;
+};
+
+void check_case(Engines& engines, const Case& a_case, Engine& engine) {
+    for (const Order order : {Order::octal, Order::ascending}) {
+        for (const bool limited : {false, true}) {
+            for (const bool streamed : {false, true}) {
+                const AnyCall call{a_case, order, streamed, limited};
+                RC_ASSERT(call.made_by(engine) == call.made_by(engines.local()));
+                RC_ASSERT(call.counted_by(engine) == call.counted_by(engines.local()));
+            }
+        }
+    }
+}
+
+TEST(WorkerProperty, AgreesWithThreads) {
+    Engines engines;
+    const auto kinds = testing::all_kind_names();
+    const bool held = rc::check("workers find what threads find", [&] {
+        const auto kind = *rc::gen::elementOf(kinds);
+        const auto seed = *rc::gen::arbitrary<std::uint32_t>();
+        const auto workers = *rc::gen::inRange(1u, 5u);
+        const auto paper = *rc::gen::inRange(0, 5) == 0;
+        for (std::uint64_t i = 0; i < testing::scaled(8, 8); ++i) {
+            const Case a_case = testing::make_case(kind, seed + i);
+            RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
+            check_case(engines, a_case, engines.workers(workers, paper ? Arrangement::paper : Arrangement::shared));
+        }
+    });
+    EXPECT_TRUE(held);
+}
+
+constexpr std::uint64_t most_pairs = testing::scaled(1'000'000, 8);
+
+/// The kinds with more objects, so that several workers take part.
+TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
+    Engines engines;
+    std::uint64_t seed = testing::test_seed(1);
+    for (const std::string& kind : testing::all_kind_names()) {
+        SCOPED_TRACE(kind + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        Case a_case;
+        a_case.first.boxes = testing::make_double_boxes(kind, 13'000, seed++);
+        const AnyCall count{a_case, Order::octal, false, false};
+        if (count.counted_by(engines.local()) > most_pairs) continue;
+        Engine& engine = engines.workers(3, Arrangement::shared);
+        for (const Order order : {Order::octal, Order::ascending}) {
+            for (const bool streamed : {false, true}) {
+                const AnyCall call{a_case, order, streamed, false};
+                EXPECT_TRUE(testing::same_bytes(call.made_by(engine), call.made_by(engines.local())));
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octopair

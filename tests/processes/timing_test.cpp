@@ -1,0 +1,181 @@
+// What must be done in time: stops that are noticed, cancellation, and the end of workers whose application is gone.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <optional>
+#include <thread>
+
+#include "processes/asked.hpp"
+#include "processes/fault_plan.hpp"
+#include "processes/leftovers.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using testing::Asked;
+using testing::Fault;
+using testing::FaultKind;
+using testing::How;
+using testing::Scene;
+
+class WorkerTiming : public testing::Processes {};
+
+TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
+    const Scene scene("clustered", 14'000, 1);
+    testing::MappedPlan plan;
+    const auto engine = testing::make_faulty_engine(3);
+    (void)testing::ask(*engine, scene, {});
+    for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
+        for (const Step step : {Step::encode, Step::scan}) {
+            plan.set(std::vector<Fault>{{.step = step, .kind = kind}});
+            const auto begin = Clock::now();
+            (void)testing::ask(*engine, scene, {});
+            EXPECT_LT(Clock::now() - begin, milliseconds(testing::sanitized ? 10000 : 1000));
+            EXPECT_TRUE(plan.empty());
+        }
+    }
+}
+
+constexpr milliseconds cancel_patience(testing::sanitized ? 3000 : 200);
+
+/// How long a call took to end after it was asked to stop; nothing if it was done before.
+std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked, milliseconds delay) {
+    std::stop_source source;
+    Clock::time_point begin;
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(delay);
+        begin = Clock::now();
+        source.request_stop();
+    });
+    bool finished = false;
+    try {
+        (void)testing::ask(engine, scene, asked, source.get_token());
+        finished = true;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+    }
+    const Clock::time_point end = Clock::now();
+    stopper.join();
+    return finished ? std::nullopt : std::optional(end - begin);
+}
+
+class WorkerCancel : public WorkerTiming, public ::testing::WithParamInterface<const char*> {
+protected:
+    void expect_cancelled(Engine& engine, const Scene& scene, const Asked& asked) {
+        for (const int delay : {0, 3, 15, 40, 90, 200}) {
+            SCOPED_TRACE(asked.describe() + ", after " + std::to_string(delay) + " ms");
+            std::optional<Clock::duration> took;
+            // Any thread may be delayed on a machine that is busy otherwise.
+            for (int attempt = 0; attempt < 3; ++attempt) {
+                took = time_to_cancel(engine, scene, asked, milliseconds(delay));
+                if (!took || *took <= cancel_patience) break;
+            }
+            EXPECT_LE(took.value_or(milliseconds(0)), cancel_patience)
+                << std::chrono::duration<double>(took.value_or(milliseconds(0))).count() << " s";
+        }
+    }
+};
+
+TEST_P(WorkerCancel, IsSoonDone) {
+    const bool crowd = std::string(GetParam()) == "coincident";
+    const Scene scene(GetParam(), testing::scaled(crowd ? 200'000 : 1'500'000, 10), 1), few("clustered", 5'000, 1);
+    const auto engine = make_process_engine(3);
+    for (Asked asked : testing::all_ways()) {
+        if (crowd && asked.how == How::list) continue;
+        for (const bool join : {false, true}) {
+            asked.join = join;
+            expect_cancelled(*engine, scene, asked);
+        }
+        EXPECT_EQ(testing::ask(*engine, few, asked), testing::ask(*make_local_engine(1), few, asked));
+    }
+    EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(, WorkerCancel, ::testing::Values("dense", "rods", "coincident"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+/// The helper that ends badly (application.cpp), and the ids of its workers.
+struct Application {
+    explicit Application(const char* how) {
+        int ends[2];
+        EXPECT_EQ(::pipe(ends), 0);
+        id = ::fork();
+        if (id == 0) {
+            (void)::dup2(ends[1], 1);
+            ::close(ends[0]);
+            ::close(ends[1]);
+            (void)::execl(OCTOPAIR_BAD_APPLICATION, "application", how, nullptr);
+            ::_exit(127);
+        }
+        ::close(ends[1]);
+        FILE* const out = ::fdopen(ends[0], "r");
+        for (char line[64]; std::fgets(line, sizeof line, out) != nullptr && line[0] != 'd';) {
+            workers.push_back(pid_t(std::strtol(line, nullptr, 10)));
+        }
+        (void)std::fclose(out);
+    }
+
+    std::size_t left() const {
+        std::size_t living = 0;
+        for (const pid_t worker : workers) living += testing::process_lives(worker) ? 1 : 0;
+        return living;
+    }
+
+    pid_t id = -1;
+    std::vector<pid_t> workers;
+};
+
+class WorkersOfTheDead : public WorkerTiming {
+protected:
+    void expect_gone(const Application& application) {
+        EXPECT_EQ(application.workers.size(), 3u);
+        EXPECT_TRUE(testing::comes_true([&] { return application.left() == 0; }, milliseconds(2000)))
+            << application.left() << " workers live on";
+        for (const pid_t worker : application.workers) (void)::kill(worker, SIGKILL);
+    }
+    void kill(const Application& application) {
+        (void)::kill(application.id, SIGKILL);
+        (void)::waitpid(application.id, nullptr, 0);
+    }
+};
+
+TEST_F(WorkersOfTheDead, EndWhenItIsKilled) {
+    for (const char* how : {"idle", "busy"}) {
+        const Application application(how);
+        std::this_thread::sleep_for(milliseconds(50));
+        EXPECT_EQ(application.left(), 3u);
+        kill(application);
+        expect_gone(application);
+    }
+}
+
+TEST_F(WorkersOfTheDead, EndWhenItExits) {
+    const Application application("exit");
+    (void)::waitpid(application.id, nullptr, 0);
+    expect_gone(application);
+}
+
+TEST_F(WorkersOfTheDead, EndThoughTheyAreStopped) {
+    for (const char* how : {"idle", "fork"}) {
+        const Application application(how);
+        (void)::kill(application.workers.at(1), SIGSTOP);
+        std::this_thread::sleep_for(milliseconds(50));
+        kill(application);
+        expect_gone(application);
+    }
+}
+
+TEST_F(WorkersOfTheDead, EndThoughAChildOfItHasTheirSockets) {
+    const Application application("fork");
+    std::this_thread::sleep_for(milliseconds(50));
+    kill(application);
+    expect_gone(application);
+}
+
+}  // namespace
+}  // namespace octopair
