@@ -114,7 +114,6 @@ void Crew::announce(const Pass& pass) {
     desk.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs, std::uint64_t(1) << 62)));
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         Slot& part = view_.slot(slot);
-        crew_[slot].fruitless = 0;
         part.outcome = Outcome::none;
         part.share.store(0);
         part.preparing.store(1);
@@ -128,7 +127,10 @@ void Crew::announce(const Pass& pass) {
 }
 
 std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
-    if (!same_work(pass, last_pass_)) strikes_.clear();
+    if (!same_work(pass, last_pass_)) {
+        strikes_.clear();
+        for (Member& member : crew_) member.fruitless = 0;
+    }
     last_pass_ = pass;
     taking_part_ = pass.workers;
     // A client that keeps looking would take time from workers that have no other core.
