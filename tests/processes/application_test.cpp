@@ -126,7 +126,8 @@ TEST_F(Applications, MayBeInterruptedAllTheTime) {
 }
 
 TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
-    const auto engine = make_process_engine(3), paper = make_process_engine({.workers = 3, .arrangement = Arrangement::paper});
+    const auto engine = make_process_engine(3),
+               paper = make_process_engine({.workers = 3, .arrangement = Arrangement::paper});
     const auto message = [&](Engine& asked_engine, const Scene& scene, const Asked& asked) -> std::string {
         try {
             (void)testing::ask(asked_engine, scene, asked);

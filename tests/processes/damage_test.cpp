@@ -29,7 +29,8 @@ public:
               std::mutex mutex;
               std::unique_lock lock(mutex);
               std::condition_variable_any end;
-              if (!end.wait_for(lock, stop, most, [] { return false; }) && !stop.stop_requested()) source_.request_stop();
+              if (!end.wait_for(lock, stop, most, [] { return false; }) && !stop.stop_requested())
+                  source_.request_stop();
           }) {}
     std::stop_token token() const { return source_.get_token(); }
     bool passed() const { return source_.stop_requested(); }

@@ -72,7 +72,8 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     for (const Step step : {Step::encode, Step::merge, Step::sort, Step::scan, Step::order}) {
         for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
             const Asked asked{.how = How::list, .order = Order::ascending};
-            const Fault fault{.step = step, .kind = kind, .moment = kind == FaultKind::kill ? Moment::begin : Moment::end};
+            const Fault fault{
+                .step = step, .kind = kind, .moment = kind == FaultKind::kill ? Moment::begin : Moment::end};
             plan.set(std::vector<Fault>(3, fault));
             try {
                 (void)testing::ask(*engine, scene, asked);

@@ -63,7 +63,9 @@ TEST_F(WorkerPrograms, ThatEndAtOnce) {
     expect_failed(make_program("signal", "#!/bin/sh\nkill -9 $$\n", 0755));
 }
 TEST_F(WorkerPrograms, ThatEndSoon) { expect_failed(make_program("soon", "#!/bin/sh\nsleep 0.05\nexit 3\n", 0755)); }
-TEST_F(WorkerPrograms, ThatNeverAnswer) { expect_failed(make_program("mute", "#!/bin/sh\nexec sleep 1000\n", 0755), 1); }
+TEST_F(WorkerPrograms, ThatNeverAnswer) {
+    expect_failed(make_program("mute", "#!/bin/sh\nexec sleep 1000\n", 0755), 1);
+}
 
 TEST_F(WorkerPrograms, ThatCannotBeFound) {
     ::setenv("OCTOPAIR_WORKER", directory_.file("elsewhere").c_str(), 1);

@@ -104,6 +104,7 @@ TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
     Engines engines;
     std::uint64_t seed = testing::test_seed(1);
     for (const std::string& kind : testing::all_kind_names()) {
+        if (kind == "denormals" || kind == "largest") continue;  // seconds a call, for any engine
         SCOPED_TRACE(kind + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         Case a_case;
         a_case.first.boxes = testing::make_double_boxes(kind, 13'000, seed++);

@@ -44,7 +44,8 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
 constexpr milliseconds cancel_patience(testing::sanitized ? 3000 : 200);
 
 /// How long a call took to end after it was asked to stop; nothing if it was done before.
-std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked, milliseconds delay) {
+std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked,
+                                              milliseconds delay) {
     std::stop_source source;
     Clock::time_point begin;
     std::jthread stopper([&] {
