@@ -6,6 +6,7 @@
 
 #include "base/timed.hpp"
 #include "engine/pair_pages.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair {
 
@@ -145,6 +146,16 @@ void Search::find_ascending(Call& call) {
     hand_out_held(call, receiver);
 }
 
+/// To `held_`, with room for pairs that were counted.
+void Search::collect_counted(Call& call, const AscendingBounds& bounds, double progress) {
+    held_.storage().reset();
+    try {
+        passes_.list_ascending(call, held_.storage(), bounds, progress);
+    } catch (const OverBudget&) {
+        throw Error(ErrorCode::engine_failed, "more pairs were found than had been counted");
+    }
+}
+
 void Search::hand_out_held(Call& call, Receiver& receiver) {
     receive(call, receiver, [&] {
         for (const auto chunk : held_.storage().chunks) receiver.take(chunk);
@@ -170,8 +181,7 @@ void Search::find_windows(Call& call, Receiver& receiver) {
         // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
         const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs;
         const AscendingBounds bounds{window, objects, room, pairs};
-        held_.storage().reset();
-        passes_.list_ascending(call, held_.storage(), bounds, 0.5 + 0.5 * double(window.end) / double(objects));
+        collect_counted(call, bounds, 0.5 + 0.5 * double(window.end) / double(objects));
         hand_out_held(call, receiver);
     }
 }

@@ -67,6 +67,7 @@ private:
     void count(Call& call);
     void find_octal(Call& call);
     void find_ascending(Call& call);
+    void collect_counted(Call& call, const AscendingBounds& bounds, double progress);
     void find_windows(Call& call, Receiver& receiver);
     void hand_out_held(Call& call, Receiver& receiver);
     template <typename Give>

@@ -19,7 +19,7 @@ void PaperPasses::build(Call& call, double progress) {
     watch.stop = call.stop.get_token();
     try {
         (void)crew_.run(pass, regions, watch);
-        octree().assemble(plant_octants(call.source, watch.stop), find_lists(), watch.stop);
+        octree().assemble(plant_octants(call.source, watch.stop), find_lists(call.source.size()), watch.stop);
     } catch (const LinearOctree::Invalid& invalid) {
         call.source.refuse(invalid.begin);
     }
@@ -30,10 +30,10 @@ void PaperPasses::build(Call& call, double progress) {
     }
 }
 
-std::vector<SortedList> PaperPasses::find_lists() const {
+std::vector<SortedList> PaperPasses::find_lists(std::uint64_t objects) const {
     std::vector<SortedList> lists;
     for (const Share& share : crew_.view().shares(0, crew_.shares())) {
-        lists.push_back(find_list(arena_->memory, share.first_run));
+        lists.push_back(find_list(arena_->memory, share.first_run, objects));
     }
     return lists;
 }

@@ -18,7 +18,7 @@ public:
     void build(Call& call, double progress) override;
 
 private:
-    std::vector<SortedList> find_lists() const;
+    std::vector<SortedList> find_lists(std::uint64_t objects) const;
 
     Crew& crew_;
     SharedInputs inputs_;

@@ -115,8 +115,13 @@ void SharedMemory::commit(std::uint64_t offset, std::uint64_t bytes) {
 void SharedMemory::commit_granules(std::uint64_t begin, std::uint64_t end) {
     const std::uint64_t offset = begin * granule;
     const std::uint64_t bytes = std::min(end * granule, size_) - offset;
-    if (retried([&] { return ::fallocate(file_.number(), 0, off_t(offset), off_t(bytes)); }) != 0) {
-        throw_exhausted("no more to be had", errno);
+    // In pieces: one that a signal interrupts begins anew.
+    constexpr std::uint64_t piece = 1 << 20;
+    for (std::uint64_t at = offset; at < offset + bytes; at += piece) {
+        const auto size = off_t(std::min(piece, offset + bytes - at));
+        if (retried([&] { return ::fallocate(file_.number(), 0, off_t(at), size); }) != 0) {
+            throw_exhausted("no more to be had", errno);
+        }
     }
 #ifdef MADV_POPULATE_WRITE
     // Mapped at once rather than page by page as they are touched. Kernels that cannot do so map them then.

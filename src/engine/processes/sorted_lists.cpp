@@ -1,5 +1,6 @@
 #include "engine/processes/sorted_lists.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "octopair/error.hpp"
@@ -42,7 +43,7 @@ void SortedLists::make(std::size_t list, const std::stop_token& stop) {
                     block.objects.begin};
 }
 
-SortedList find_list(SharedMemory& arena, std::uint64_t head_at) {
+SortedList find_list(SharedMemory& arena, std::uint64_t head_at, std::uint64_t objects) {
     const auto check = [](bool good) {
         if (!good) throw Error(ErrorCode::engine_failed, "a worker's list makes no sense");
     };
@@ -59,6 +60,9 @@ SortedList find_list(SharedMemory& arena, std::uint64_t head_at) {
         at = list.ghost_begins[node];
     }
     check(at <= list.entries.size());
+    std::uint64_t highest = 0;
+    for (const Entry& entry : list.entries) highest = std::max<std::uint64_t>(highest, entry.object);
+    check(list.entries.empty() || highest < objects);
     return list;
 }
 

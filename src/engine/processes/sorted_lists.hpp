@@ -41,7 +41,7 @@ private:
     Buffer<SortedListHead> heads_;
 };
 
-/// The same list, as the client finds it. Throws Error{engine_failed} where it is not one.
-SortedList find_list(SharedMemory& arena, std::uint64_t head);
+/// The same list, of some of so many objects, as the client finds it. Throws Error{engine_failed} where it is not one.
+SortedList find_list(SharedMemory& arena, std::uint64_t head, std::uint64_t objects);
 
 }  // namespace octopair
