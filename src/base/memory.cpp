@@ -34,22 +34,39 @@ void* map_pages(std::size_t bytes) {
     const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
     if (before > 0) ::munmap(begin, before);
     if (before < spare) ::munmap(begin + before + size, spare - before);
-    // Not the last, broken one: all of it would be there as soon as a byte of it is.
-    (void)::madvise(begin + before, size / huge_page * huge_page, MADV_HUGEPAGE);
     return begin + before;
+}
+
+/// Not the last, broken one: all of it would be there as soon as a byte of it is.
+void use_huge_pages(void* memory, std::size_t bytes) {
+    if (bytes >= huge_page) (void)::madvise(memory, bytes / huge_page * huge_page, MADV_HUGEPAGE);
 }
 
 #endif
 
-}  // namespace
-
-void* allocate_pages(std::size_t bytes) {
+void* reserve_pages(std::size_t bytes) {
 #ifdef __linux__
     if (bytes >= mapped_from) return map_pages(bytes);
 #endif
     constexpr std::size_t alignment = 64;
     void* const memory = std::aligned_alloc(alignment, rounded_up(bytes == 0 ? 1 : bytes, alignment));
     if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+
+void commit_pages(void* memory, std::size_t bytes) {
+#ifdef __linux__
+    use_huge_pages(memory, bytes);
+#else
+    (void)memory, (void)bytes;
+#endif
+}
+
+}  // namespace
+
+void* allocate_pages(std::size_t bytes) {
+    void* const memory = reserve_pages(bytes);
+    commit_pages(memory, bytes);
     return memory;
 }
 
@@ -68,8 +85,8 @@ namespace {
 
 class OwnPages final : public PageSource {
 public:
-    void* reserve(std::size_t bytes) override { return allocate_pages(bytes); }
-    void commit(void*, std::size_t) override {}
+    void* reserve(std::size_t bytes) override { return reserve_pages(bytes); }
+    void commit(void* memory, std::size_t bytes) override { commit_pages(memory, bytes); }
     void free(void* memory, std::size_t bytes) noexcept override { free_pages(memory, bytes); }
 };
 

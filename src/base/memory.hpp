@@ -27,7 +27,7 @@ public:
     virtual void free(void* memory, std::size_t bytes) noexcept = 0;
 };
 
-/// Memory of this process, which needs no commit.
+/// Memory of this process. What is committed a few pages at a time takes no more than these: no huge pages.
 PageSource& own_pages();
 
 template <typename T>
@@ -42,8 +42,9 @@ public:
 
     /// Makes the size `size`; what it held is lost where it grows beyond its capacity.
     void resize_discard(std::size_t size) {
+        const bool grows = size > capacity();
         reserve_discard(size);
-        if (size > 0) source_->commit(data(), size * sizeof(T));
+        if (grows) commit(0, size);
     }
 
     /// The same without any use of memory: before a part is touched it must be committed.
