@@ -6,7 +6,8 @@
 //           PairList empty.
 // Threads   an engine may be used from any thread; its calls run one after another, as they came; different engines are
 //           independent.
-// Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output.
+// Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output in
+//           the local engine (docs/engines.md has the others).
 #pragma once
 
 #include <cstddef>

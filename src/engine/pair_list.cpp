@@ -25,6 +25,7 @@ void PairList::Storage::reset() {
     size = 0;
     taken_ = 0;
     kept_ = nullptr;
+    free_ = {};
 }
 
 std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
@@ -41,6 +42,14 @@ std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
     }
     std::swap(*found, blocks_[taken_]);
     return blocks_[taken_++].span();
+}
+
+std::span<const Pair> PairList::Storage::copy(std::span<const Pair> pairs) {
+    if (free_.size() < pairs.size()) free_ = take_block(pairs.size());
+    std::copy(pairs.begin(), pairs.end(), free_.begin());
+    const std::span<const Pair> copied = free_.first(pairs.size());
+    free_ = free_.subspan(pairs.size());
+    return copied;
 }
 
 void PairList::Storage::append(std::span<const Pair> pairs) {

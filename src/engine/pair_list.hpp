@@ -23,6 +23,8 @@ struct PairList::Storage {
     void reset();
     /// A free block of at least `pairs` pairs, until the next reset. Thread-safe.
     std::span<Pair> take_block(std::size_t pairs);
+    /// The same pairs in memory of the list's own.
+    std::span<const Pair> copy(std::span<const Pair> pairs);
     /// Keeps memory that chunks lie in, until the next reset.
     void keep(std::shared_ptr<const void> memory) { kept_ = std::move(memory); }
     /// Makes `pairs` the next chunk. Adjoining chunks grow together.
@@ -32,6 +34,7 @@ private:
     std::mutex mutex_;
     std::vector<Buffer<Pair>> blocks_;
     std::shared_ptr<const void> kept_;
+    std::span<Pair> free_;   // of the block that copies go to
     std::size_t taken_ = 0;  // blocks_[0, taken_) are in writers' hands
 };
 

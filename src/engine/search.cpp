@@ -69,10 +69,7 @@ private:
 
     void keep(std::span<const Pair> pairs) {
         PairList::Storage& list = output_.list->storage();
-        if (block_.size() < pairs.size()) block_ = list.take_block(pairs.size());
-        std::copy(pairs.begin(), pairs.end(), block_.begin());
-        list.append(block_.first(pairs.size()));
-        block_ = block_.subspan(pairs.size());
+        list.append(list.copy(pairs));
     }
 
     const Engine::Output& output_;
@@ -81,14 +78,28 @@ private:
     bool truncated_ = false;
     double sink_seconds_ = 0;
     std::vector<Pair> held_;
-    std::span<Pair> block_;
 };
+
+namespace {
+
+/// Lets go, at the end of a call, of what only the call needed.
+struct Ending {
+    Passes& passes;
+    PairList& held;
+    ~Ending() {
+        held.storage().reset();
+        passes.end();
+    }
+};
+
+}  // namespace
 
 Summary Search::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
     const BoxSource source(request.first, request.second, request.options.margin);
     Progress progress(control.progress);
     Call call{request, output, source, {}, progress, {}};
     const std::stop_callback forward(control.stop, [&] { call.stop.request_stop(); });
+    const Ending ending{passes_, held_};
     find(call);
     progress.finish();
     return call.summary;

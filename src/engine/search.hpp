@@ -35,11 +35,13 @@ struct Call {
 /// Receives pairs on the calling thread.
 using Deliver = std::function<void(std::span<const Pair>)>;
 
-/// The passes of one call, in the order in which search() asks for them: build, then others. Each adds its times to the
+/// The passes of one call, in the order in which Search asks for them: build, then others. Each adds its times to the
 /// summary and takes the progress to the fraction that it is given. All throw Error.
 class Passes {
 public:
     virtual ~Passes() = default;
+    /// The call is over: lets go of what is the caller's.
+    virtual void end() noexcept {}
     /// How many threads or workers share a pass.
     virtual unsigned width() const = 0;
     virtual void build(Call& call, double progress) = 0;

@@ -1,7 +1,5 @@
 #include "engine/thread_passes.hpp"
 
-#include <limits>
-
 #include "base/timed.hpp"
 #include "engine/ascending.hpp"
 #include "engine/writers.hpp"

@@ -127,6 +127,8 @@ void Crew::announce(const Pass& pass) {
 }
 
 std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
+    if (::getpid() != owner_)
+        throw Error(ErrorCode::usage, "the workers belong to the process that this one was forked from");
     if (!same_work(pass, last_pass_)) {
         strikes_.clear();
         for (Member& member : crew_) member.fruitless = 0;
@@ -145,32 +147,33 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
     const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
     changed_at_ = Clock::now();
     Clock::time_point next_check = Clock::now() + look_interval;
-    for (;;) {
+    for (bool over = false; !over;) {
         const std::uint32_t seen = view_.desk().for_client.count.load();
-        for (unsigned slot = 0; slot < taking_part_; ++slot) {
-            if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done)
-                fail_as_worker(slot);
+        over = all_finished();
+        const bool check = !over && Clock::now() >= next_check;
+        if (check) next_check = Clock::now() + look_interval;
+        try {
+            look(watch, over, check);
+        } catch (...) {
+            fail(std::current_exception());
         }
-        const bool over = all_finished();
-        if (failure_ == nullptr) {
-            try {
-                if (watch.stop.stop_requested() && !over) throw Error(ErrorCode::cancelled, "cancelled");
-                if (watch.look) watch.look();
-            } catch (...) {
-                fail(std::current_exception());
-            }
-        }
-        if (over) break;
-        if (Clock::now() >= next_check) {
-            check_members(watch);
-            next_check = Clock::now() + look_interval;
-            continue;
-        }
-        view_.desk().for_client.wait(seen, next_check - Clock::now(), looks_);
+        if (!over && !check) view_.desk().for_client.wait(seen, next_check - Clock::now(), looks_);
     }
     if (failure_ != nullptr) std::rethrow_exception(std::exchange(failure_, nullptr));
     shares_ = view_.slot(0).shares;
     return number_;
+}
+
+/// What is new, of a pass that may be over, and now and then whether its workers live.
+void Crew::look(const PassWatch& watch, bool over, bool check) {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done) fail_as_worker(slot);
+    }
+    if (failure_ == nullptr) {
+        if (watch.stop.stop_requested() && !over) throw Error(ErrorCode::cancelled, "cancelled");
+        if (watch.look) watch.look();
+    }
+    if (check) check_members(watch);
 }
 
 bool Crew::finished(unsigned slot) const { return view_.slot(slot).finished.load() == number_; }
@@ -245,6 +248,7 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
         if (failure_ != nullptr) return;
         if (watch.lost) watch.lost(slot);
         Slot& part = view_.slot(slot);
+        view_.desk().pass = last_pass_;
         part.share.store(0);
         part.preparing.store(1);
         start(slot);
@@ -303,7 +307,8 @@ void Crew::fail_as_worker(unsigned slot) {
         case Outcome::bad_box:
             return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
         case Outcome::over_budget:
-            return fail(std::make_exception_ptr(OverBudget{}));
+            if (last_pass_.kind == PassKind::list_ascending) return fail(std::make_exception_ptr(OverBudget{}));
+            break;
         default:
             break;
     }

@@ -4,6 +4,9 @@
 // again. A share that has ended three workers ends its job.
 #pragma once
 
+#include <sys/types.h>
+#include <unistd.h>
+
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -12,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -78,6 +80,7 @@ private:
     [[noreturn]] void throw_cannot_start(const std::string& how) const;
     void revive();
     void announce(const Pass& pass);
+    void look(const PassWatch& watch, bool over, bool check);
     bool finished(unsigned slot) const;
     bool all_finished() const;
     void check_members(const PassWatch& watch);
@@ -95,6 +98,7 @@ private:
     void forget_regions();
 
     std::string program_;
+    const pid_t owner_ = ::getpid();
     SharedMemory desk_memory_;
     DeskView view_;
     std::vector<Member> crew_;

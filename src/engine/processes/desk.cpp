@@ -1,5 +1,7 @@
 #include "engine/processes/desk.hpp"
 
+#include <unistd.h>
+
 #include <cstring>
 #include <new>
 #include <string>
@@ -34,6 +36,7 @@ void DeskView::lay_out(SharedMemory& memory, unsigned slots) {
     desk->mark = desk_mark;
     desk->layout = layout_version;
     desk->version = version_text();
+    desk->client = ::getpid();
     desk->slots = slots;
 }
 

@@ -33,7 +33,7 @@ namespace octopair {
 
 inline constexpr unsigned most_workers = 256;
 inline constexpr std::uint64_t desk_mark = 0x6f63746f70616972;  // "octopair"
-inline constexpr std::uint32_t layout_version = 2;              // of this file: raised with every change of it
+inline constexpr std::uint32_t layout_version = 3;              // of this file: raised with every change of it
 
 /// Which step of the algorithm a share belongs to. `order` puts pairs into ascending order.
 enum class Step : std::uint32_t { prepare, encode, merge, sort, scan, order };
@@ -94,6 +94,7 @@ struct Desk {
     std::uint64_t mark;
     std::uint32_t layout;
     std::array<char, 32> version;
+    std::int32_t client;  ///< its process
     std::atomic<std::uint32_t> slots;
     Event among_workers;                 ///< a worker has no more to do in a step
     Event for_client;                    ///< a worker has finished, or there are pairs to take

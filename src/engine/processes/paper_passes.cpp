@@ -1,6 +1,9 @@
 #include "engine/processes/paper_passes.hpp"
 
-#include "engine/processes/sorted_lists.hpp"
+#include <algorithm>
+#include <utility>
+
+#include "octopair/error.hpp"
 
 namespace octopair {
 
@@ -9,7 +12,7 @@ void PaperPasses::build(Call& call, double progress) {
     if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
     std::vector<std::shared_ptr<Region>> regions = {arena_};
     Pass pass;
-    inputs_.place(call.request, crew_, pass, regions);
+    inputs_.place(call, crew_, pass, regions);
     pass.job = crew_.begin_job();
     pass.kind = PassKind::lists;
     pass.workers = crew_.workers();
@@ -19,7 +22,9 @@ void PaperPasses::build(Call& call, double progress) {
     watch.stop = call.stop.get_token();
     try {
         (void)crew_.run(pass, regions, watch);
-        octree().assemble(plant_octants(call.source, watch.stop), find_lists(call.source.size()), watch.stop);
+        PlantedOctants octants = plant_octants(call.source, watch.stop);
+        const auto lists = find_lists(pass.workers, {call.source.size(), octants.directory.nodes().size()});
+        octree().assemble(std::move(octants), lists, watch.stop);
     } catch (const LinearOctree::Invalid& invalid) {
         call.source.refuse(invalid.begin);
     }
@@ -30,10 +35,13 @@ void PaperPasses::build(Call& call, double progress) {
     }
 }
 
-std::vector<SortedList> PaperPasses::find_lists(std::uint64_t objects) const {
+std::vector<SortedList> PaperPasses::find_lists(std::size_t count, const ListBounds& bounds) const {
     std::vector<SortedList> lists;
-    for (const Share& share : crew_.view().shares(0, crew_.shares())) {
-        lists.push_back(find_list(arena_->memory, share.first_run, objects));
+    for (const Share& share : crew_.view().shares(0, count)) {
+        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) {
+            throw Error(ErrorCode::engine_failed, "a worker's list is not there");
+        }
+        lists.push_back(find_list(arena_->memory, share.first_run, bounds));
     }
     return lists;
 }

@@ -6,6 +6,7 @@
 
 #include "engine/processes/crew.hpp"
 #include "engine/processes/shared_inputs.hpp"
+#include "engine/processes/sorted_lists.hpp"
 #include "engine/thread_passes.hpp"
 
 namespace octopair {
@@ -18,7 +19,7 @@ public:
     void build(Call& call, double progress) override;
 
 private:
-    std::vector<SortedList> find_lists(std::uint64_t objects) const;
+    std::vector<SortedList> find_lists(std::size_t lists, const ListBounds& bounds) const;
 
     Crew& crew_;
     SharedInputs inputs_;

@@ -14,6 +14,8 @@ namespace octopair {
 namespace {
 
 constexpr std::uint64_t objects_per_worker = 4096;  // at least: fewer are not worth another worker
+constexpr std::uint64_t worth_keeping = 1 << 15;    // pairs: fewer are copied, so that lists do not hold whole regions
+constexpr std::size_t most_regions = 4;             // of pairs, held by lists; further lists get copies
 
 [[noreturn]] void throw_damaged() {
     throw Error(ErrorCode::engine_failed, "what worker processes left in shared memory makes no sense");
@@ -27,7 +29,7 @@ void ProcessPasses::build(Call& call, double) {
     if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
     regions_ = {arena_};
     pass_ = {};
-    inputs_.place(call.request, crew_, pass_, regions_);
+    inputs_.place(call, crew_, pass_, regions_);
     pass_.job = crew_.begin_job();
     pass_.workers = unsigned(std::clamp<std::uint64_t>(call.source.size() / objects_per_worker, 1, crew_.workers()));
     pass_.margin = call.request.options.margin;
@@ -157,20 +159,25 @@ void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const As
     append_runs(list, pairs);
 }
 
-/// The list keeps the memory that the workers wrote to.
+/// The list keeps the memory that the workers wrote to, or gets a copy.
 void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs) {
     const DeskView& view = crew_.view();
     const std::uint64_t written = view.desk().next_block.load();
     if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged();
     const std::span<const Pair> all{pairs->memory.array<const Pair>(0, written * list_block_pairs),
                                     std::size_t(written * list_block_pairs)};
-    list.keep(pairs);
+    std::vector<std::span<const Pair>> runs;
+    std::uint64_t size = 0;
     for (const Share& share : shares_done()) {
         for (const Run& run : view.runs(share.first_run, share.runs)) {
             if (run.begin > all.size() || run.count > all.size() - run.begin) throw_damaged();
-            list.append(all.subspan(run.begin, run.count));
+            runs.push_back(all.subspan(run.begin, run.count));
+            size += run.count;
         }
     }
+    const bool keep = size >= worth_keeping && pairs_.size() <= most_regions;
+    if (keep) list.keep(pairs);
+    for (const auto run : runs) list.append(keep ? run : list.copy(run));
 }
 
 void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double progress) {

@@ -17,6 +17,7 @@ public:
     ProcessPasses(Crew& crew, const SharedArrays& arrays);
 
     unsigned width() const override { return crew_.workers(); }
+    void end() noexcept override { regions_.clear(); }
     /// The octree is built by the pass that comes next: one errand for both.
     void build(Call& call, double progress) override;
     std::uint64_t count(Call& call, double progress) override;

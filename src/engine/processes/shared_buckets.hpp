@@ -2,7 +2,7 @@
 // shares of a last step.
 //
 // What a slot's buckets hold is committed with each share that is done: which pages they have, and how many pairs. So a
-// worker that takes over a slot goes on from the last share that was done, and the pages of what was not are used again.
+// worker that takes over a slot goes on from the last share that was done, and what was taken for others is not counted.
 #pragma once
 
 #include <vector>

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/stop.hpp"
+
 namespace octopair {
 
 std::shared_ptr<void> SharedArrays::allocate(const std::shared_ptr<SharedArrays>& arrays, std::size_t bytes) {
@@ -12,15 +14,17 @@ std::shared_ptr<void> SharedArrays::allocate(const std::shared_ptr<SharedArrays>
     auto region = std::make_shared<Region>(SharedMemory::create(size));
     region->memory.commit(0, size);
     std::byte* const data = region->memory.data();
+    const std::weak_ptr<Region> known = region;
+    std::shared_ptr<void> array(data, [region = std::move(region), weak = std::weak_ptr(arrays)](void* memory) mutable {
+        if (const auto all = weak.lock()) {
+            const std::lock_guard lock(all->mutex_);
+            all->regions_.erase(static_cast<const std::byte*>(memory));
+        }
+        region = nullptr;
+    });
     const std::lock_guard lock(arrays->mutex_);
-    arrays->regions_[data] = region;
-    return {data, [region = std::move(region), weak = std::weak_ptr(arrays)](void* memory) mutable {
-                if (const auto all = weak.lock()) {
-                    const std::lock_guard held(all->mutex_);
-                    all->regions_.erase(static_cast<const std::byte*>(memory));
-                }
-                region = nullptr;
-            }};
+    arrays->regions_[data] = known;
+    return array;
 }
 
 std::shared_ptr<Region> SharedArrays::find(std::span<const std::byte> memory) const {
@@ -33,8 +37,9 @@ std::shared_ptr<Region> SharedArrays::find(std::span<const std::byte> memory) co
     return holds ? region : nullptr;
 }
 
-void SharedInputs::place(const Engine::Request& request, Crew& crew, Pass& pass,
-                         std::vector<std::shared_ptr<Region>>& regions) {
+void SharedInputs::place(const Call& call, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions) {
+    const Engine::Request& request = call.request;
+    stop_ = call.stop.get_token();
     used_ = 0;
     pass.first = place(request.first, crew, regions);
     pass.second = request.second != nullptr ? place(*request.second, crew, regions) : SetRef{};
@@ -67,7 +72,12 @@ ArrayRef SharedInputs::place(std::span<const std::byte> memory, Crew& crew,
     if (copies_ == nullptr) copies_ = crew.add_region(SharedMemory::create(roomy_bytes()));
     regions.push_back(copies_);
     const ArrayRef copy{copies_->number, used_, 0};
-    std::memcpy(copies_->memory.array<std::byte>(used_, memory.size()), memory.data(), memory.size());
+    constexpr std::size_t piece = std::size_t(1) << 24;  // bytes: a few milliseconds
+    for (std::size_t at = 0; at < memory.size(); at += piece) {
+        throw_if_stopped(stop_);
+        const auto part = memory.subspan(at, std::min(piece, memory.size() - at));
+        std::memcpy(copies_->memory.array<std::byte>(used_ + at, part.size()), part.data(), part.size());
+    }
     used_ += (memory.size() + alignment - 1) / alignment * alignment;
     return copy;
 }

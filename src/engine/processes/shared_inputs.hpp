@@ -5,10 +5,11 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "engine/processes/crew.hpp"
-#include "engine/request.hpp"
+#include "engine/search.hpp"
 
 namespace octopair {
 
@@ -30,8 +31,8 @@ class SharedInputs {
 public:
     explicit SharedInputs(const SharedArrays& arrays) : arrays_(arrays) {}
 
-    /// Sets the sets of `pass`; appends what its workers need to `regions`. Throws Error{resource_limit}.
-    void place(const Engine::Request& request, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions);
+    /// Sets the sets of `pass`; appends what its workers need to `regions`. Throws Error{resource_limit, cancelled}.
+    void place(const Call& call, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions);
 
 private:
     SetRef place(const Objects& objects, Crew& crew, std::vector<std::shared_ptr<Region>>& regions);
@@ -40,6 +41,7 @@ private:
     const SharedArrays& arrays_;
     std::shared_ptr<Region> copies_;
     std::uint64_t used_ = 0;
+    std::stop_token stop_;  // of the call
 };
 
 }  // namespace octopair

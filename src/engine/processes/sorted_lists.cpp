@@ -43,14 +43,15 @@ void SortedLists::make(std::size_t list, const std::stop_token& stop) {
                     block.objects.begin};
 }
 
-SortedList find_list(SharedMemory& arena, std::uint64_t head_at, std::uint64_t objects) {
+SortedList find_list(SharedMemory& arena, std::uint64_t head_at, const ListBounds& bounds) {
     const auto check = [](bool good) {
         if (!good) throw Error(ErrorCode::engine_failed, "a worker's list makes no sense");
     };
     check(head_at % alignof(SortedListHead) == 0);
     const SortedListHead head = *arena.array<SortedListHead>(head_at, 1);
     if (head.valid == 0) throw LinearOctree::Invalid{std::size_t(head.object_begin)};
-    check(head.entries % alignof(Entry) == 0 && head.home_begins % 8 == 0 && head.ghost_begins % 8 == 0);
+    check(head.nodes == bounds.nodes && head.entries % alignof(Entry) == 0 && head.home_begins % 8 == 0 &&
+          head.ghost_begins % 8 == 0);
     const SortedList list{{arena.array<Entry>(head.entries, head.entry_count), std::size_t(head.entry_count)},
                           {arena.array<std::uint64_t>(head.home_begins, head.nodes), std::size_t(head.nodes)},
                           {arena.array<std::uint64_t>(head.ghost_begins, head.nodes), std::size_t(head.nodes)}};
@@ -62,7 +63,7 @@ SortedList find_list(SharedMemory& arena, std::uint64_t head_at, std::uint64_t o
     check(at <= list.entries.size());
     std::uint64_t highest = 0;
     for (const Entry& entry : list.entries) highest = std::max<std::uint64_t>(highest, entry.object);
-    check(list.entries.empty() || highest < objects);
+    check(list.entries.empty() || highest < bounds.objects);
     return list;
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -41,7 +40,12 @@ private:
     Buffer<SortedListHead> heads_;
 };
 
-/// The same list, of some of so many objects, as the client finds it. Throws Error{engine_failed} where it is not one.
-SortedList find_list(SharedMemory& arena, std::uint64_t head, std::uint64_t objects);
+/// What a list must fit.
+struct ListBounds {
+    std::uint64_t objects, nodes;
+};
+
+/// The same list, as the client finds it. Throws Error{engine_failed} where it is not one.
+SortedList find_list(SharedMemory& arena, std::uint64_t head, const ListBounds& bounds);
 
 }  // namespace octopair

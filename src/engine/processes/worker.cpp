@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -55,10 +56,12 @@ public:
             const Mail& mail = received->mail;
             switch (mail.kind) {
                 case MailKind::region:
-                    regions_.add(mail.number, SharedMemory::open(std::move(received->file), mail.bytes));
+                    take_region(mail, std::move(received->file));
                     break;
                 case MailKind::forget:
                     regions_.forget(mail.number);
+                    forgot_.store(true);
+                    if (DeskView* const view = view_) view->slot(number_).command.raise();
                     break;
                 case MailKind::stop:
                     stop(mail.number);
@@ -70,6 +73,7 @@ public:
     [[noreturn]] void work() {
         const auto memory = regions_.get(desk_region);
         DeskView view(*memory);
+        if (view.desk().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");
         if (number_ >= view.slots()) throw Error(ErrorCode::engine_failed, "there is no such slot");
         view_ = &view;
         WorkerProgram program(view, regions_);
@@ -80,6 +84,7 @@ public:
             const std::uint32_t seen = slot.command.count.load();
             const std::uint32_t asked = slot.asked.load();
             if (asked == slot.finished.load()) {
+                if (forgot_.exchange(false)) program.forget_job();
                 const Waiting waiting(slot);
                 slot.command.wait(seen, longest_sleep, looks);
                 continue;
@@ -90,10 +95,20 @@ public:
             program.run(pass, {number_, asked, observer_}, token);
             slot.finished.store(asked);
             view.desk().for_client.raise();
+            // It has told why; another will be sent what this one could not take.
+            if (regions_.failed()) throw Error(ErrorCode::resource_limit, "shared memory could not be taken");
         }
     }
 
 private:
+    void take_region(const Mail& mail, Descriptor file) {
+        try {
+            regions_.add(mail.number, SharedMemory::open(std::move(file), mail.bytes));
+        } catch (...) {
+            regions_.fail(std::current_exception());
+        }
+    }
+
     /// Waits for mail or the end of the client. Its process is looked for as well: a copy of its end of the socket may
     /// live on in some child that it forked.
     bool client_lives() const {
@@ -121,17 +136,19 @@ private:
     WorkerRegions regions_;
     Stops stops_;
     std::atomic<DeskView*> view_ = nullptr;
+    std::atomic<bool> forgot_ = false;
 };
 
 }  // namespace
 
 void run_worker(Descriptor socket, unsigned slot, ShareObserver* observer, const std::function<void()>& gone) {
-    Worker worker(std::move(socket), slot, observer);
-    std::thread([&] {
+    // It stays until the process ends, with the thread that reads its mail.
+    static Worker worker(std::move(socket), slot, observer);
+    std::thread([gone] {
         try {
             worker.read_mail();
         } catch (...) {
-            // Without memory that it is sent, it is of no use; the client starts another.
+            // Without its mail it is of no use; the client starts another.
         }
         gone();
     }).detach();

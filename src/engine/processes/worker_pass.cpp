@@ -5,7 +5,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <numeric>
 #include <vector>
 
 #include "base/timed.hpp"
@@ -202,6 +201,8 @@ Outcome WorkerProgram::take_part(const Context& context) {
     return Outcome::done;
 }
 
+void WorkerProgram::forget_job() { job_ = nullptr; }
+
 void WorkerProgram::start_job(const Pass& pass) {
     job_ = nullptr;
     job_ = std::make_unique<Job>(pass, regions_);
@@ -244,7 +245,7 @@ void WorkerProgram::scan(const Context& context) {
         case PassKind::count:
             return scan_into(context, *make_count_output());
         case PassKind::count_by_object:
-            return count_by_object(context, place);
+            return count_by_object(context);
         case PassKind::list_octal:
             return scan_into(context, *make_list_output(place));
         case PassKind::stream_octal:
@@ -266,7 +267,7 @@ void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {
                    [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
 }
 
-void WorkerProgram::count_by_object(const Context& context, const OutputPlace&) {
+void WorkerProgram::count_by_object(const Context& context) {
     Buffer<std::uint32_t> counts(job_->arena);
     counts.resize_discard(job_->source.size());
     const std::uint64_t blocks = context.pass.workers;

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <stop_token>
 
 #include "engine/processes/arena.hpp"
@@ -24,6 +23,8 @@ public:
 
     /// Does a part of the pass and leaves in its slot how that ended.
     void run(const Pass& pass, const ShareOut::Self& self, std::stop_token stop);
+    /// Lets go of the memory of the last job. No harm if a pass of it follows.
+    void forget_job();
 
 private:
     struct Job;
@@ -41,7 +42,7 @@ private:
     void make_lists(const Context& context);
     void scan(const Context& context);
     void scan_into(const Context& context, ShareOutput& output);
-    void count_by_object(const Context& context, const OutputPlace& place);
+    void count_by_object(const Context& context);
 
     DeskView& view_;
     WorkerRegions& regions_;

@@ -40,6 +40,10 @@ public:
         good = good && ::posix_spawn_file_actions_adddup2(&actions_, socket, worker_socket) == 0;
         good = good && ::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0) == 0;
         good = good && ::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0) == 0;
+        // Where the application has closed it, a descriptor of shared memory would become what errors are written to.
+        if (::fcntl(2, F_GETFD) < 0) {
+            good = good && ::posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0) == 0;
+        }
         good = good && ::posix_spawn_file_actions_addclosefrom_np(&actions_, worker_socket + 1) == 0;
         sigset_t all, none;
         ::sigfillset(&all);
@@ -94,7 +98,7 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
         ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(), environ);
     if (error != 0) throw_cannot_start(program, error);
     handle_ = Descriptor(int(::syscall(SYS_pidfd_open, id_, 0)));
-    if (!handle_.open()) {
+    if (!handle_.open() && errno != ESRCH) {  // which says that it has ended, and was waited for by somebody
         const int reason = errno;
         ::kill(id_, SIGKILL);
         while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {

@@ -18,9 +18,21 @@ void WorkerRegions::forget(std::uint32_t number) {
     regions_.erase(number);
 }
 
+void WorkerRegions::fail(std::exception_ptr failure) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(failure);
+    come_.notify_all();
+}
+
+bool WorkerRegions::failed() {
+    const std::lock_guard lock(mutex_);
+    return failure_ != nullptr;
+}
+
 std::shared_ptr<SharedMemory> WorkerRegions::get(std::uint32_t number) {
     std::unique_lock lock(mutex_);
-    come_.wait(lock, [&] { return regions_.contains(number); });
+    come_.wait(lock, [&] { return failure_ != nullptr || regions_.contains(number); });
+    if (failure_ != nullptr) std::rethrow_exception(failure_);
     return regions_.at(number);
 }
 

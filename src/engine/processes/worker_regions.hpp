@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,9 @@ class WorkerRegions {
 public:
     void add(std::uint32_t number, SharedMemory memory);
     void forget(std::uint32_t number);
+    /// One could not be taken: whoever wants any is told, from now on.
+    void fail(std::exception_ptr failure);
+    bool failed();
     /// Waits until it has come.
     std::shared_ptr<SharedMemory> get(std::uint32_t number);
 
@@ -36,6 +40,7 @@ private:
     std::mutex mutex_;
     std::condition_variable come_;
     std::map<std::uint32_t, std::shared_ptr<SharedMemory>> regions_;
+    std::exception_ptr failure_;
 };
 
 }  // namespace octopair
