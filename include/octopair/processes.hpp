@@ -5,8 +5,10 @@
 //           work is done again. Work that ends three workers fails its call alone, with Error{engine_failed}. Memory that
 //           is exhausted is Error{resource_limit}, never a signal. Workers end with the engine, and within two seconds with
 //           the application, however that ends.
-// Copies    boxes are copied to shared memory, unless the engine allocated them (Engine::allocate_boxes). Pairs are not
-//           copied: a PairList keeps the memory that workers wrote to.
+// Copies    boxes are copied to shared memory, unless the engine allocated them (Engine::allocate_boxes). Pairs, if they are
+//           many, are not: a PairList keeps the memory that workers wrote to.
+// Memory    about 60 bytes an object beside input and output, and the copy of the boxes; kept until the engine goes.
+// Fork      an engine belongs to the process that made it; in one forked from that, its calls throw Error{usage}.
 // System    Linux 5.4 or later. CMake: link octopair::processes.
 #pragma once
 
