@@ -150,6 +150,7 @@ void SharedBuckets::order(ShareOut& shares) {
     std::vector<Pair*> spent;
     shares.run(Step::order, plan_.buckets(), [&](const ShareOut::Task& task) {
         std::vector<PageString> strings;
+        strings.reserve(of_slots.size());
         for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[task.index]));
         // The pages of the share before are free now that it is done; those of this one must last until then.
         for (Pair* const page : spent) pages_->give_back(page);
