@@ -18,6 +18,7 @@
 #include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -56,6 +57,9 @@ struct SceneOptions {
     /// A file that all calls are written to, for `octopair replay` (docs/formats.md); empty: none. One that is there is
     /// emptied. Written before and after each step, never synced; a call that cannot be written throws Error{io_failed}.
     std::filesystem::path recording = {};
+    /// Asked before memory is taken for pairs, with its bytes, by any thread, one at a time. What it throws is thrown by the
+    /// call that needed the memory, as if there were none. None: only the machine's memory is a limit.
+    std::function<void(std::uint64_t bytes)> room_for_pairs = {};
 };
 
 /// What a step found. The spans are valid until the scene's next call that is not const.

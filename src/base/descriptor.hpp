@@ -22,6 +22,8 @@ public:
 
     int number() const { return number_; }
     bool open() const { return number_ >= 0; }
+    /// Gives it up: closing it is the caller's.
+    int release() { return std::exchange(number_, -1); }
     /// Closes now, and returns what close() returned: some file systems report a failed write only then.
     int close() { return ::close(std::exchange(number_, -1)); }
 

@@ -1,4 +1,5 @@
-// The one table that says what an ErrorCode becomes outside C++: a name, and the exit status of the program.
+// The one table that says what an ErrorCode becomes outside C++: a name, the exit status of the program, and the status
+// of a call to a server.
 #pragma once
 
 #include <array>
@@ -13,16 +14,17 @@ struct ErrorCodeRow {
     ErrorCode code;
     std::string_view name;
     int exit_status;
+    int grpc_status;  ///< https://grpc.io/docs/guides/status-codes/
 };
 
 /// In the order of the enumeration.
 inline constexpr std::array<ErrorCodeRow, 6> error_code_table = {{
-    {ErrorCode::usage, "usage", 2},
-    {ErrorCode::bad_input, "bad input", 3},
-    {ErrorCode::io_failed, "I/O failed", 4},
-    {ErrorCode::resource_limit, "resource limit", 5},
-    {ErrorCode::engine_failed, "engine failed", 6},
-    {ErrorCode::cancelled, "cancelled", 130},
+    {ErrorCode::usage, "usage", 2, 3},
+    {ErrorCode::bad_input, "bad input", 3, 3},
+    {ErrorCode::io_failed, "I/O failed", 4, 15},
+    {ErrorCode::resource_limit, "resource limit", 5, 8},
+    {ErrorCode::engine_failed, "engine failed", 6, 13},
+    {ErrorCode::cancelled, "cancelled", 130, 1},
 }};
 
 static_assert([] {

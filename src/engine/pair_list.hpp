@@ -4,6 +4,7 @@
 // the chunks and keeps the blocks, so that a reused list does not page-fault again.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -19,6 +20,8 @@ struct PairList::Storage {
     std::vector<std::span<const Pair>> chunks;
     std::uint64_t size = 0;
 
+    /// Asked before memory is taken for a block, with its bytes; what it throws is thrown on.
+    void ask(std::function<void(std::uint64_t bytes)> room) { room_ = std::move(room); }
     /// Empty, with all blocks free.
     void reset();
     /// A free block of at least `pairs` pairs, until the next reset. Thread-safe.
@@ -32,6 +35,7 @@ struct PairList::Storage {
 
 private:
     std::mutex mutex_;
+    std::function<void(std::uint64_t)> room_;
     std::vector<Buffer<Pair>> blocks_;
     std::shared_ptr<const void> kept_;
     std::span<Pair> free_;   // of the block that copies go to

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t most_visits = 128;  // of a change, to be listed
 
 // How many visits before its turn what a visit reads is fetched.
+constexpr std::size_t most_hits = 1 << 16;  // of a run, and what one visit more finds
 constexpr std::size_t ahead_head = 24, ahead_first = 14, ahead_next = 6;
 
 /// Whether two boxes, or what lies between them, are no larger than the two together on each axis.
@@ -305,11 +306,12 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
     return false;
 }
 
-void MutableOctree::run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order,
-                        std::vector<Hit>& hits) {
+std::size_t MutableOctree::run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order,
+                               std::vector<Hit>& hits) {
     const auto visit_at = [&](std::size_t i) -> const UnitVisit& { return visits[std::uint32_t(order[i])]; };
     const auto unit_at = [&](std::size_t i) { return std::uint32_t(order[i] >> 32); };
-    for (std::size_t i = 0; i < order.size(); ++i) {
+    std::size_t i = 0;
+    for (; i < order.size() && hits.size() < most_hits; ++i) {
         if (i + ahead_head < order.size()) {
             units_.prefetch_head(unit_at(i + ahead_head));
             hwy::Prefetch(&visit_at(i + ahead_head));
@@ -325,6 +327,7 @@ void MutableOctree::run(std::span<const UnitVisit> visits, std::span<const std::
         if (visit.take) units_.take(visit.unit, visit.object);
         if (visit.put) units_.put(visit.unit, visit.entry, visit.object);
     }
+    return i;
 }
 
 }  // namespace octopair

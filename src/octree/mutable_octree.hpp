@@ -97,8 +97,8 @@ public:
     /// Room for visits that put so many entries.
     void reserve(std::uint64_t puts) { units_.reserve(puts); }
     /// Makes those of `visits` that `order` names in its low 32 bits, and appends what their searches find beside the
-    /// object itself.
-    void run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order, std::vector<Hit>& hits);
+    /// object itself. Returns how many it made, from the first: it stops where these have found very much.
+    std::size_t run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order, std::vector<Hit>& hits);
 
 private:
     /// A change's search, and which entries go with it.

@@ -42,6 +42,8 @@ public:
     /// More has changed than is kept.
     bool overflowed() const { return overflowed_; }
 
+    /// Nothing is kept until clear().
+    void give_up(ObjectTable& table) { overflow(table); }
     /// After a step.
     void clear(ObjectTable& table) {
         forget(table);

@@ -24,11 +24,6 @@ bool are_pair(const ObjectState& a, const ObjectState& b, double margin) {
 
 std::uint32_t unit_of(std::uint64_t key) { return std::uint32_t(key >> 32); }
 
-void throw_if_beyond(const ChangeSearch::Limits& limits) {
-    throw_if_stopped(limits.stop);
-    if (std::chrono::steady_clock::now() > limits.deadline) throw ChangeSearch::TooDear{};
-}
-
 /// Where the share of a position begins: at the unit that it lies in, so that no unit is in two shares.
 std::size_t share_begin(std::span<const std::uint64_t> order, std::size_t position) {
     if (position >= order.size()) return order.size();
@@ -57,12 +52,18 @@ void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& c
     list_visits(octree, limits);
     for (std::uint32_t number = 0; number < changes_.size(); ++number) {
         if (alone_[number] == 0) continue;
-        throw_if_beyond(limits);
+        throw_if_beyond(limits, workers_[0]);
         make_alone(scene, octree, number);
     }
     make_visits(scene, octree, limits);
     collect(&Worker::began, changes.began);
     collect(&Worker::ended, changes.ended);
+}
+
+void ChangeSearch::throw_if_beyond(const Limits& limits, const Worker& worker) const {
+    throw_if_stopped(limits.stop);
+    const bool many = worker.began.size() + worker.ended.size() > limits.pairs / workers_.size();
+    if (many || std::chrono::steady_clock::now() > limits.deadline) throw TooDear{};
 }
 
 void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree) {
@@ -148,10 +149,10 @@ void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const 
     const auto make_share = [&](std::size_t i, unsigned worker) {
         const std::size_t end = share_begin(order, (i + 1) * share_size);
         auto& hits = workers_[worker].hits;
-        for (std::size_t begin = share_begin(order, i * share_size); begin < end; begin += run_size) {
-            throw_if_beyond(limits);
+        for (std::size_t begin = share_begin(order, i * share_size); begin < end;) {
+            throw_if_beyond(limits, workers_[worker]);
             hits.clear();
-            octree.run(visits, order.subspan(begin, std::min(run_size, end - begin)), hits);
+            begin += octree.run(visits, order.subspan(begin, std::min(run_size, end - begin)), hits);
             judge(scene, workers_[worker]);
         }
     };

@@ -42,6 +42,7 @@ public:
     struct Limits {
         std::chrono::steady_clock::time_point deadline;
         std::uint64_t visits;  ///< most, of units of the octree
+        std::uint64_t pairs;   ///< most that begin and end
         const std::stop_token& stop;
     };
     /// Thrown where a limit is met: another way is cheaper.
@@ -72,6 +73,8 @@ private:
     void make_visits(const Scene& scene, MutableOctree& octree, const Limits& limits);
     void judge(const Scene& scene, Worker& worker) const;
     void judge(const Scene& scene, const Hit& hit, const Judged& judged, Worker& worker) const;
+    /// Between runs of visits: what one finds is not much.
+    void throw_if_beyond(const Limits& limits, const Worker& worker) const;
     void collect(std::vector<std::uint64_t> Worker::*keys, std::vector<Pair>& pairs);
 
     Team& team_;

@@ -49,6 +49,10 @@ public:
     bool any_traits() const { return with_traits_; }
     /// All indices, those not in use too.
     Objects objects() const;
+    /// The same; empty if all have the defaults.
+    std::span<const Traits> all_traits() const { return with_traits_ ? traits_.span() : std::span<const Traits>(); }
+    /// Indices not in use; the last is the next to be.
+    std::span<const std::uint32_t> free() const { return free_; }
     /// For what is called here of that object soon.
     void prefetch(std::uint32_t index) const {
         prefetch_slot(index);

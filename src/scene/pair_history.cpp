@@ -1,6 +1,7 @@
 #include "scene/pair_history.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/reserve.hpp"
 #include "octopair/error.hpp"
@@ -100,6 +101,20 @@ void cancel(std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& secon
 
 }  // namespace
 
+PairHistory::PairHistory(Room room) : room_(std::move(room)) {
+    list_.storage().ask(room_);
+    other_.storage().ask(room_);
+}
+
+void PairHistory::note(std::vector<Pair>& changes, const Pair& pair) const {
+    if (changes.size() == changes.capacity()) {
+        const std::size_t more = std::max<std::size_t>(changes.size(), 64);
+        if (room_) room_(more * sizeof(Pair));
+        changes.reserve(changes.size() + more);
+    }
+    changes.push_back(pair);
+}
+
 void PairHistory::take_over(PairChanges& changes) {
     changes.clear();
     Reader before(list_), after(other_);
@@ -109,15 +124,15 @@ void PairHistory::take_over(PairChanges& changes) {
             before.next();
             after.next();
         } else if (old_key < new_key) {
-            changes.ended.push_back(before.pair());
+            note(changes.ended, before.pair());
             before.next();
         } else {
-            changes.began.push_back(after.pair());
+            note(changes.began, after.pair());
             after.next();
         }
     }
-    for (; !before.done(); before.next()) changes.ended.push_back(before.pair());
-    for (; !after.done(); after.next()) changes.began.push_back(after.pair());
+    for (; !before.done(); before.next()) note(changes.ended, before.pair());
+    for (; !after.done(); after.next()) note(changes.began, after.pair());
     std::swap(list_, other_);
     settled_ = false;
     size_ = list_.size();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,11 @@ inline Pair pair_of(std::uint64_t key) { return {std::uint32_t(key >> 32), std::
 
 class PairHistory {
 public:
+    using Room = std::function<void(std::uint64_t bytes)>;
+
+    /// `room`: asked before memory is taken for pairs; what it throws is thrown on. May be none.
+    explicit PairHistory(Room room);
+
     /// The list as it will be after a full detection: to be filled, ascending, then taken over.
     PairList& fresh() {
         merge();  // which uses the same memory
@@ -49,7 +55,9 @@ public:
 private:
     void merge();
     void settle();
+    void note(std::vector<Pair>& changes, const Pair& pair) const;
 
+    Room room_;
     PairList list_, other_;
     std::vector<std::uint64_t> began_, ended_;  // not yet in list_
     RadixSort<std::uint64_t> sort_;

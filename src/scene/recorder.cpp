@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <limits>
 
 #include "base/io_failure.hpp"
 #include "octopair/error.hpp"
@@ -17,32 +16,13 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t(256) << 10;
 
-template <typename T>
-Bytes bytes_of(const T& value) {
-    return std::as_bytes(std::span(&value, 1));
-}
-
-/// Of the arrays of a call. Throws Error{resource_limit} for one that a record has no number for.
-std::uint32_t count_of(std::uint64_t size) {
-    if (size <= std::numeric_limits<std::uint32_t>::max()) return std::uint32_t(size);
-    throw Error(ErrorCode::resource_limit, "a call of " + std::to_string(size) + " objects cannot be recorded");
-}
-
-Bytes bytes_of_boxes(const Boxes& boxes) {
-    return std::visit([](auto span) -> Bytes { return std::as_bytes(span); }, boxes);
-}
-
 }  // namespace
 
 Recorder::Recorder(const SceneOptions& options) : path_(options.recording.string()), buffer_(buffer_bytes) {
     // O_NONBLOCK: opening a pipe that nobody reads must not wait; it means nothing for a regular file.
     descriptor_ = Descriptor(::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC | O_NONBLOCK, 0666));
     if (!descriptor_.open()) fail_io(path_, "cannot create", errno);
-    RecordingHead head;
-    head.precision = options.precision == Precision::float64 ? 64 : 32;
-    head.margin = options.margin;
-    head.checksum = head.right_checksum();
-    keep(bytes_of(head));
+    keep(bytes_of(recording_head(options)));
     flush();
 }
 
@@ -52,28 +32,6 @@ Recorder::~Recorder() {
     } catch (const std::exception&) {
         // The records before are whole; there is nobody to tell.
     }
-}
-
-void Recorder::add(const Objects& objects, std::span<const Traits> traits) {
-    const std::uint32_t counts[3] = {count_of(objects.size()), count_of(objects.padding.size()),
-                                     count_of(traits.size())};
-    append(RecordKind::add,
-           {bytes_of(counts), bytes_of_boxes(objects.boxes), std::as_bytes(objects.padding), packed(traits)});
-}
-
-void Recorder::move(RecordKind kind, std::span<const ObjectId> ids, const Boxes& boxes) {
-    const std::uint32_t count = count_of(ids.size());
-    append(kind, {bytes_of(count), std::as_bytes(ids), bytes_of_boxes(boxes)});
-}
-
-void Recorder::remove(std::span<const ObjectId> ids) {
-    const std::uint32_t count = count_of(ids.size());
-    append(RecordKind::remove, {bytes_of(count), std::as_bytes(ids)});
-}
-
-void Recorder::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
-    const std::uint32_t counts[2] = {count_of(ids.size()), count_of(traits.size())};
-    append(RecordKind::set_traits, {bytes_of(counts), std::as_bytes(ids), packed(traits)});
 }
 
 void Recorder::begin_step() {
@@ -97,13 +55,7 @@ void Recorder::end_step(const StepResult& result) noexcept {
 }
 
 void Recorder::append(RecordKind kind, std::initializer_list<Bytes> pieces) {
-    RecordHead head = {kind, 0, 0};
-    for (const Bytes piece : pieces) head.length += piece.size();
-    head.check = head.right_check();
-    Checksum sum;
-    sum.add(bytes_of(head));
-    for (const Bytes piece : pieces) sum.add(piece);
-    const std::uint64_t checksum = sum.value();
+    const auto [head, checksum] = frame_of(kind, pieces);
     if (head.length + record_overhead > buffer_.size() - used_) flush();
     if (head.length + record_overhead > buffer_.size()) return write_large(pieces, head, checksum);
     keep(bytes_of(head));
@@ -148,12 +100,6 @@ void Recorder::write_at(std::uint64_t offset, Bytes bytes) {
         offset += std::uint64_t(written);
         bytes = bytes.subspan(std::size_t(written));
     }
-}
-
-Bytes Recorder::packed(std::span<const Traits> traits) {
-    traits_.clear();
-    for (const Traits& one : traits) traits_.push_back({one.groups, one.mask, one.fixed ? 1u : 0u});
-    return std::as_bytes(std::span<const RecordedTraits>(traits_));
 }
 
 }  // namespace octopair

@@ -8,48 +8,40 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string>
-#include <vector>
 
 #include "base/descriptor.hpp"
 #include "base/memory.hpp"
-#include "scene/recording.hpp"
+#include "scene/call_encoder.hpp"
 
 namespace octopair {
 
 /// All calls throw Error{io_failed} when the system refuses; the recording is then the same as before. (A limit of file
 /// sizes ends a process that does not ignore SIGXFSZ.)
-class Recorder {
+class Recorder final : public CallEncoder {
 public:
     /// Empties a file that is there.
     explicit Recorder(const SceneOptions& options);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
-    ~Recorder();
+    ~Recorder() override;
 
-    void add(const Objects& objects, std::span<const Traits> traits);
-    /// `kind`: move or sweep.
-    void move(RecordKind kind, std::span<const ObjectId> ids, const Boxes& boxes);
-    void remove(std::span<const ObjectId> ids);
-    void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
     /// From here on, all calls and that a step began are in the file, even if the process dies in it.
     void begin_step();
     /// Cannot fail: what cannot be written now is tried again with the next call.
     void end_step(const StepResult& result) noexcept;
 
 private:
-    void append(RecordKind kind, std::initializer_list<Bytes> pieces);
+    void append(RecordKind kind, std::initializer_list<Bytes> pieces) override;
     void keep(Bytes bytes);
     void flush();
     void write_large(std::initializer_list<Bytes> pieces, const RecordHead& head, std::uint64_t checksum);
     void write_at(std::uint64_t offset, Bytes bytes);
-    Bytes packed(std::span<const Traits> traits);
 
     std::string path_;
     Descriptor descriptor_;
     std::uint64_t end_ = 0;     // of the records that are in the file
     Buffer<std::byte> buffer_;  // whole records that come after these
     std::size_t used_ = 0;
-    std::vector<RecordedTraits> traits_;  // of a call
 };
 
 }  // namespace octopair

@@ -33,6 +33,14 @@ std::uint64_t RecordingHead::right_checksum() const {
     return sum.value();
 }
 
+RecordingHead recording_head(const SceneOptions& options) {
+    RecordingHead head;
+    head.precision = options.precision == Precision::float64 ? 64 : 32;
+    head.margin = options.margin;
+    head.checksum = head.right_checksum();
+    return head;
+}
+
 std::uint32_t RecordHead::right_check() const {
     const RecordHead unchecked = {kind, 0, length};
     Checksum sum;

@@ -23,6 +23,11 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 using Bytes = std::span<const std::byte>;
 
+template <typename T>
+Bytes bytes_of(const T& value) {
+    return std::as_bytes(std::span(&value, 1));
+}
+
 /// 64 bits over bytes: their length and order count. The bytes are taken as numbers of 64 bits, the last one filled up
 /// with zeros, and how many bytes there were as one number more. Any change within one number changes the checksum.
 class Checksum {
@@ -60,6 +65,9 @@ struct RecordingHead {
     std::uint64_t right_checksum() const;
 };
 static_assert(sizeof(RecordingHead) == 32);
+
+/// With its checksum.
+RecordingHead recording_head(const SceneOptions& options);
 
 struct RecordHead {
     RecordKind kind;

@@ -41,6 +41,10 @@ public:
     const std::string& name() const { return source_.name; }
     /// The next call; false at the end, and where the last record was cut.
     bool next(RecordedCall& call);
+    /// The source is longer than it was: what was cut may be whole now.
+    void grow(std::uint64_t size) { source_.size = size; }
+    /// Where the next call begins; what lies before is not read again.
+    std::uint64_t position() const { return at_; }
     /// The file ends within a record.
     bool cut() const { return cut_; }
     /// How much of the file is read, from 0 to 1.

@@ -27,15 +27,15 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
 void Scene::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
-    state_->add(objects, ids, traits);
+    state_->to_change().add(objects, ids, traits);
 }
 
-void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) { state_->move(ids, boxes, false); }
-void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) { state_->move(ids, boxes, true); }
-void Scene::remove(std::span<const ObjectId> ids) { state_->remove(ids); }
+void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) { state_->to_change().move(ids, boxes, false); }
+void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) { state_->to_change().move(ids, boxes, true); }
+void Scene::remove(std::span<const ObjectId> ids) { state_->to_change().remove(ids); }
 
 void Scene::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
-    state_->set_traits(ids, traits);
+    state_->to_change().set_traits(ids, traits);
 }
 
 const StepResult& Scene::step(std::stop_token stop) { return state_->step(stop); }
@@ -98,16 +98,10 @@ std::vector<Neighbor> Scene::nearest(const Box3d& place, std::size_t count, std:
     return std::move(answers.all);
 }
 
-std::uint64_t Scene::size() const { return state_->table().size(); }
-std::uint64_t Scene::indices() const { return state_->table().indices(); }
-bool Scene::contains(ObjectId id) const { return state_->table().contains(id); }
+std::uint64_t Scene::size() const { return state_->objects().table().size(); }
+std::uint64_t Scene::indices() const { return state_->objects().table().indices(); }
+bool Scene::contains(ObjectId id) const { return state_->objects().table().contains(id); }
 
-ObjectId Scene::id(std::uint32_t index) const {
-    const ObjectTable& table = state_->table();
-    if (index >= table.indices() || !table.alive(index)) {
-        throw Error(ErrorCode::bad_input, "no object has the index " + std::to_string(index));
-    }
-    return table.id(index);
-}
+ObjectId Scene::id(std::uint32_t index) const { return state_->objects().id(index); }
 
 }  // namespace octopair

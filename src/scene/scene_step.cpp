@@ -20,6 +20,7 @@ constexpr double most_patience = 4;  // may the search take, where it turns out 
 constexpr double least_patience = 0.02;          // seconds beside, in which others may have had the processor
 constexpr double guessed_cost = 10;              // of an object that changed, in those of one in a full detection
 constexpr std::uint64_t least_visits = 1 << 14;  // of units, for which there is memory in small scenes too
+constexpr std::uint64_t least_found = 1 << 20;   // pairs that change: the same
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -27,14 +28,26 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
+Scene::State::State(const SceneOptions& options)
+    : margin_(options.margin),
+      objects_(options),
+      team_(options.threads),
+      search_(team_),
+      queries_(team_),
+      history_(options.room_for_pairs) {
+    if (options.recording.empty()) return;
+    recorder_ = std::make_unique<Recorder>(options);
+    objects_.record_to(recorder_.get());
+}
+
 const StepResult& Scene::State::step(const std::stop_token& stop) {
     if (recorder_) recorder_->begin_step();
     const auto begin = std::chrono::steady_clock::now();
-    const double changed = double(log_.formers().size());
+    const double changed = double(objects_.log().formers().size());
     const double expected = changed * seconds_a_change_;
     const std::uint64_t before = history_.size();
-    const bool unlike = rounding_.exact && table_.any_padding();  // boxes in the octree have not been widened
-    bool full = !planted_ || unlike || log_.overflowed() || expected > worth_it * full_seconds_;
+    const bool unlike = rounding_.exact && objects_.table().any_padding();  // boxes in the octree have not been widened
+    bool full = !planted_ || unlike || objects_.log().overflowed() || expected > worth_it * full_seconds_;
     try {
         history_.prepare(planted_);
         const bool found = !full && find_changes(stop);
@@ -43,7 +56,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     }
-    finish_step();
+    objects_.finish_step();
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
     return result_;
@@ -54,18 +67,18 @@ void Scene::State::find_all(const std::stop_token& stop) {
     if (!asked_) octree_.release();
     asked_ = false;
     planted_ = fresh_ = false;
-    const SceneSource source(table_, margin_);
+    const SceneSource source(objects_.table(), margin_);
     build(source, stop);
     PairList::Storage& fresh = history_.fresh().storage();
     fresh.reset();
-    AscendingExecutor ascending(team_, fresh, {{0, table_.indices()}, table_.indices()});
+    AscendingExecutor ascending(team_, fresh, {{0, objects_.table().indices()}, objects_.table().indices()});
     scan(linear_, {source, stop}, ascending, {});
     ascending.append_sorted(stop);
     full_seconds_ = seconds_since(begin);
-    const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, table_.size()));
+    const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
     // What was learned fades, so that it is tried again.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    const bool plant = double(moved_) * seconds_a_change_ <= pays * full_seconds_;
+    const bool plant = double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_;
     if (plant) {
         octree_.build(linear_, stop);
         linear_ = {};
@@ -91,26 +104,26 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
 }
 
 SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
-    const bool follows = planted_ && !log_.overflowed();
+    const bool follows = planted_ && !objects_.log().overflowed();
     if (!follows && !fresh_) {
         planted_ = false;
-        if (!built_) build(SceneSource(table_, margin_), {});
+        if (!built_) build(SceneSource(objects_.table(), margin_), {});
         octree_.build(linear_, {});
         fresh_ = asked_ = true;
     }
-    return {table_, octree_, rounding_.rounding, follows ? &log_ : nullptr, groups};
+    return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
 }
 
 /// False if that is too dear after all.
 bool Scene::State::find_changes(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
-    const std::size_t changed = log_.formers().size();
+    const std::size_t changed = objects_.log().formers().size();
     const auto patience = std::chrono::duration<double>(most_patience * full_seconds_ + least_patience);
     const ChangeSearch::Limits limits{begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience),
-                                      table_.size() / 2 + least_visits, stop};
+                                      objects_.table().size() / 2 + least_visits, history_.size() + least_found, stop};
     planted_ = false;  // until all of this is done
     try {
-        search_.run({table_, log_, rounding_, margin_}, octree_, changes_, limits);
+        search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, changes_, limits);
     } catch (const ChangeSearch::TooDear&) {
         seconds_a_change_ = std::max(seconds_a_change_, full_seconds_ / double(changed));
         return false;
@@ -120,14 +133,6 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     constexpr std::size_t enough = 64;  // to tell what one costs
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
     return true;
-}
-
-void Scene::State::finish_step() {
-    log_.clear(table_);
-    for (const std::uint32_t index : removed_) table_.release(index);
-    removed_.clear();
-    moved_ = 0;
-    settle_swept();
 }
 
 const PairList& Scene::State::persisting() {

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "octopair/octopair.hpp"
+#include "support/scale.hpp"
 
 namespace octopair {
 namespace {
@@ -140,6 +143,56 @@ TEST(Scene, AStepThatWasStoppedCanBeRepeated) {
     const StepResult& step = scene.step();
     ASSERT_EQ(step.began.size(), 1u);
     EXPECT_EQ(step.began[0], (Pair{0, 1}));
+}
+
+/// As a SceneOptions::room_for_pairs.
+class Room {
+public:
+    explicit Room(std::uint64_t bytes) : left(bytes) {}
+    void operator()(std::uint64_t bytes) {
+        if (bytes > left) throw std::runtime_error("no room");
+        left -= bytes;
+        taken += bytes;
+    }
+
+    std::uint64_t left, taken = 0;
+};
+
+TEST(Scene, AStepThatHasNoRoomForItsPairsCanBeRepeated) {
+    for (const unsigned threads : {1u, 3u}) {
+        Room room(4'000'000);
+        Scene scene({.threads = threads, .room_for_pairs = std::ref(room)});
+        std::vector<ObjectId> few(100);
+        scene.add(Objects{boxes_of(std::vector<Box3f>(few.size(), unit))}, few);
+        EXPECT_EQ(scene.step().pairs(), 4950u);
+        std::vector<ObjectId> many(3000);
+        scene.add(Objects{boxes_of(std::vector<Box3f>(many.size(), unit))}, many);
+        EXPECT_THROW((void)scene.step(), std::runtime_error);
+        EXPECT_EQ(scene.pairs().size(), 4950u);
+        EXPECT_GT(scene.pairs().chunks().size(), 0u);
+        room.left = 400'000'000;
+        const StepResult& step = scene.step();
+        EXPECT_EQ(step.pairs(), 3100u * 3099 / 2);
+        EXPECT_EQ(step.began.size(), 3100u * 3099 / 2 - 4950);
+        EXPECT_GE(room.taken, 16 * step.pairs()) << "those of the list, and those that began";
+        EXPECT_LE(room.taken, 32 * step.pairs());
+    }
+}
+
+TEST(Scene, VeryManyPairsBeginWhereLittleMoves) {
+    const std::size_t apart = testing::scaled(200'000, 4), together = 1700;
+    std::vector<Box3f> boxes(apart);
+    for (std::size_t i = 0; i < apart; ++i) boxes[i].min[i % 3] = boxes[i].max[i % 3] = float(i + 1);
+    Scene scene({2});
+    std::vector<ObjectId> ids(apart);
+    scene.add(Objects{boxes_of(boxes)}, ids);
+    EXPECT_EQ(scene.step().pairs(), 0u);
+    scene.move(std::span(ids).first(10), boxes_of(std::vector<Box3f>(10, unit)));
+    EXPECT_EQ(scene.step().pairs(), 45u);
+    scene.move(std::span(ids).first(together), boxes_of(std::vector<Box3f>(together, unit)));
+    const StepResult& step = scene.step();
+    EXPECT_EQ(step.began.size(), together * (together - 1) / 2 - 45);
+    EXPECT_EQ(scene.pairs().size(), together * (together - 1) / 2);
 }
 
 }  // namespace

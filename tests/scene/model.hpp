@@ -53,7 +53,8 @@ public:
     }
 
     /// Compares a step with the last one.
-    void check(Scene& scene) {
+    template <typename AnyScene>
+    void check(AnyScene& scene) {
         const StepResult& result = scene.step();
         SCOPED_TRACE(result.full ? "full" : "partial");
         const std::vector<Pair> now = pairs();
@@ -73,7 +74,8 @@ public:
     }
 
     /// Compares the lists with the last step's.
-    void check_lists(Scene& scene) const {
+    template <typename AnyScene>
+    void check_lists(AnyScene& scene) const {
         ASSERT_EQ(scene.pairs().to_vector(), before_);
         ASSERT_EQ(scene.persisting().to_vector(), kept_);
     }

@@ -2,10 +2,7 @@
 // and of queries between them.
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "scene/model.hpp"
-#include "scene/query_model.hpp"
+#include "scene/history.hpp"
 #include "support/cases.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -13,190 +10,7 @@
 namespace octopair {
 namespace {
 
-using testing::Model;
-using testing::ModelObject;
-
 constexpr std::uint64_t histories_a_kind = testing::scaled(30, 2);
-constexpr int steps = 25;
-
-/// One scene, its model, and what happens to both.
-class History {
-public:
-    History(const std::string& kind, std::uint64_t seed) : random_(seed), kind_(kind) {
-        float64_ = chance(0.4);
-        padded_ = chance(0.3);
-        with_traits_ = chance(0.5);
-        margin_ = chance(0.3) ? 0.5 : 0;
-        queried_ = chance(0.5);
-        model_ = Model(margin_);
-        scene_ = Scene({unsigned(1 + random_() % 3), float64_ ? Precision::float64 : Precision::float32, margin_});
-        renew();
-    }
-
-    void run() {
-        add(20 + random_() % 300);
-        for (int i = 0; i < steps; ++i) {
-            model_.check(scene_);
-            if (::testing::Test::HasFatalFailure()) return;
-            model_.check_lists(scene_);
-            if (::testing::Test::HasFatalFailure()) return;
-            settle();
-            check_queries();
-            if (::testing::Test::HasFatalFailure()) return;
-            change();
-            check_queries();
-            if (::testing::Test::HasFatalFailure()) return;
-        }
-    }
-
-    const Model& model() const { return model_; }
-
-private:
-    bool chance(double part) { return std::uniform_real_distribution<>(0, 1)(random_) < part; }
-
-    void change() {
-        const std::uint64_t most = chance(0.1) ? 1 + model_.objects.size() : 6;
-        if (chance(0.3)) add(random_() % most);
-        if (chance(0.8)) move(random_() % most, false);
-        if (chance(0.3)) remove(random_() % most);
-        if (chance(0.2)) move(random_() % most, true);
-        if (chance(0.3)) move(random_() % most, false);
-        if (with_traits_ && chance(0.3)) set_traits(random_() % most);
-    }
-
-    /// Not in all histories, and not each time: queries may make an octree, which the next step does not use.
-    void check_queries() {
-        if (queried_ && chance(0.3)) testing::QueryModel(model_, scene_, random_()).check();
-    }
-
-    void renew() {
-        boxes_ = float64_ ? testing::make_double_boxes(kind_, 400, random_())
-                          : testing::widened(testing::make_boxes(kind_, 400, random_()));
-        next_ = 0;
-    }
-
-    Box3d next_box() {
-        if (next_ == boxes_.size()) renew();
-        return boxes_[next_++];
-    }
-
-    Traits random_traits() {
-        Traits traits;
-        if (!with_traits_) return traits;
-        traits.groups = 1u << random_() % 3;
-        if (chance(0.3)) traits.mask = random_() % 8;
-        traits.fixed = chance(0.3);
-        return traits;
-    }
-
-    /// Calls body(boxes) with boxes of the scene's precision.
-    template <typename Body>
-    void with_boxes(const std::vector<Box3d>& boxes, Body&& body) {
-        if (float64_) return body(Boxes(std::span(boxes)));
-        std::vector<Box3f> narrow;
-        for (const Box3d& box : boxes) {
-            narrow.push_back({{float(box.min[0]), float(box.min[1]), float(box.min[2])},
-                              {float(box.max[0]), float(box.max[1]), float(box.max[2])}});
-        }
-        body(Boxes(std::span<const Box3f>(narrow)));
-    }
-
-    void add(std::uint64_t count) {
-        std::vector<Box3d> boxes;
-        std::vector<double> paddings;
-        std::vector<Traits> traits;
-        for (std::uint64_t i = 0; i < count; ++i) {
-            boxes.push_back(next_box());
-            if (padded_) paddings.push_back(double(random_() % 3) / 8);
-            traits.push_back(random_traits());
-        }
-        std::vector<ObjectId> ids(count);
-        with_boxes(boxes, [&](const Boxes& all) { scene_.add(Objects{all, paddings}, ids, traits); });
-        for (std::uint64_t i = 0; i < count; ++i) {
-            ASSERT_FALSE(model_.objects.contains(ids[i].index));
-            model_.objects[ids[i].index] = {ids[i], boxes[i], padded_ ? paddings[i] : 0, traits[i]};
-        }
-    }
-
-    std::vector<ObjectId> some(std::uint64_t count) {
-        std::vector<ObjectId> ids;
-        for (std::uint64_t i = 0; i < count && !model_.objects.empty(); ++i) {
-            auto at = model_.objects.lower_bound(std::uint32_t(random_() % scene_.indices()));
-            if (at == model_.objects.end()) at = model_.objects.begin();
-            ids.push_back(at->second.id);
-        }
-        return ids;
-    }
-
-    void move(std::uint64_t count, bool swept) {
-        const std::vector<ObjectId> ids = some(count);
-        std::vector<Box3d> boxes;
-        for (const ObjectId id : ids) {
-            Box3d box = next_box();
-            if (chance(0.5)) {  // a little
-                box = model_.objects[id.index].box;
-                const double way = (box.max[0] - box.min[0]) * (double(random_() % 5) - 2) / 4;
-                box.min[0] = float64_ ? box.min[0] + way : double(float(box.min[0] + way));
-                box.max[0] = std::max(box.min[0], float64_ ? box.max[0] + way : double(float(box.max[0] + way)));
-                if (!std::isfinite(float(box.min[0])) || !std::isfinite(float(box.max[0]))) box = next_box();
-            }
-            boxes.push_back(box);
-        }
-        with_boxes(boxes, [&](const Boxes& all) { swept ? scene_.sweep(ids, all) : scene_.move(ids, all); });
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            Box3d& box = model_.objects[ids[i].index].box;
-            places_.erase(ids[i].index);
-            if (!swept) {
-                box = boxes[i];
-                continue;
-            }
-            places_[ids[i].index] = boxes[i];
-            for (int axis = 0; axis < 3; ++axis) {
-                box.min[axis] = std::min(box.min[axis], boxes[i].min[axis]);
-                box.max[axis] = std::max(box.max[axis], boxes[i].max[axis]);
-            }
-        }
-    }
-
-    /// After a step, what was swept is where it came to.
-    void settle() {
-        for (const auto& [index, box] : places_) {
-            if (model_.objects.contains(index)) model_.objects[index].box = box;
-        }
-        places_.clear();
-    }
-
-    void remove(std::uint64_t count) {
-        std::vector<ObjectId> ids = some(count);
-        std::sort(ids.begin(), ids.end());
-        ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-        scene_.remove(ids);
-        for (const ObjectId id : ids) {
-            EXPECT_FALSE(scene_.contains(id));
-            model_.objects.erase(id.index);
-            places_.erase(id.index);
-        }
-    }
-
-    void set_traits(std::uint64_t count) {
-        const std::vector<ObjectId> ids = some(count);
-        std::vector<Traits> traits;
-        for (std::size_t i = 0; i < ids.size(); ++i) traits.push_back(random_traits());
-        if (ids.empty()) return;
-        scene_.set_traits(ids, traits);
-        for (std::size_t i = 0; i < ids.size(); ++i) model_.objects[ids[i].index].traits = traits[i];
-    }
-
-    std::mt19937_64 random_;
-    std::string kind_;
-    bool float64_ = false, padded_ = false, with_traits_ = false, queried_ = false;
-    double margin_ = 0;
-    Model model_;
-    Scene scene_;
-    std::vector<Box3d> boxes_;
-    std::size_t next_ = 0;
-    std::map<std::uint32_t, Box3d> places_;
-};
 
 class SceneProperty : public ::testing::TestWithParam<std::string> {};
 
@@ -206,7 +20,7 @@ TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t seed = testing::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        History history(GetParam(), seed);
+        testing::History<Scene> history(GetParam(), seed, [](const SceneOptions& options) { return Scene(options); });
         history.run();
         if (HasFatalFailure()) return;
         full += history.model().full();

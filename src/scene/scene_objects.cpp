@@ -1,5 +1,4 @@
-// The calls that change the objects of a scene: checked as a whole, recorded, then made.
-#include "scene/scene_state.hpp"
+#include "scene/scene_objects.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,20 +38,22 @@ const Traits& traits_at(std::span<const Traits> traits, std::size_t i) {
 
 }  // namespace
 
-Scene::State::State(const SceneOptions& options)
-    : margin_(options.margin),
-      float64_(options.precision == Precision::float64),
-      table_(options.precision),
-      team_(options.threads),
-      search_(team_),
-      queries_(team_) {
-    if (!(margin_ >= 0 && std::isfinite(margin_))) {
-        throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin_) + ", not a finite number >= 0");
+SceneObjects::SceneObjects(const SceneOptions& options, Changes changes)
+    : float64_(options.precision == Precision::float64), table_(options.precision), changes_(changes) {
+    if (!(options.margin >= 0 && std::isfinite(options.margin))) {
+        throw Error(ErrorCode::bad_input, "margin is " + std::to_string(options.margin) + ", not a finite number >= 0");
     }
-    if (!options.recording.empty()) recorder_ = std::make_unique<Recorder>(options);
+    if (changes_ == Changes::forgotten) log_.give_up(table_);
 }
 
-void Scene::State::check_boxes(const Boxes& boxes, std::size_t expected) const {
+ObjectId SceneObjects::id(std::uint32_t index) const {
+    if (index >= table_.indices() || !table_.alive(index)) {
+        throw Error(ErrorCode::bad_input, "no object has the index " + std::to_string(index));
+    }
+    return table_.id(index);
+}
+
+void SceneObjects::check_boxes(const Boxes& boxes, std::size_t expected) const {
     if (size_of(boxes) != expected) {
         throw Error(ErrorCode::bad_input,
                     std::to_string(size_of(boxes)) + " boxes for " + std::to_string(expected) + " ids");
@@ -69,7 +70,7 @@ void Scene::State::check_boxes(const Boxes& boxes, std::size_t expected) const {
     std::visit(check, boxes);
 }
 
-void Scene::State::check_ids(std::span<const ObjectId> ids) const {
+void SceneObjects::check_ids(std::span<const ObjectId> ids) const {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         if (i + ahead < ids.size()) table_.prefetch_slot(ids[i + ahead].index);
         if (table_.contains(ids[i])) continue;
@@ -78,7 +79,7 @@ void Scene::State::check_ids(std::span<const ObjectId> ids) const {
     }
 }
 
-void Scene::State::check_paddings(std::span<const double> paddings, std::size_t objects) const {
+void SceneObjects::check_paddings(std::span<const double> paddings, std::size_t objects) const {
     if (!paddings.empty() && paddings.size() != objects) {
         throw Error(ErrorCode::bad_input,
                     std::to_string(paddings.size()) + " paddings for " + std::to_string(objects) + " objects");
@@ -88,7 +89,7 @@ void Scene::State::check_paddings(std::span<const double> paddings, std::size_t 
     }
 }
 
-void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
+void SceneObjects::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
     check_boxes(objects.boxes, ids.size());
     check_paddings(objects.padding, ids.size());
     if (traits.size() > 1 && traits.size() != ids.size()) {
@@ -101,18 +102,15 @@ void Scene::State::add(const Objects& objects, std::span<ObjectId> ids, std::spa
     table_.reserve(ids.size(), std::any_of(objects.padding.begin(), objects.padding.end(), padded),
                    std::any_of(traits.begin(), traits.end(), unusual));
     prepare(ids.size());
-    if (recorder_) recorder_->add(objects, traits);
+    if (recorder_ != nullptr) recorder_->add(objects, traits);
     std::visit([&](auto boxes) { add_all(boxes, objects.padding, traits, ids); }, objects.boxes);
 }
 
 /// Memory for changes that are about to be made, so that nothing can fail then.
-void Scene::State::prepare(std::uint64_t changes) {
-    log_.expect(table_, changes);
-    fresh_ = built_ = false;
-}
+void SceneObjects::prepare(std::uint64_t changes) { log_.expect(table_, changes); }
 
 template <typename Real>
-void Scene::State::add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings,
+void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings,
                            std::span<const Traits> traits, std::span<ObjectId> ids) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         ids[i] = table_.create(boxes[i], paddings.empty() ? 0 : paddings[i], traits_at(traits, i));
@@ -120,7 +118,7 @@ void Scene::State::add_all(std::span<const Box<Real>> boxes, std::span<const dou
     }
 }
 
-void Scene::State::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
+void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
     check_boxes(boxes, ids.size());
     check_ids(ids);
     if (swept) {
@@ -128,12 +126,12 @@ void Scene::State::move(std::span<const ObjectId> ids, const Boxes& boxes, bool 
         if (swept_at_.size() < table_.indices()) swept_at_.resize(std::size_t(table_.indices()), ObjectTable::none);
     }
     prepare(ids.size());
-    if (recorder_) recorder_->move(swept ? RecordKind::sweep : RecordKind::move, ids, boxes);
+    if (recorder_ != nullptr) recorder_->move(swept ? RecordKind::sweep : RecordKind::move, ids, boxes);
     std::visit([&](auto span) { swept ? sweep_to(ids, span) : move_to(ids, span); }, boxes);
 }
 
 template <typename Real>
-void Scene::State::move_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
+void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
     const bool any_swept = !swept_.empty();
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const std::uint32_t index = ids[i].index;
@@ -148,7 +146,7 @@ void Scene::State::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
 }
 
 template <typename Real>
-void Scene::State::sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
+void SceneObjects::sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const std::uint32_t index = ids[i].index;
         log_.note(table_, index, true);
@@ -160,13 +158,13 @@ void Scene::State::sweep_to(std::span<const ObjectId> ids, std::span<const Box<R
     moved_ += ids.size();
 }
 
-void Scene::State::drop_swept(std::uint32_t index) {
+void SceneObjects::drop_swept(std::uint32_t index) {
     if (index >= swept_at_.size() || swept_at_[index] == ObjectTable::none) return;
     swept_[swept_at_[index]].id = {};
     swept_at_[index] = ObjectTable::none;
 }
 
-void Scene::State::check_removal(std::span<const ObjectId> ids) {
+void SceneObjects::check_removal(std::span<const ObjectId> ids) {
     check_ids(ids);
     sorted_.assign(ids.begin(), ids.end());
     std::sort(sorted_.begin(), sorted_.end());
@@ -177,12 +175,12 @@ void Scene::State::check_removal(std::span<const ObjectId> ids) {
     }
 }
 
-void Scene::State::remove(std::span<const ObjectId> ids) {
+void SceneObjects::remove(std::span<const ObjectId> ids) {
     check_removal(ids);
     reserve_more(removed_, ids.size());
     table_.reserve_release(removed_.size() + ids.size());
     prepare(ids.size());
-    if (recorder_) recorder_->remove(ids);
+    if (recorder_ != nullptr) recorder_->remove(ids);
     for (const ObjectId& id : ids) {
         log_.note(table_, id.index, true);
         drop_swept(id.index);
@@ -192,7 +190,7 @@ void Scene::State::remove(std::span<const ObjectId> ids) {
     }
 }
 
-void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
+void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
     if (traits.size() != 1 && traits.size() != ids.size()) {
         throw Error(ErrorCode::bad_input,
                     std::to_string(traits.size()) + " traits for " + std::to_string(ids.size()) + " ids");
@@ -202,7 +200,7 @@ void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Tra
         table_.reserve(0, false, true);
     }
     prepare(ids.size());
-    if (recorder_) recorder_->set_traits(ids, traits);
+    if (recorder_ != nullptr) recorder_->set_traits(ids, traits);
     for (std::size_t i = 0; i < ids.size(); ++i) {
         log_.note(table_, ids[i].index, true);
         table_.set_traits(ids[i].index, traits_at(traits, i));
@@ -210,8 +208,16 @@ void Scene::State::set_traits(std::span<const ObjectId> ids, std::span<const Tra
     }
 }
 
+void SceneObjects::finish_step() {
+    if (changes_ == Changes::kept) log_.clear(table_);
+    for (const std::uint32_t index : removed_) table_.release(index);
+    removed_.clear();
+    moved_ = 0;
+    settle_swept();
+}
+
 /// What was swept is where it came to, from now on.
-void Scene::State::settle_swept() {
+void SceneObjects::settle_swept() {
     if (swept_.empty()) return;
     prepare(swept_.size());
     for (const Swept& swept : swept_) {
