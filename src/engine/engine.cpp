@@ -24,7 +24,9 @@ void check_set(const Objects& set, const char* name) {
     }
 }
 
-void check(const Engine::Request& request) {
+}  // namespace
+
+void check_request(const Engine::Request& request) {
     const double margin = request.options.margin;
     if (!(margin >= 0 && std::isfinite(margin))) {
         throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin) + ", not a finite number >= 0");
@@ -38,13 +40,11 @@ void check(const Engine::Request& request) {
     }
 }
 
-}  // namespace
-
 /// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
 /// after.
 Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
     if (output.list != nullptr) output.list->storage().reset();
-    check(request);
+    check_request(request);
     try {
         return run(request, output, {stop, request.options.progress});
     } catch (const std::bad_alloc&) {
@@ -92,9 +92,9 @@ namespace {
 
 void check(const Job::Task::Work& work) {
     const Objects first = view(work.first);
-    if (!work.second) return check({first, nullptr, work.options});
+    if (!work.second) return check_request({first, nullptr, work.options});
     const Objects second = view(*work.second);
-    check({first, &second, work.options});
+    check_request({first, &second, work.options});
 }
 
 Job submit_to(JobQueue& queue, Job::Task::Work work) {

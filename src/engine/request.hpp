@@ -23,6 +23,9 @@ struct Engine::Output {
     const PairSink* sink = nullptr;
 };
 
+/// Options and sizes. Throws Error.
+void check_request(const Engine::Request& request);
+
 struct Engine::Control {
     std::stop_token stop;
     const ProgressSink& progress;

@@ -1,13 +1,14 @@
 // StreamExecutor: shares run ahead on helper threads while the calling thread hands out pairs in order.
 //
-// The calling thread goes through the shares in order. One that no helper has begun it runs itself, straight to the
-// receiver; from one that a helper runs it takes over what is ready until the share ends. So the share whose turn it is
-// always goes on, whatever the scheduler does, and a helper whose share's buffer is full may wait. Helpers run at most
-// `ahead` shares ahead, each with a buffer of its part of the bound.
+// The calling thread hands out what is ready of the share whose turn it is, and when nothing is, runs a share itself: straight
+// to the receiver if it is that one's turn, else to a buffer. When its buffer is full it waits for the shares before, which
+// helpers run and which go on because it takes what they have ready; so a helper whose buffer is full may wait. Nobody runs a
+// share that is `ahead` or more after the one whose turn it is.
 
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "engine/writers.hpp"
@@ -28,29 +29,27 @@ public:
 
     void lead(const StreamExecutor::Deliver& deliver) {
         try {
-            for (std::size_t share = 0; share < count_; ++share) {
-                if (claim_as_lead(share)) {
-                    DirectWriter writer(deliver);
-                    body_(share, writer);
+            while (head_ < count_) {
+                if (hand_out(deliver, false)) continue;
+                if (const auto share = claim_as_lead()) {
+                    LeadWriter writer(*this, deliver, *share);
+                    body_(*share, writer);
+                    writer.finish();
                 } else {
-                    take_over(share, deliver);
+                    hand_out(deliver, true);
                 }
-                const std::lock_guard lock(mutex_);
-                head_ = share + 1;
-                changed_.notify_all();
             }
         } catch (...) {
-            fail(nullptr);
-            throw;
+            fail(std::current_exception());
+            std::rethrow_exception(failure_);
         }
-        const std::lock_guard lock(mutex_);
-        changed_.notify_all();
     }
 
     void help() {
+        std::vector<Pair> held;
         try {
             for (std::size_t share = claim(); share < count_; share = claim()) {
-                BufferedWriter writer(*this, share);
+                BufferedWriter writer(*this, share, held);
                 body_(share, writer);
                 writer.finish();
             }
@@ -68,18 +67,34 @@ private:
         bool finished = false;
     };
 
-    class DirectWriter final : public FullWriter {
+    /// The calling thread's. Its share is the next one that nobody has begun.
+    class LeadWriter final : public FullWriter {
     public:
-        explicit DirectWriter(const StreamExecutor::Deliver& deliver) : deliver_(deliver) {}
-        void write(std::span<const Pair> pairs) override { deliver_(pairs); }
+        LeadWriter(OrderedStream& stream, const StreamExecutor::Deliver& deliver, std::size_t share)
+            : stream_(stream), deliver_(deliver), share_(share), held_(stream.lead_held_) {}
+        void write(std::span<const Pair> pairs) override {
+            if (stream_.head_ == share_) return deliver_(pairs);
+            if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_) {
+                while (stream_.head_ < share_) stream_.hand_out(deliver_, true);
+                deliver_(held_);
+                held_.clear();
+                return deliver_(pairs);
+            }
+            held_.insert(held_.end(), pairs.begin(), pairs.end());
+        }
+        void finish() { stream_.hand_over(share_, held_, true); }
 
     private:
+        OrderedStream& stream_;
         const StreamExecutor::Deliver& deliver_;
+        std::size_t share_;
+        std::vector<Pair>& held_;
     };
 
     class BufferedWriter final : public FullWriter {
     public:
-        BufferedWriter(OrderedStream& stream, std::size_t share) : stream_(stream), share_(share) {}
+        BufferedWriter(OrderedStream& stream, std::size_t share, std::vector<Pair>& held)
+            : stream_(stream), share_(share), held_(held) {}
         void write(std::span<const Pair> pairs) override {
             if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_)
                 stream_.hand_over(share_, held_, false);
@@ -90,16 +105,17 @@ private:
     private:
         OrderedStream& stream_;
         std::size_t share_;
-        std::vector<Pair> held_;
+        std::vector<Pair>& held_;
     };
 
     Slot& slot(std::size_t share) { return slots_[share % slots_.size()]; }
 
-    bool claim_as_lead(std::size_t share) {
+    /// None where all are begun, or all that may be.
+    std::optional<std::size_t> claim_as_lead() {
         const std::lock_guard lock(mutex_);
-        if (next_ != share) return false;
-        ++next_;
-        return true;
+        if (failed_) throw Abandoned{};
+        if (next_ >= count_ || next_ >= head_ + slots_.size()) return {};
+        return next_++;
     }
 
     std::size_t claim() {
@@ -119,25 +135,28 @@ private:
         changed_.notify_all();
     }
 
-    void take_over(std::size_t share, const StreamExecutor::Deliver& deliver) {
-        std::vector<Pair> taken;
-        for (bool finished = false; !finished;) {
-            {
-                std::unique_lock lock(mutex_);
-                changed_.wait(lock, [&] { return failed_ || slot(share).finished || !slot(share).ready.empty(); });
-                if (failed_) std::rethrow_exception(failure_);
-                taken.swap(slot(share).ready);
-                finished = std::exchange(slot(share).finished, false);
-                changed_.notify_all();
-            }
-            if (!taken.empty()) deliver(taken);
-            taken.clear();
+    /// What is ready of the share whose turn it is, and the turn to the next one if that was all. False if nothing is, and
+    /// it need not wait.
+    bool hand_out(const StreamExecutor::Deliver& deliver, bool wait) {
+        {
+            std::unique_lock lock(mutex_);
+            Slot& turn = slot(head_);
+            const auto is_ready = [&] { return turn.finished || !turn.ready.empty(); };
+            if (wait) changed_.wait(lock, [&] { return failed_ || is_ready(); });
+            if (failed_) throw Abandoned{};
+            if (!is_ready()) return false;
+            taken_.swap(turn.ready);
+            if (std::exchange(turn.finished, false)) ++head_;
+            changed_.notify_all();
         }
+        if (!taken_.empty()) deliver(taken_);
+        taken_.clear();
+        return true;
     }
 
     void fail(std::exception_ptr why) {
         const std::lock_guard lock(mutex_);
-        if (!failed_) failure_ = why;
+        if (!failed_) failure_ = std::move(why);
         failed_ = true;
         on_failure();
         changed_.notify_all();
@@ -149,8 +168,9 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Slot> slots_;
-    std::size_t next_ = 0;  // the first share that nobody has begun
-    std::size_t head_ = 0;  // the first share that has not been handed out
+    std::vector<Pair> lead_held_, taken_;  // the calling thread's
+    std::size_t next_ = 0;                 // the first share that nobody has begun
+    std::size_t head_ = 0;                 // the share whose turn it is; the calling thread's to change
     bool failed_ = false;
     std::exception_ptr failure_;
 };
@@ -162,7 +182,7 @@ StreamExecutor::StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer
 
 void StreamExecutor::for_each_writing(std::size_t count, const Body& body) {
     const std::size_t ahead = std::size_t(width()) * 4;
-    // A share holds what it fills and what is ready; the calling thread has one such buffer in hand.
+    // A share holds what it fills and what is ready; the calling thread has one such buffer in hand beside.
     const std::size_t buffer = std::max<std::size_t>(1, std::size_t(buffer_pairs_ / (2 * ahead + 1)));
     OrderedStream stream(count, body, ahead, buffer);
     stream.on_failure = [&] { abandon_.request_stop(); };

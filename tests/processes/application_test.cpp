@@ -13,14 +13,13 @@
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
-#include "support/compare.hpp"
 #include "support/scale.hpp"
 
 namespace octopair {
 namespace {
 
-using testing::Answer;
 using testing::Asked;
+using testing::expect_right;
 using testing::Fault;
 using testing::FaultKind;
 using testing::How;
@@ -28,15 +27,6 @@ using testing::Scene;
 
 class Applications : public testing::Processes {
 protected:
-    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
-        SCOPED_TRACE(asked.describe());
-        const Answer expected = testing::ask(*local_, scene, asked);
-        const Answer answer = testing::ask(engine, scene, asked);
-        EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
-        EXPECT_EQ(answer.count, expected.count);
-        EXPECT_EQ(answer.truncated, expected.truncated);
-    }
-
     /// Calls that all kinds of faults happen to.
     void call_with_faults() {
         testing::MappedPlan plan;

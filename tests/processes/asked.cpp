@@ -1,7 +1,10 @@
 #include "processes/asked.hpp"
 
+#include <gtest/gtest.h>
+
 #include "samples/random.hpp"
 #include "samples/scenes.hpp"
+#include "support/compare.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::testing {
@@ -88,6 +91,18 @@ Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_tok
                                   : engine.count_pairs(objects, options, stop);
     }
     return answer;
+}
+
+void expect_same(const Answer& found, const Answer& expected) {
+    EXPECT_TRUE(same_bytes(found.pairs, expected.pairs));
+    EXPECT_EQ(found.count, expected.count);
+    EXPECT_EQ(found.truncated, expected.truncated);
+}
+
+void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
+    SCOPED_TRACE(asked.describe());
+    const Answer expected = ask(*make_local_engine(1), scene, asked);
+    expect_same(ask(engine, scene, asked), expected);
 }
 
 std::vector<Asked> all_ways() {

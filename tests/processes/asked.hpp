@@ -50,6 +50,11 @@ struct Answer {
 /// Throws what the call does.
 Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_token stop = {});
 
+/// Expects the same pairs in the same order, and all else the same.
+void expect_same(const Answer& found, const Answer& expected);
+/// Expects that the engine answers what a local one does. Throws what the call does.
+void expect_right(Engine& engine, const Scene& scene, const Asked& asked);
+
 /// All ways to ask: list, stream and count, both orders.
 std::vector<Asked> all_ways();
 

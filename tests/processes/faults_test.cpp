@@ -11,7 +11,6 @@
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
-#include "support/compare.hpp"
 #include "support/scale.hpp"
 
 namespace octopair {
@@ -71,10 +70,7 @@ protected:
         const Answer expected = testing::ask(*local, scene_, asked);
         plan_.set(faults);
         for (unsigned tries = 0; !plan_.empty() && tries < most_tries; ++tries) {
-            const Answer answer = testing::ask(engine, scene_, asked);
-            EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
-            EXPECT_EQ(answer.count, expected.count);
-            EXPECT_EQ(answer.truncated, expected.truncated);
+            testing::expect_same(testing::ask(engine, scene_, asked), expected);
         }
         plan_.set({});
     }

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Answer;
 using testing::Asked;
+using testing::expect_right;
 using testing::How;
 using testing::Scene;
 
@@ -52,9 +53,6 @@ protected:
             EXPECT_GT(std::string(error.what()).size(), 10u);
             return End::refused;
         }
-    }
-    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
-        EXPECT_EQ(testing::ask(engine, scene, asked), testing::ask(*local_, scene, asked));
     }
 
     const std::unique_ptr<Engine> local_ = make_local_engine(1);

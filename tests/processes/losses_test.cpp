@@ -18,24 +18,15 @@ namespace octopair {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::Answer;
 using testing::Asked;
+using testing::expect_right;
 using testing::Fault;
 using testing::FaultKind;
 using testing::How;
 using testing::Moment;
 using testing::Scene;
 
-class WorkerLosses : public testing::Processes {
-protected:
-    void expect_right(Engine& engine, const Scene& scene, const Asked& asked) {
-        SCOPED_TRACE(asked.describe());
-        const Answer expected = testing::ask(*make_local_engine(2), scene, asked);
-        const Answer answer = testing::ask(engine, scene, asked);
-        EXPECT_TRUE(testing::same_bytes(answer.pairs, expected.pairs));
-        EXPECT_EQ(answer.count, expected.count);
-    }
-};
+class WorkerLosses : public testing::Processes {};
 
 /// Ends or stops workers of this process; whether it found any.
 bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {

@@ -1,6 +1,7 @@
 #include "engine/processes/crew.hpp"
 
 #include <algorithm>
+#include <array>
 #include <thread>
 #include <utility>
 

@@ -18,7 +18,6 @@
 // Whatever a number here says is checked before it is used: what died may have left anything.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>

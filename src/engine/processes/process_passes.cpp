@@ -1,7 +1,6 @@
 #include "engine/processes/process_passes.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "base/stop.hpp"
@@ -36,8 +35,11 @@ void ProcessPasses::build(Call& call, double) {
     pass_.arena_region = arena_->number;
 }
 
-/// Sends the workers on the errand that pass_ is, with their pairs to `regions_.back()`.
-void ProcessPasses::run(Call& call, double progress, PassWatch watch) {
+/// Sends the workers on the errand that pass_ is, with their pairs to the region `pairs`.
+void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch) {
+    pass_.pairs_region = pairs->number;
+    std::vector<std::shared_ptr<Region>> needed = regions_;
+    needed.push_back(pairs);
     // The steps before the scan are told together with it.
     call.progress.stage(progress, std::max<std::uint64_t>(1, call.source.size() * 5 / 4));
     std::uint64_t shown = 0;
@@ -47,7 +49,7 @@ void ProcessPasses::run(Call& call, double progress, PassWatch watch) {
         if (look) look();
     };
     try {
-        (void)crew_.run(pass_, regions_, watch);
+        (void)crew_.run(pass_, needed, watch);
     } catch (const LinearOctree::Invalid& invalid) {
         call.source.refuse(std::min(invalid.begin, std::size_t(call.source.size())));
     } catch (const OverBudget&) {
@@ -91,23 +93,19 @@ std::span<Share> ProcessPasses::shares_done() {
     return shares;
 }
 
-/// A region that no list holds any more; it becomes the last of regions_.
+/// A region that no list holds any more.
 std::shared_ptr<Region> ProcessPasses::free_pairs() {
     auto found = std::find_if(pairs_.begin(), pairs_.end(), [](const auto& region) { return region.use_count() == 1; });
     if (found == pairs_.end()) {
         pairs_.push_back(crew_.add_region(SharedMemory::create(roomy_bytes())));
         found = pairs_.end() - 1;
     }
-    pass_.pairs_region = (*found)->number;
     return *found;
 }
 
 std::uint64_t ProcessPasses::count(Call& call, double progress) {
     pass_.kind = PassKind::count;
-    const auto pairs = free_pairs();
-    regions_.push_back(pairs);
-    run(call, progress, {});
-    regions_.pop_back();
+    run(call, progress, free_pairs(), {});
     std::uint64_t all = 0;
     for (const Share& share : shares_done()) all += share.pairs;
     return all;
@@ -118,17 +116,15 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
     struct Again {};
     pass_.kind = PassKind::count_by_object;
     const auto pairs = free_pairs();
-    regions_.push_back(pairs);
     for (bool again = true; again;) {
         try {
             PassWatch watch;
             watch.lost = [](unsigned) { throw Again{}; };
-            run(call, progress, std::move(watch));
+            run(call, progress, pairs, std::move(watch));
             again = false;
         } catch (const Again&) {
         }
     }
-    regions_.pop_back();
     const std::uint64_t place = crew_.view().slot(0).number;
     if (place % alignof(std::uint32_t) != 0) throw_damaged();
     std::copy_n(arena_->memory.array<std::uint32_t>(place, counts.size()), counts.size(), counts.begin());
@@ -137,9 +133,7 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
 void ProcessPasses::list_octal(Call& call, PairList::Storage& list, double progress) {
     pass_.kind = PassKind::list_octal;
     const auto pairs = free_pairs();
-    regions_.push_back(pairs);
-    run(call, progress, {});
-    regions_.pop_back();
+    run(call, progress, pairs, {});
     append_runs(list, pairs);
 }
 
@@ -148,14 +142,7 @@ void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const As
     pass_.kind = PassKind::list_ascending;
     pass_.bounds = bounds;
     const auto pairs = free_pairs();
-    regions_.push_back(pairs);
-    try {
-        run(call, progress, {});
-    } catch (...) {
-        regions_.pop_back();
-        throw;
-    }
-    regions_.pop_back();
+    run(call, progress, pairs, {});
     append_runs(list, pairs);
 }
 
@@ -183,7 +170,6 @@ void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<R
 void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double progress) {
     pass_.kind = PassKind::stream_octal;
     const auto pairs = free_pairs();
-    regions_.push_back(pairs);
     const RingSize size = ring_size(call.buffer_pairs(), pass_.workers);
     pass_.ring_blocks = size.blocks;
     pass_.block_pairs = size.block_pairs;
@@ -191,9 +177,8 @@ void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double prog
     PassWatch watch;
     watch.look = [&] { (void)reader.take(); };
     watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
-    run(call, progress, std::move(watch));
+    run(call, progress, pairs, std::move(watch));
     while (reader.take()) throw_if_stopped(call.stop.get_token());
-    regions_.pop_back();
     if (!reader.complete(crew_.shares())) throw_damaged();
 }
 

@@ -27,7 +27,7 @@ public:
     void list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) override;
 
 private:
-    void run(Call& call, double progress, PassWatch watch);
+    void run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch);
     void show_progress(Call& call, std::uint64_t& shown);
     void take_results(Call& call);
     void append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs);
@@ -39,7 +39,7 @@ private:
     std::shared_ptr<Region> arena_;
     std::vector<std::shared_ptr<Region>> pairs_;  // with one owner, they are free
     Pass pass_;
-    std::vector<std::shared_ptr<Region>> regions_;  // that the call's passes need
+    std::vector<std::shared_ptr<Region>> regions_;  // that each pass of the call needs, beside one for its pairs
 };
 
 }  // namespace octopair

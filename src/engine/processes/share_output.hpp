@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 #include <stop_token>
-#include <vector>
 
 #include "engine/processes/share_out.hpp"
 #include "octree/executor.hpp"

@@ -1,7 +1,6 @@
 #include "engine/processes/shared_buckets.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "engine/writers.hpp"

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <vector>
 
 #include "base/timed.hpp"
 #include "engine/processes/shared_buckets.hpp"

@@ -1,0 +1,113 @@
+// Shares of a stream: in order, side by side, and the first failure is the one that is told.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "engine/writers.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+namespace {
+
+using std::chrono::seconds;
+
+class Stream : public ::testing::TestWithParam<unsigned> {
+protected:
+    /// What comes of shares that write their number `each` times.
+    std::vector<Pair> stream(std::size_t shares, std::size_t each, std::uint64_t buffer) {
+        std::vector<Pair> all;
+        StreamExecutor executor(
+            team_, [&](std::span<const Pair> pairs) { all.insert(all.end(), pairs.begin(), pairs.end()); }, buffer,
+            stop_);
+        executor.for_each_writing(shares, [&](std::size_t share, PairWriter& writer) {
+            const Pair pair{std::uint32_t(share), 0};
+            for (std::size_t i = 0; i < each; ++i) writer.write({&pair, 1});
+        });
+        return all;
+    }
+
+    Team team_{GetParam()};
+    std::stop_source stop_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Threads, Stream, ::testing::Values(1, 2, 3, 8),
+                         [](const auto& one) { return std::to_string(one.param); });
+
+TEST_P(Stream, IsInTheOrderOfItsShares) {
+    for (const std::uint64_t buffer : {1, 100, 100'000}) {
+        for (const std::size_t each : {0, 1, 100}) {
+            const std::vector<Pair> all = stream(100, each, buffer);
+            EXPECT_EQ(all.size(), 100 * each);
+            EXPECT_TRUE(std::ranges::is_sorted(all, {}, &Pair::a)) << buffer << ' ' << each;
+        }
+    }
+    EXPECT_TRUE(stream(0, 1, 1).empty());
+}
+
+/// A share that another thread runs does not keep the calling thread from running the next.
+TEST_P(Stream, RunsSharesSideBySide) {
+    if (GetParam() == 1) GTEST_SKIP() << "one thread";
+    constexpr std::size_t shares = 20;
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::size_t begun = 0, alone = 0;
+    StreamExecutor executor(
+        team_, [](std::span<const Pair>) {}, 1000, stop_);
+    executor.for_each_writing(shares, [&](std::size_t share, PairWriter&) {
+        std::unique_lock lock(mutex);
+        begun = std::max(begun, share + 1);
+        changed.notify_all();
+        const auto is_followed = [&] { return begun > share + 1; };
+        if (share + 1 < shares && alone == 0 && !changed.wait_for(lock, seconds(60), is_followed)) ++alone;
+    });
+    EXPECT_EQ(alone, 0u);
+}
+
+TEST_P(Stream, TellsTheFirstFailure) {
+    StreamExecutor executor(
+        team_, [](std::span<const Pair>) {}, 10, stop_);
+    const auto run = [&] {
+        executor.for_each_writing(50, [&](std::size_t share, PairWriter& writer) {
+            if (share == 20) throw Error(ErrorCode::resource_limit, "twenty");
+            const Pair pair{std::uint32_t(share), 0};
+            for (int i = 0; i < 100; ++i) {
+                if (stop_.stop_requested()) throw Error(ErrorCode::cancelled, "stopped");
+                writer.write({&pair, 1});
+            }
+        });
+    };
+    try {
+        run();
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "twenty");
+    }
+    EXPECT_TRUE(stop_.stop_requested());
+}
+
+TEST_P(Stream, EndsWhereItsReceiverFails) {
+    std::size_t received = 0;
+    StreamExecutor executor(
+        team_,
+        [&](std::span<const Pair> pairs) {
+            received += pairs.size();
+            if (received >= 700) throw 7;
+        },
+        100, stop_);
+    EXPECT_THROW(executor.for_each_writing(100,
+                                           [](std::size_t share, PairWriter& writer) {
+                                               const Pair pair{std::uint32_t(share), 0};
+                                               for (int i = 0; i < 50; ++i) writer.write({&pair, 1});
+                                           }),
+                 int);
+    EXPECT_LT(received, 1000u);
+}
+
+}  // namespace
+}  // namespace octopair
