@@ -1,4 +1,5 @@
-# The installed tree: headers, the libraries with their CMake package, the programs, the manual and the completion.
+# The installed tree: headers, the libraries with their CMake package, the programs, the manual and the completion, and
+# what a server is run with.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
     return()
@@ -16,6 +17,11 @@ if(OCTOPAIR_WITH_PROCESSES)
     install(EXPORT octopair_processes_targets NAMESPACE octopair::
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
 endif()
+if(OCTOPAIR_WITH_SERVICE)
+    install(TARGETS octopair_client EXPORT octopair_client_targets)
+    install(EXPORT octopair_client_targets NAMESPACE octopair:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+    install(FILES src/service/protocol/octopair.proto DESTINATION ${CMAKE_INSTALL_DATADIR}/octopair)
+endif()
 configure_package_config_file(cmake/octopair-config.cmake.in ${PROJECT_BINARY_DIR}/octopair-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/octopair-config-version.cmake COMPATIBILITY SameMinorVersion)
@@ -27,4 +33,9 @@ if(OCTOPAIR_BUILD_PROGRAM)
     install(FILES docs/octopair.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
     install(FILES src/cli/octopair.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME octopair)
+    if(OCTOPAIR_WITH_SERVICE)
+        configure_file(packaging/octopair.service ${PROJECT_BINARY_DIR}/octopair.service @ONLY)
+        install(FILES ${PROJECT_BINARY_DIR}/octopair.service DESTINATION lib/systemd/system)
+        install(FILES packaging/serve.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/octopair)
+    endif()
 endif()

@@ -35,9 +35,11 @@ PURPOSE = {
 # First part of a third-party include: the folders that may use it.
 THIRD_PARTY = {
     "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "scene"}, "assimp": {"io"},
-    "CLI": {"cli"}, "fmt": {"io", "paper", "cli"}, "nlohmann": {"io", "machine", "paper", "cli"},
+    "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
+    "prometheus": {"service"}, "spdlog": {"service", "cli"},
+    "CLI": {"cli"}, "fmt": {"io", "paper", "service", "cli"}, "nlohmann": {"io", "machine", "paper", "service", "cli"},
 }
-SYSTEM = {"sys", "linux", "sanitizer"}
+SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
 

@@ -1,0 +1,38 @@
+// The remote engine: every call is a job of the server's.
+
+#include "engine/job_queue.hpp"
+#include "engine/request.hpp"
+#include "engine/turns.hpp"
+#include "octopair/client.hpp"
+#include "service/client/connection.hpp"
+#include "service/client/remote_job.hpp"
+
+namespace octopair {
+
+namespace {
+
+class ClientEngine final : public Engine {
+public:
+    ClientEngine(std::string_view address, const ClientOptions& options) : connection_(address, options) {
+        (void)connection_.describe();
+    }
+
+private:
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        const Turns::Turn turn(turns_, control.stop);
+        return service::RemoteJob(connection_, request, output, control).run();
+    }
+    JobQueue& jobs() override { return jobs_; }
+
+    Turns turns_;
+    service::Connection connection_;
+    JobQueue jobs_{*this};  // the last, so that it ends first
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> connect(std::string_view address, const ClientOptions& options) {
+    return std::make_unique<ClientEngine>(address, options);
+}
+
+}  // namespace octopair

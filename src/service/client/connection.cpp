@@ -1,0 +1,129 @@
+#include "service/client/connection.hpp"
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "base/stop.hpp"
+#include "octopair/error.hpp"
+#include "service/protocol/address.hpp"
+#include "service/protocol/library.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/private_file.hpp"
+#include "service/protocol/status.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// For a call to go there and back.
+constexpr std::chrono::milliseconds shortest_wait(1000);
+
+std::string contents_of(const std::string& file) { return file.empty() ? std::string() : read_small_file(file); }
+
+bool encrypts(const ClientOptions& options) {
+    return options.tls || !options.authority.empty() || !options.certificate.empty();
+}
+
+std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address, const ClientOptions& options) {
+    if (options.certificate.empty() != options.key.empty()) {
+        throw Error(ErrorCode::usage, "a certificate needs its key, and a key its certificate");
+    }
+    if (!encrypts(options)) {
+        if (!options.token.empty() && !is_this_machine(address)) {
+            throw Error(ErrorCode::usage, address.text() + ": a token is not sent there without encryption");
+        }
+        return grpc::InsecureChannelCredentials();
+    }
+    const std::string key = options.key.empty() ? std::string() : read_private_file(options.key);
+    return grpc::SslCredentials({contents_of(options.authority), key, contents_of(options.certificate)});
+}
+
+grpc::ChannelArguments arguments() {
+    grpc::ChannelArguments arguments;
+    arguments.SetMaxReceiveMessageSize(int(most_message_bytes));
+    arguments.SetMaxSendMessageSize(int(most_message_bytes));
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // a connection for each engine
+    arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
+    arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);
+    arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
+    // A server that is gone without a word is noticed while it is asked.
+    arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
+    arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);
+    arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
+    arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);                // we do it ourselves: a call's input is sent again
+    return arguments;
+}
+
+/// All that gRPC tells of a server that has as many connections as it may have.
+bool takes_no_more(const grpc::Status& status) { return status.error_message().find("GOAWAY") != std::string::npos; }
+
+/// The call was lost, rather than never sent.
+bool was_connected(const grpc::Status& status) {
+    return !takes_no_more(status) && status.error_message().find("failed to connect") == std::string::npos;
+}
+
+/// What may stand in a call's metadata; gRPC ends the program at anything else.
+void check_token(std::string_view token) {
+    const auto may_be_sent = [](char c) { return c >= ' ' && c <= '~'; };
+    if (std::all_of(token.begin(), token.end(), may_be_sent)) return;
+    throw Error(ErrorCode::usage, "the token has bytes that are no printable ASCII characters");
+}
+
+}  // namespace
+
+Connection::Connection(std::string_view address, const ClientOptions& options)
+    : server_(address),
+      token_(options.token),
+      connect_timeout_(options.connect_timeout),
+      patience_(options.patience),
+      channel_(grpc::CreateCustomChannel(parse_address(address).text(), credentials_of(parse_address(address), options),
+                                         arguments())),
+      raw_(channel_),
+      calls_(v1::Octopair::NewStub(channel_)) {
+    check_token(token_);
+    keep_grpc();
+}
+
+void Connection::prepare(grpc::ClientContext& context) const {
+    if (!token_.empty()) context.AddMetadata("authorization", "Bearer " + token_);
+}
+
+v1::ServerDescription Connection::describe() {
+    v1::ServerDescription description;
+    persist({}, [&] {
+        grpc::ClientContext context;
+        prepare(context);
+        context.set_deadline(std::chrono::system_clock::now() +
+                             std::max<std::chrono::milliseconds>(connect_timeout_, shortest_wait));
+        return calls_->Describe(&context, {}, &description);
+    });
+    return description;
+}
+
+void Connection::give_up(const grpc::Status& status) const {
+    if (takes_no_more(status)) {
+        throw Error(ErrorCode::resource_limit, server_ + ": the server takes no more connections");
+    }
+    throw Error(ErrorCode::engine_failed, server_ + ": no server answers: " + status.error_message());
+}
+
+void Connection::Patience::wait_or_throw(const grpc::Status& status, const std::stop_token& stop) {
+    throw_if_stopped(stop);
+    if (!may_come_back(status)) throw_status(status, connection_.server_);
+    if (was_connected(status)) connection_.met();
+    constexpr std::chrono::milliseconds apart(50);
+    const auto now = Clock::now();
+    if (away_since_ == Clock::time_point() || connection_.heard_.load() > away_since_) away_since_ = now;
+    std::this_thread::sleep_for(apart);
+    // gRPC only connects while somebody waits in it; a call to a server that never answers would wait for longer.
+    do {
+        throw_if_stopped(stop);
+        if (Clock::now() - away_since_ >= (connection_.met_ ? connection_.patience_ : connection_.connect_timeout_))
+            connection_.give_up(status);
+    } while (!connection_.channel_->WaitForConnected(std::chrono::system_clock::now() + apart));
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,80 @@
+// Connection: the way to a server, which may break and come back.
+#pragma once
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+#include <grpcpp/generic/generic_stub.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "octopair/client.hpp"
+#include "service/protocol/octopair.grpc.pb.h"
+
+namespace octopair::service {
+
+/// Thread-safe.
+class Connection {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Throws as octopair::connect, but does not connect yet.
+    Connection(std::string_view address, const ClientOptions& options);
+
+    const std::string& server() const { return server_; }
+    /// Methods whose messages have a large field, as bytes.
+    grpc::GenericStub& raw() { return raw_; }
+    v1::Octopair::Stub& calls() { return *calls_; }
+    /// Every call's context goes through here.
+    void prepare(grpc::ClientContext& context) const;
+    /// What the server is. Throws as persist.
+    v1::ServerDescription describe();
+
+    /// The server did something: it is not away.
+    void heard() {
+        heard_ = Clock::now();
+        met_ = true;
+    }
+
+    /// Makes calls until one ends with another status than that the server is away, as long as the patience lasts,
+    /// or, while it was never there, the time for connecting. `attempt` makes one, and returns its status. Throws what the last
+    /// status says unless it is OK, Error{cancelled} on a stop.
+    template <typename Attempt>
+    void persist(const std::stop_token& stop, Attempt&& attempt) {
+        for (Patience patience(*this);;) {
+            const grpc::Status status = attempt();
+            if (status.ok()) return met();
+            patience.wait_or_throw(status, stop);
+        }
+    }
+
+private:
+    /// Of one call: how long the server has been away.
+    class Patience {
+    public:
+        explicit Patience(Connection& connection) : connection_(connection) {}
+        void wait_or_throw(const grpc::Status& status, const std::stop_token& stop);
+
+    private:
+        Connection& connection_;
+        Clock::time_point away_since_{};
+    };
+
+    void met() { met_ = true; }
+    [[noreturn]] void give_up(const grpc::Status& status) const;
+
+    std::string server_;
+    std::string token_;
+    std::chrono::milliseconds connect_timeout_, patience_;
+    std::shared_ptr<grpc::Channel> channel_;
+    grpc::GenericStub raw_;
+    std::unique_ptr<v1::Octopair::Stub> calls_;
+    std::atomic<Clock::time_point> heard_ = Clock::time_point();
+    std::atomic<bool> met_ = false;  // the server was there once
+};
+
+}  // namespace octopair::service

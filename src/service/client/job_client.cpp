@@ -1,0 +1,211 @@
+// The detached jobs of a server, as its clients see them: every call is made anew until the server answers.
+
+#include "octopair/job_client.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/pair_list.hpp"
+#include "engine/request.hpp"
+#include "service/client/connection.hpp"
+#include "service/client/raw_stream.hpp"
+#include "service/client/received.hpp"
+#include "service/client/uploader.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/status.hpp"
+
+namespace octopair {
+
+namespace {
+
+JobState state_of(v1::JobState state) {
+    switch (state) {
+        case v1::RUNNING:
+            return JobState::running;
+        case v1::DONE:
+            return JobState::done;
+        case v1::FAILED:
+            return JobState::failed;
+        case v1::CANCELLED:
+            return JobState::cancelled;
+        default:
+            return JobState::queued;
+    }
+}
+
+JobStatus status_of(const v1::JobReport& report) {
+    JobStatus status;
+    status.id = report.id();
+    status.state = state_of(report.state());
+    status.detached = report.detached();
+    status.count_only = report.count_only();
+    status.progress = report.progress();
+    status.queued_before = report.queued_before();
+    status.objects = report.objects();
+    if (report.has_summary()) status.summary = service::summary_of(report.summary());
+    if (!report.has_failure()) return status;
+    try {
+        service::throw_failure(report.failure());
+    } catch (const Error& error) {
+        status.error = error;
+    }
+    return status;
+}
+
+v1::JobName name_of(const std::string& id) {
+    v1::JobName name;
+    name.set_id(id);
+    return name;
+}
+
+}  // namespace
+
+class JobClient::State {
+public:
+    State(std::string_view address, const ClientOptions& options) : connection_(address, options) {}
+
+    /// Makes a call of one message each way, as often as it takes. `call` has a context and the calls.
+    template <typename Call>
+    void ask(const std::stop_token& stop, Call&& call) {
+        connection_.persist(stop, [&] {
+            grpc::ClientContext context;
+            connection_.prepare(context);
+            const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
+            return call(context, connection_.calls());
+        });
+    }
+
+    std::string submit(const Engine::Request& request, const JobTerms& terms, const std::stop_token& stop) {
+        check_request(request);
+        v1::JobSpec spec = service::spec_of(request, !terms.count_only);
+        spec.set_id(terms.id.empty() ? service::new_id() : terms.id);
+        service::check_id(spec.id());
+        service::Uploader upload(std::move(spec), service::arrays_of(request));
+        v1::JobReport report;
+        const auto next = [&]() -> std::optional<grpc::ByteBuffer> {
+            if (upload.done()) return {};
+            grpc::ByteBuffer message = upload.next();
+            if (request.options.progress) request.options.progress(upload.progress());
+            return message;
+        };
+        const auto take = [&](grpc::ByteBuffer& message) {
+            if (!service::unpack(message, report)) {
+                throw Error(ErrorCode::engine_failed, connection_.server() + ": an answer that is none");
+            }
+        };
+        connection_.persist(stop, [&] {
+            upload.restart(0);
+            return service::RawStream(connection_, {"/octopair.v1.Octopair/Submit", next, take}).run(stop);
+        });
+        return report.id();
+    }
+
+    Summary result(const std::string& id, const Engine::Output& output, const Engine::Control& control) {
+        service::Received received(connection_.server(), output, control);
+        const auto take = [&](grpc::ByteBuffer& message) { received.take(message); };
+        connection_.persist(control.stop, [&] {
+            received.begin_attempt();
+            bool asked = false;
+            const auto next = [&]() -> std::optional<grpc::ByteBuffer> {
+                if (std::exchange(asked, true)) return {};
+                v1::ResultRequest request;
+                request.set_id(id);
+                request.set_offset(received.pairs());
+                request.set_hash(received.hash());
+                return service::pack(request);
+            };
+            return service::RawStream(connection_, {"/octopair.v1.Octopair/Result", next, take}).run(control.stop);
+        });
+        return received.finish();
+    }
+
+private:
+    service::Connection connection_;
+};
+
+JobClient::JobClient(std::string_view address, const ClientOptions& options)
+    : state_(std::make_unique<State>(address, options)) {}
+
+JobClient::~JobClient() = default;
+
+std::string JobClient::submit(const Objects& objects, const Options& options, const JobTerms& terms,
+                              std::stop_token stop) {
+    return state_->submit({objects, nullptr, options}, terms, stop);
+}
+
+// NOLINTNEXTLINE(readability-function-size): as those of Engine.
+std::string JobClient::submit_between(const Objects& first, const Objects& second, const Options& options,
+                                      const JobTerms& terms, std::stop_token stop) {
+    return state_->submit({first, &second, options}, terms, stop);
+}
+
+JobStatus JobClient::status(const std::string& id, std::stop_token stop) {
+    v1::JobReport report;
+    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Status(&context, name_of(id), &report); });
+    return status_of(report);
+}
+
+JobStatus JobClient::wait(const std::string& id, std::chrono::duration<double> most, std::stop_token stop) {
+    using Clock = std::chrono::steady_clock;
+    constexpr double at_once = 60;  // what lies between may end calls that are silent for longer
+    const auto begun = Clock::now();
+    v1::JobReport report;
+    for (;;) {
+        const double left = std::max(0.0, most.count() - std::chrono::duration<double>(Clock::now() - begun).count());
+        v1::WaitRequest request;
+        request.set_id(id);
+        request.set_seconds(std::min(left, at_once));
+        state_->ask(stop, [&](auto& context, auto& calls) { return calls.Wait(&context, request, &report); });
+        JobStatus status = status_of(report);
+        if (status.ended() || left <= at_once) return status;
+    }
+}
+
+JobStatus JobClient::cancel(const std::string& id, std::stop_token stop) {
+    v1::JobReport report;
+    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Cancel(&context, name_of(id), &report); });
+    return status_of(report);
+}
+
+void JobClient::release(const std::string& id, std::stop_token stop) {
+    v1::JobReport report;
+    int attempts = 0;
+    state_->ask(stop, [&](auto& context, auto& calls) {
+        const grpc::Status status = calls.Release(&context, name_of(id), &report);
+        // It may have been released by an attempt whose answer was lost.
+        const bool again = attempts++ > 0, gone = status.error_message().find("there is no job") != std::string::npos;
+        return again && gone ? grpc::Status::OK : status;
+    });
+}
+
+std::vector<JobStatus> JobClient::list(std::stop_token stop) {
+    std::vector<JobStatus> jobs;
+    v1::ListRequest request;
+    v1::JobList list;
+    do {
+        state_->ask(stop, [&](auto& context, auto& calls) { return calls.List(&context, request, &list); });
+        for (const v1::JobReport& report : list.jobs()) jobs.push_back(status_of(report));
+        if (list.jobs_size() > 0) request.set_after(list.jobs().rbegin()->id());
+    } while (list.more() && list.jobs_size() > 0);
+    return jobs;
+}
+
+Summary JobClient::result(const std::string& id, PairList& pairs, const ProgressSink& progress, std::stop_token stop) {
+    pairs.storage().reset();
+    const Engine::Output output = {.list = status(id, stop).count_only ? nullptr : &pairs};
+    try {
+        return state_->result(id, output, {stop, progress});
+    } catch (...) {
+        pairs.storage().reset();
+        throw;
+    }
+}
+
+Summary JobClient::result(const std::string& id, const PairSink& sink, const ProgressSink& progress,
+                          std::stop_token stop) {
+    const Engine::Output output = {.sink = status(id, stop).count_only || !sink ? nullptr : &sink};
+    return state_->result(id, output, {stop, progress});
+}
+
+}  // namespace octopair

@@ -1,0 +1,77 @@
+#include "service/client/raw_stream.hpp"
+
+#include <utility>
+
+namespace octopair::service {
+
+RawStream::RawStream(Connection& connection, Terms terms) : connection_(connection), terms_(std::move(terms)) {
+    connection_.prepare(context_);
+}
+
+/// False if it throws: then the call is over, and must come to its end before this goes.
+template <typename Step>
+bool RawStream::guarded(Step&& step) {
+    try {
+        step();
+        return true;
+    } catch (...) {
+        if (!failure_) failure_ = std::current_exception();
+        context_.TryCancel();
+        return false;
+    }
+}
+
+grpc::Status RawStream::run(const std::stop_token& stop) {
+    const std::stop_callback cancel(stop, [&] { context_.TryCancel(); });
+    call_ = connection_.raw().PrepareCall(&context_, terms_.method, &queue_);
+    call_->StartCall(tag(Event::started));
+    pending_ = 1;
+    while (pending_ > 0) {
+        void* event = nullptr;
+        bool ok = false;
+        if (!queue_.Next(&event, &ok)) break;
+        --pending_;
+        handle(Event(reinterpret_cast<std::uintptr_t>(event)), ok);
+    }
+    if (failure_) std::rethrow_exception(failure_);
+    return status_;
+}
+
+void RawStream::handle(Event event, bool ok) {
+    if (ok) connection_.heard();
+    switch (event) {
+        case Event::started:
+            ok ? read() : finish();
+            if (ok) write();
+            break;
+        case Event::read:
+            ok&& guarded([&] { terms_.take(in_); }) ? read() : finish();
+            break;
+        case Event::written:
+            if (ok) write();  // if not, reading says why
+            break;
+        case Event::writes_done:
+        case Event::finished:
+            break;
+    }
+}
+
+void RawStream::read() {
+    ++pending_;
+    call_->Read(&in_, tag(Event::read));
+}
+
+void RawStream::write() {
+    std::optional<grpc::ByteBuffer> message;
+    if (!guarded([&] { message = terms_.next(); })) return;
+    ++pending_;
+    message ? call_->Write(*message, tag(Event::written)) : call_->WritesDone(tag(Event::writes_done));
+}
+
+void RawStream::finish() {
+    if (std::exchange(finishing_, true)) return;
+    ++pending_;
+    call_->Finish(&status_, tag(Event::finished));
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,61 @@
+// RawStream: one call that streams bytes; reads and writes go on side by side, in the thread that runs it.
+#pragma once
+
+#include <grpcpp/client_context.h>
+#include <grpcpp/completion_queue.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/support/byte_buffer.h>
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "service/client/connection.hpp"
+
+namespace octopair::service {
+
+class RawStream {
+public:
+    struct Terms {
+        const char* method = nullptr;
+        /// The next message to the server; none: that was all. What it throws ends the call, as what `take` throws.
+        std::function<std::optional<grpc::ByteBuffer>()> next;
+        /// Takes one from it.
+        std::function<void(grpc::ByteBuffer&)> take;
+    };
+
+    RawStream(Connection& connection, Terms terms);
+    RawStream(const RawStream&) = delete;
+    RawStream& operator=(const RawStream&) = delete;
+
+    /// Once. Throws what the terms throw.
+    grpc::Status run(const std::stop_token& stop);
+
+private:
+    enum class Event : std::uintptr_t { started = 1, read, written, writes_done, finished };
+
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): gRPC's tags are pointers, to nothing here.
+    static void* tag(Event event) { return reinterpret_cast<void*>(std::uintptr_t(event)); }
+    void handle(Event event, bool ok);
+    void read();
+    void write();
+    template <typename Step>
+    bool guarded(Step&& step);
+    void finish();
+
+    Connection& connection_;
+    Terms terms_;
+    grpc::ClientContext context_;
+    grpc::CompletionQueue queue_;
+    std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+    grpc::ByteBuffer in_;
+    grpc::Status status_;
+    std::exception_ptr failure_;
+    int pending_ = 0;
+    bool finishing_ = false;
+};
+
+}  // namespace octopair::service

@@ -1,0 +1,92 @@
+#include "service/client/remote_job.hpp"
+
+#include <grpcpp/completion_queue.h>
+
+#include <optional>
+
+#include "base/stop.hpp"
+#include "base/timed.hpp"
+#include "service/client/raw_stream.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/status.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// Of input that goes in one message.
+constexpr std::uint64_t most_small_bytes = piece_bytes;
+
+bool is_pairs_wanted(const Engine::Output& output) { return output.list != nullptr || output.sink != nullptr; }
+
+}  // namespace
+
+RemoteJob::RemoteJob(Connection& connection, const Engine::Request& request, const Engine::Output& output,
+                     const Engine::Control& control)
+    : connection_(connection),
+      stop_(control.stop),
+      upload_(spec_of(request, is_pairs_wanted(output)), arrays_of(request)),
+      received_(connection.server(), output, control) {}
+
+/// False if input or result are too large for it.
+bool RemoteJob::run_small() {
+    if (upload_.bytes() > most_small_bytes) return false;
+    try {
+        connection_.persist(stop_, [&] { return call_small(); });
+        return true;
+    } catch (const LimitError& error) {
+        if (error.name() != "message_bytes") throw;
+        return false;
+    }
+}
+
+grpc::Status RemoteJob::call_small() {
+    grpc::ClientContext context;
+    connection_.prepare(context);
+    grpc::CompletionQueue queue;
+    grpc::ByteBuffer answer;
+    grpc::Status status;
+    begin_attempt();
+    const grpc::ByteBuffer question = upload_.next();
+    {
+        const std::stop_callback cancel(stop_, [&] { context.TryCancel(); });
+        const auto call =
+            connection_.raw().PrepareUnaryCall(&context, "/octopair.v1.Octopair/DetectSmall", question, &queue);
+        call->StartCall();
+        call->Finish(&answer, &status, this);
+        void* tag = nullptr;
+        bool ok = false;
+        (void)queue.Next(&tag, &ok);
+    }
+    if (status.ok()) received_.take(answer);
+    return status;
+}
+
+void RemoteJob::begin_attempt() {
+    upload_.restart(received_.pairs());
+    received_.begin_attempt();
+}
+
+grpc::Status RemoteJob::call_stream() {
+    begin_attempt();
+    const auto next = [&] { return upload_.done() ? std::nullopt : std::optional(upload_.next()); };
+    const auto take = [&](grpc::ByteBuffer& message) { received_.take(message); };
+    return RawStream(connection_, {"/octopair.v1.Octopair/Detect", next, take}).run(stop_);
+}
+
+Summary RemoteJob::run() {
+    double seconds = 0;
+    {
+        const Timed timed(seconds);
+        throw_if_stopped(stop_);
+        if (!run_small()) {
+            upload_.set_id(new_id());
+            connection_.persist(stop_, [&] { return call_stream(); });
+        }
+    }
+    Summary summary = received_.finish();
+    summary.seconds = seconds;
+    return summary;
+}
+
+}  // namespace octopair::service

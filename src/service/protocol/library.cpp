@@ -1,0 +1,12 @@
+#include "service/protocol/library.hpp"
+
+#include <grpc/grpc.h>
+
+namespace octopair::service {
+
+void keep_grpc() {
+    static const bool kept = (grpc_init(), true);
+    (void)kept;
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,61 @@
+#include "service/protocol/private_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <sstream>
+
+#include "base/descriptor.hpp"
+#include "base/io_failure.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+Descriptor open_file(const std::string& path) {
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file.open()) fail_io(path, "cannot open", errno);
+    return file;
+}
+
+std::string read_all(const Descriptor& file, const std::string& path) {
+    constexpr std::size_t most = std::size_t(1) << 20;
+    std::string contents;
+    std::array<char, 4096> piece{};
+    for (;;) {
+        const ssize_t got = ::read(file.number(), piece.data(), piece.size());
+        if (got == 0) return contents;
+        if (got < 0 && errno != EINTR) fail_io(path, "cannot read", errno);
+        if (got > 0) contents.append(piece.data(), std::size_t(got));
+        if (contents.size() > most) throw Error(ErrorCode::resource_limit, path + ": is larger than 1 MiB");
+    }
+}
+
+}  // namespace
+
+std::string read_small_file(const std::string& path) { return read_all(open_file(path), path); }
+
+std::string read_private_file(const std::string& path) {
+    const Descriptor file = open_file(path);
+    struct stat found {};
+    if (::fstat(file.number(), &found) != 0) fail_io(path, "cannot read", errno);
+    const bool roots = found.st_uid == 0 && ::geteuid() != 0;
+    const mode_t others = roots ? S_IWGRP | S_IXGRP | S_IRWXO : S_IRWXG | S_IRWXO;
+    if ((found.st_mode & others) != 0) {
+        throw Error(ErrorCode::usage, path + ": others may read it; a secret is its owner's alone (chmod 600)");
+    }
+    return read_all(file, path);
+}
+
+std::string read_token(const std::string& path) {
+    std::istringstream words(read_private_file(path));
+    std::string token, rest;
+    if (!(words >> token) || words >> rest) throw Error(ErrorCode::bad_input, path + ": holds not one token");
+    return token;
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,24 @@
+// The calls about jobs that are there: Status, Wait, Cancel, Release, List. A job is there for its owner alone.
+#pragma once
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/server_callback.h>
+
+#include "service/protocol/octopair.pb.h"
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+grpc::ServerUnaryReactor* start_status(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+                                       v1::JobReport& response);
+grpc::ServerUnaryReactor* start_wait(Host& host, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
+                                     v1::JobReport& response);
+/// Returns when the job has ended, or after some seconds.
+grpc::ServerUnaryReactor* start_cancel(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+                                       v1::JobReport& response);
+grpc::ServerUnaryReactor* start_release(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+                                        v1::JobReport& response);
+grpc::ServerUnaryReactor* start_list(Host& host, grpc::CallbackServerContext& context, const v1::ListRequest& request,
+                                     v1::JobList& response);
+
+}  // namespace octopair::service

@@ -1,0 +1,15 @@
+// The call Result: the pairs of a detached job, from a place on, as they are found.
+#pragma once
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(Host& host, grpc::CallbackServerContext& context,
+                                                         const grpc::ByteBuffer& request);
+
+}  // namespace octopair::service

@@ -1,0 +1,14 @@
+// The call Scene as a gRPC reactor, which lives until its call is done.
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(Host& host,
+                                                                         grpc::CallbackServerContext& context);
+
+}  // namespace octopair::service

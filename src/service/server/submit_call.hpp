@@ -1,0 +1,15 @@
+// The call Submit: a job whose input goes to the state folder.
+#pragma once
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(Host& host, grpc::CallbackServerContext& context,
+                                                        grpc::ByteBuffer& response);
+
+}  // namespace octopair::service
