@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "cli/detect_options.hpp"
 #include "cli/detection.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/event_detection.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
 #include "cli/report.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/words.hpp"
@@ -41,9 +41,7 @@ int run_detect(const DetectRequest& request) {
 }
 
 void add_what(CLI::App& command, DetectRequest& request) {
-    command.add_option("INPUT", request.inputs, "scene files: .npy, .csv or a mesh scene; several are one set")
-        ->required();
-    command.add_option("--against", request.against, "only pairs (a in INPUT, b in FILE)")->type_name("FILE");
+    add_scene_options(command, request);
     command
         .add_option_function<std::string>(
             "--stage",
@@ -52,45 +50,17 @@ void add_what(CLI::App& command, DetectRequest& request) {
             },
             "how far down the pipeline: pairs (the only one yet)")
         ->type_name("STAGE");
-    command
-        .add_option_function<std::string>(
-            "--objects",
-            [&request](const std::string& word) {
-                check_word({"--objects", {"node", "triangle"}, {}}, word);
-                request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
-            },
-            "what counts as one object of a mesh file: node (default) or triangle")
-        ->type_name("WHAT");
-    command
-        .add_option_function<std::string>(
-            "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
-            "pairs count up to a gap of M on every axis (default 0)")
-        ->type_name("M");
-    command.add_option("--padding", request.padding, "shape (n,): each object's own clearance")->type_name("FILE.npy");
     command.add_flag("--events", request.events,
                      "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
 }
 
-void add_result(CLI::App& command, DetectRequest& request) {
+void add_outcome(CLI::App& command, DetectRequest& request) {
     auto* output =
         command.add_option("--output", request.output,
                            "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)");
     output->type_name("FILE");
-    command
-        .add_option_function<std::string>(
-            "--order",
-            [&request](const std::string& word) {
-                check_word({"--order", {"ascending", "octal"}, {}}, word);
-                request.order = word == "octal" ? Order::octal : Order::ascending;
-            },
-            "order of the pairs: ascending (default) or octal")
-        ->type_name("ORDER");
+    add_order_options(command, request, "the first N pairs (with --events: rows)");
     command.add_flag("--count-only", request.count_only, "print the number of pairs alone")->excludes(output);
-    command
-        .add_option_function<std::string>(
-            "--limit", [&request](const std::string& text) { request.limit = parse_count("--limit", text); },
-            "the first N pairs (with --events: rows)")
-        ->type_name("N");
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
     command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
@@ -102,8 +72,11 @@ void add_detect(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("detect", "find the colliding pairs of a scene");
     const auto request = std::make_shared<DetectRequest>();
     add_what(*command, *request);
-    add_result(*command, *request);
+    add_outcome(*command, *request);
     add_engine_options(*command, request->engine);
+#ifdef OCTOPAIR_WITH_SERVICE
+    add_server_options(*command, request->engine.server);
+#endif
     command->callback([request, &action] {
         check_engine_choice(request->engine);
         if (!request->output.empty()) (void)io::pair_format(request->output);

@@ -9,6 +9,7 @@
 
 #include "cli/numbers.hpp"
 #include "cli/words.hpp"
+#include "octopair/client.hpp"
 #include "octopair/error.hpp"
 #include "octopair/processes.hpp"
 
@@ -20,22 +21,39 @@ constexpr unsigned most_workers = 256;  // octopair/processes.hpp
 
 #ifdef OCTOPAIR_WITH_PROCESSES
 constexpr bool with_processes = true;
-constexpr const char* engine_help = "where to look for pairs: local (default, threads) or processes (workers)";
 #else
 constexpr bool with_processes = false;
-constexpr const char* engine_help = "where to look for pairs: local (the only one that was built)";
 #endif
 
-EngineKind parse_engine(const std::string& word) {
+#ifdef OCTOPAIR_WITH_SERVICE
+constexpr bool with_service = true;
+#else
+constexpr bool with_service = false;
+#endif
+
+std::string engine_help() {
+    std::string help = "where to look for pairs: local (default, threads)";
+    if (with_processes) help += ", processes (workers)";
+    if (with_service) help += ", or the address of a server (unix:PATH or HOST:PORT)";
+    return help;
+}
+
+void parse_engine(const std::string& word, EngineChoice& choice) {
     if (word.find(':') != std::string::npos) {
-        throw Error(ErrorCode::usage, fmt::format("--engine: servers cannot be reached yet; this version has: {}",
-                                                  fmt::join(engine_names(), ", ")));
+        if (!with_service) {
+            throw Error(ErrorCode::usage, "--engine: '" + word +
+                                              "' would be a server; this octopair was built without servers, it has: " +
+                                              fmt::format("{}", fmt::join(engine_names(), ", ")));
+        }
+        choice.kind = EngineKind::server;
+        choice.server.address = word;
+        return;
     }
     if (word == "processes" && !with_processes) {
         throw Error(ErrorCode::usage, "--engine: this octopair was built without 'processes'; it has: local");
     }
     check_word({"--engine", engine_names(), {"mpi"}}, word);
-    return word == "processes" ? EngineKind::processes : EngineKind::local;
+    choice.kind = word == "processes" ? EngineKind::processes : EngineKind::local;
 }
 
 unsigned one_a_core_unless(const std::optional<unsigned>& asked, unsigned most) {
@@ -72,7 +90,7 @@ std::vector<std::string_view> engine_names() {
 void add_engine_options(CLI::App& command, EngineChoice& choice) {
     command
         .add_option_function<std::string>(
-            "--engine", [&choice](const std::string& word) { choice.kind = parse_engine(word); }, engine_help)
+            "--engine", [&choice](const std::string& word) { parse_engine(word, choice); }, engine_help())
         ->type_name("ENGINE");
     add_count(command, {"--threads", "threads of the local engine (default 0: one a core)", most_threads},
               choice.threads);
@@ -81,6 +99,13 @@ void add_engine_options(CLI::App& command, EngineChoice& choice) {
 }
 
 void check_engine_choice(const EngineChoice& choice) {
+#ifdef OCTOPAIR_WITH_SERVICE
+    check_server_choice(choice.server);
+#endif
+    if (choice.kind == EngineKind::server && (choice.threads || choice.workers)) {
+        throw Error(ErrorCode::usage, std::string(choice.threads ? "--threads" : "--workers") +
+                                          ": the server says on how many it works (octopair serve)");
+    }
     if (choice.kind == EngineKind::local && choice.workers) {
         throw Error(ErrorCode::usage, "--workers: the local engine has threads; workers need --engine processes");
     }
@@ -93,11 +118,17 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
 #ifdef OCTOPAIR_WITH_PROCESSES
     if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
 #endif
+#ifdef OCTOPAIR_WITH_SERVICE
+    if (choice.kind == EngineKind::server) {
+        return connect(choice.server.address, client_options(choice.server));
+    }
+#endif
     return make_local_engine(choice.threads.value_or(0));
 }
 
 EngineCrew crew_of(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
+    if (choice.kind == EngineKind::server) return {"server", 0, 0, choice.server.address};
     return {"local", one_a_core_unless(choice.threads, ~0u), 0};
 }
 

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/server_choice.hpp"
 #include "octopair/engine.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
@@ -15,28 +17,30 @@ class App;
 
 namespace octopair::cli {
 
-enum class EngineKind : std::uint8_t { local, processes };
+enum class EngineKind : std::uint8_t { local, processes, server };
 
 /// As it was asked for; 0 threads or workers are one a core.
 struct EngineChoice {
     EngineKind kind = EngineKind::local;
     std::optional<unsigned> threads, workers;
+    ServerChoice server;
 };
 
-/// Who looked for the pairs: threads of this process, or workers.
+/// Who looked for the pairs: threads of this process, workers, or a server.
 struct EngineCrew {
     std::string_view engine = "local";
     unsigned threads = 0;
     unsigned workers = 0;
+    std::string_view server = {};  ///< its address, of the choice
 };
 
-/// Those that this program was built with, as --engine names them.
+/// Those that this program was built with, as --engine names them; a server goes by its address.
 std::vector<std::string_view> engine_names();
 
 /// --engine, --threads, --workers.
 void add_engine_options(CLI::App& command, EngineChoice& choice);
 
-/// Throws Error{usage} for threads or workers of an engine that has none.
+/// Throws Error{usage} for threads, workers or a server's options of an engine that has none.
 void check_engine_choice(const EngineChoice& choice);
 
 /// Throws what the makers of engines throw.

@@ -1,10 +1,10 @@
 #include "cli/event_detection.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 
+#include "base/timed.hpp"
 #include "cli/event_source.hpp"
 #include "cli/frame_set.hpp"
 #include "cli/join.hpp"
@@ -20,9 +20,8 @@ namespace {
 /// Adds the time that `work` takes.
 template <typename Work>
 void timed(double& seconds, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const Timed timing(seconds);
     work();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 class EventDetection {
@@ -58,12 +57,12 @@ private:
         report_.crew = crew_of(request_.engine);
     }
 
-    /// The local engine keeps a scene; the others find each frame's pairs.
+    /// The local engine and servers keep a scene; worker processes find each frame's pairs.
     template <typename Real>
     void find() {
         const FrameSets sets{*inputs_, against_ ? &*against_ : nullptr, *paddings_};
-        const auto source = request_.engine.kind == EngineKind::local ? make_scene_events<Real>(sets, request_)
-                                                                      : make_engine_events<Real>(sets, request_);
+        const auto source = request_.engine.kind == EngineKind::processes ? make_engine_events<Real>(sets, request_)
+                                                                          : make_scene_events<Real>(sets, request_);
         check_frames(*source);
         open_writer();
         for (std::uint64_t frame = 0; frame < report_.frames && !report_.truncated; ++frame) {

@@ -31,11 +31,17 @@ constexpr const char* inputs = ".npy, .csv, mesh scenes (Assimp)";
 constexpr const char* inputs = ".npy, .csv";
 #endif
 
+#ifdef OCTOPAIR_WITH_SERVICE
+constexpr const char* servers = ", server (ADDRESS)";
+#else
+constexpr const char* servers = "";
+#endif
+
 int run_info() {
     io::StandardOutput out({});
     out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
     out.write(fmt::format("build            {}, {}\n", compiler, checks));
-    out.write(fmt::format("engines          {}\n", fmt::join(engine_names(), ", ")));
+    out.write(fmt::format("engines          {}{}\n", fmt::join(engine_names(), ", "), servers));
     out.write("stages           pairs\n");
     out.write(fmt::format("inputs           {}\n", inputs));
     out.write(fmt::format("instruction set  {}\n", sweep_instruction_set()));

@@ -12,6 +12,8 @@ Interrupt::Interrupt() {
     // A shell starts what runs behind its back with SIGINT ignored, and an ignored signal might not be waited for.
     std::signal(SIGINT, SIG_DFL);
     waiter_ = std::thread([this] { wait(); });
+    // A thread that starts allocates, and a child forked meanwhile finds a sanitizer's allocator locked for good.
+    waits_.wait();
 }
 
 Interrupt::~Interrupt() {
@@ -21,6 +23,7 @@ Interrupt::~Interrupt() {
 }
 
 void Interrupt::wait() {
+    waits_.count_down();
     int signal = 0;
     while (sigwait(&signals_, &signal) != 0) {
     }

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include <atomic>
+#include <latch>
 #include <stop_token>
 #include <thread>
 
@@ -27,6 +28,7 @@ private:
     sigset_t signals_;
     std::stop_source stop_;
     std::atomic<bool> finished_ = false;
+    std::latch waits_{1};
     std::thread waiter_;
 };
 

@@ -28,6 +28,13 @@ int run(int argc, char** argv) {
     add_generate(app, action);
     add_info(app, action);
     add_replay(app, action);
+#ifdef OCTOPAIR_WITH_SERVICE
+    add_serve(app, action);
+    add_submit(app, action);
+    add_status(app, action);
+    add_result(app, action);
+    add_cancel(app, action);
+#endif
     add_bench(app, action);
     try {
         app.parse(argc, argv);

@@ -26,6 +26,18 @@ std::uint64_t parse_count(std::string_view option, const std::string& text, std:
     throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a whole number from 0 to {}", option, text, most));
 }
 
+std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
+    constexpr std::string_view suffixes = "KMGT";
+    const std::size_t suffix = text.empty() ? std::string_view::npos : suffixes.find(text.back());
+    const unsigned shift = suffix == std::string_view::npos ? 0 : 10 * (unsigned(suffix) + 1);
+    std::uint64_t number = 0;
+    const std::string digits = text.substr(0, text.size() - (shift > 0 ? 1 : 0));
+    if (parse_whole_text(digits, number) && number <= std::numeric_limits<std::uint64_t>::max() >> shift) {
+        return number << shift;
+    }
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is no number of bytes, as 65536, 64K, 4G", option, text));
+}
+
 double parse_length(std::string_view option, const std::string& text) {
     double number = 0;
     if (parse_whole_text(text, number) && std::isfinite(number) && number >= 0) return number;

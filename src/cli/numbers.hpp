@@ -14,6 +14,9 @@ inline constexpr unsigned most_threads = 1024;  ///< that an option may ask for
 std::uint64_t parse_count(std::string_view option, const std::string& text,
                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
+/// Bytes: a whole number, perhaps with K, M, G or T, which count by 1024. Throws Error{usage} that names `option`.
+std::uint64_t parse_bytes(std::string_view option, const std::string& text);
+
 /// A finite number >= 0. Throws Error{usage} that names `option`.
 double parse_length(std::string_view option, const std::string& text);
 

@@ -7,30 +7,46 @@ _octopair_kinds() {
 
 # The engines that it was built with.
 _octopair_engines() {
-    "$1" info 2>/dev/null | sed -n 's/^engines *//p' | tr -d ,
+    "$1" info 2>/dev/null | sed -n 's/^engines *//p' | sed 's/server (ADDRESS)/unix:/' | tr -d ,
+}
+
+# The caller's jobs on the server of OCTOPAIR_SERVER.
+_octopair_jobs() {
+    [[ -n $OCTOPAIR_SERVER ]] && timeout 2 "$1" status 2>/dev/null | sed -n 's/^\([0-9a-f-]\{36\}\) .*/\1/p'
 }
 
 _octopair() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local subcommand=${COMP_WORDS[1]}
+    local asked="--server --token-file --tls --tls-authority --tls-certificate --tls-key --patience"
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "bench detect generate info replay --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "bench cancel detect generate info replay result serve status submit --help --version" -- "$current")
         return
     fi
     case $previous in
         --scene) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current"); return ;;
         --stage) mapfile -t COMPREPLY < <(compgen -W "pairs" -- "$current"); return ;;
         --objects)
-            if [[ $subcommand == detect ]]; then
+            if [[ $subcommand == detect || $subcommand == submit ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "node triangle" -- "$current")
             fi
             return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
         --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
-        --margin | --limit | --threads | --workers | --seed | --frames | --rounds) return ;;
-        --against | --json | --padding | --output | --stats) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+        --log) mapfile -t COMPREPLY < <(compgen -W "text json" -- "$current"); return ;;
+        --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
+        --margin | --limit | --threads | --workers | --seed | --frames | --rounds | --patience | --listen | --metrics) return ;;
+        --grace | --stall | --max-* | --server | --id | --wait) return ;;
+        --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # of result it is no more than a word
+        --json)
+            if [[ $subcommand == bench ]]; then
+                mapfile -t COMPREPLY < <(compgen -f -- "$current")
+                return
+            fi ;;
+        --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
+        --against | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
         bench)
@@ -42,10 +58,16 @@ _octopair() {
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
-                    --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help" -- "$current")
+                    --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
+                    --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
+        serve)
+            mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --grace --stall --max-objects
+                --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-seconds --max-memory
+                --max-state --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --metrics --log --log-level --quiet
+                --help" -- "$current") ;;
         generate)
             if ((COMP_CWORD == 2)); then
                 mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current")
@@ -58,6 +80,17 @@ _octopair() {
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
+        submit)
+            if [[ $current == -* ]]; then
+                mapfile -t COMPREPLY < <(compgen -W "--against --objects --margin --padding --order --limit --count-only
+                    --id --quiet --help $asked" -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -f -- "$current")
+            fi ;;
+        status) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --wait --json --help $asked" -- "$current") ;;
+        result)
+            mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --output --keep --release --quiet --help $asked" -- "$current") ;;
+        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --help $asked" -- "$current") ;;
         info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
     esac
 }

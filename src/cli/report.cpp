@@ -73,6 +73,7 @@ std::string summary_text(const DetectReport& report) {
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
     const EngineCrew& crew = report.crew;
+    if (!crew.server.empty()) return text + fmt::format(" on server {}\n", crew.server);
     return text + " on " + (crew.workers > 0 ? plural(crew.workers, "worker") : plural(crew.threads, "thread")) + '\n';
 }
 
@@ -82,6 +83,7 @@ std::string stats_json(const DetectReport& report) {
         {"truncated", report.truncated},  {"engine", report.crew.engine}, {"threads", report.crew.threads},
         {"workers", report.crew.workers}, {"entries", report.entries},    {"peak_rss_bytes", peak_rss_bytes()},
         {"seconds", seconds_json(report)}};
+    if (!report.crew.server.empty()) stats["server"] = report.crew.server;
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }

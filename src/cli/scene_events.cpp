@@ -1,4 +1,4 @@
-// Events by a scene, which is given only the boxes that differ from the frame before.
+// Events by a scene, here or on a server, which is given only the boxes that differ from the frame before.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "cli/event_source.hpp"
+#include "cli/server_choice.hpp"
+#include "octopair/remote_scene.hpp"
 #include "octopair/scene.hpp"
 
 namespace octopair::cli {
@@ -26,12 +28,14 @@ public:
         set_.read(frame, now_.span(), stop);
     }
 
-    void add(Scene& scene, std::span<const double> padding, std::span<const Traits> traits) {
+    template <typename AnyScene>
+    void add(AnyScene& scene, std::span<const double> padding, std::span<const Traits> traits) {
         scene.add({std::span<const Box<Real>>(now_.span()), padding}, ids_, traits);
     }
 
     /// Those whose boxes differ from the frame before, a run at a time.
-    void move(Scene& scene) const {
+    template <typename AnyScene>
+    void move(AnyScene& scene) const {
         if (!set_.frames().moving) return;
         for (std::size_t begin = 0; begin < ids_.size(); ++begin) {
             std::size_t end = begin;
@@ -54,11 +58,11 @@ private:
 };
 
 /// A new scene numbers objects in the order in which they are added: the inputs', then those of the other set.
-template <typename Real>
+template <typename Real, typename AnyScene>
 class SceneEvents final : public EventSource {
 public:
-    SceneEvents(const FrameSets& sets, const SceneOptions& options)
-        : paddings_(sets.paddings), inputs_(sets.inputs), first_(sets.inputs.objects()), scene_(options) {
+    SceneEvents(const FrameSets& sets, AnyScene scene)
+        : paddings_(sets.paddings), inputs_(sets.inputs), first_(sets.inputs.objects()), scene_(std::move(scene)) {
         if (sets.against != nullptr) against_.emplace(*sets.against);
     }
 
@@ -97,7 +101,7 @@ private:
     MovingObjects<Real> inputs_;
     std::optional<MovingObjects<Real>> against_;
     std::uint64_t first_;  // number of the other set's first object in the scene
-    Scene scene_;
+    AnyScene scene_;
     bool added_ = false;
     std::vector<Pair> ended_, began_;
 };
@@ -107,8 +111,15 @@ private:
 template <typename Real>
 std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request) {
     constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
+#ifdef OCTOPAIR_WITH_SERVICE
+    if (request.engine.kind == EngineKind::server) {
+        return std::make_unique<SceneEvents<Real, RemoteScene>>(
+            sets, connect_scene(request.engine.server.address, {precision, request.margin},
+                                client_options(request.engine.server)));
+    }
+#endif
     const SceneOptions options{request.engine.threads.value_or(0), precision, request.margin};
-    return std::make_unique<SceneEvents<Real>>(sets, options);
+    return std::make_unique<SceneEvents<Real, Scene>>(sets, Scene(options));
 }
 
 template std::unique_ptr<EventSource> make_scene_events<float>(const FrameSets&, const DetectRequest&);

@@ -10,9 +10,14 @@ namespace octopair::cli {
 using Action = std::function<int()>;
 
 void add_bench(CLI::App& app, Action& action);
+void add_cancel(CLI::App& app, Action& action);
 void add_detect(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
+void add_result(CLI::App& app, Action& action);
+void add_serve(CLI::App& app, Action& action);
+void add_status(CLI::App& app, Action& action);
+void add_submit(CLI::App& app, Action& action);
 
 }  // namespace octopair::cli

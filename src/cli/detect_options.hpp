@@ -1,0 +1,18 @@
+// The options that say what is looked for, of every subcommand that finds pairs or has them found.
+#pragma once
+
+#include "cli/detection.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+class App;
+}
+
+namespace octopair::cli {
+
+/// INPUT, --against, --objects, --margin, --padding.
+void add_scene_options(CLI::App& command, DetectRequest& request);
+
+/// --order, --limit. `limited`: what the limit counts.
+void add_order_options(CLI::App& command, DetectRequest& request, const std::string& limited);
+
+}  // namespace octopair::cli

@@ -1,0 +1,27 @@
+// The options of `octopair serve`, on the command line and in a file.
+#pragma once
+
+#include <string>
+
+#include "cli/engine_choice.hpp"
+#include "service/server/event.hpp"
+#include "service/server/server_options.hpp"
+
+namespace octopair::cli {
+
+struct ServeRequest {
+    std::string config;  ///< a file, or empty
+    std::string listen, metrics;
+    EngineChoice engine;
+    service::ServerOptions options;
+    service::LogForm log_form = service::LogForm::text;
+    std::string log_level = "info";
+    bool quiet = false;
+};
+
+void add_serve_options(CLI::App& command, ServeRequest& request);
+
+/// After parsing: takes the file in, and checks what belongs together. Throws Error{usage}.
+void complete_serve_request(CLI::App& command, ServeRequest& request);
+
+}  // namespace octopair::cli
