@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compiles each header of include/ and src/ alone.
 #
-#     headers_alone.sh COMPILER ROOT BUILD     BUILD holds include/octopair/version.hpp
+#     headers_alone.sh COMPILER ROOT BUILD     BUILD holds include/octopair/version.hpp, and what protoc wrote
 set -uo pipefail
 compiler=$1 root=$2 build=$3
 
@@ -11,7 +11,7 @@ alone() {
     grep -q '^#pragma once' "$header" || return 0
     printf '#include "%s"\n#include "%s"\n' "$header" "$header" |
         "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -x c++ \
-            -I "$root/include" -I "$root/src" -I "$build/include" - ||
+            -I "$root/include" -I "$root/src" -I "$build/include" -isystem "$build/src/service/generated" - ||
         { echo "$header does not compile alone" && return 1; }
 }
 export -f alone

@@ -87,6 +87,13 @@ protected:
         }
         ASSERT_EQ(run("detect " + arguments + " --events --quiet --output e.csv").status, 0);
         EXPECT_TRUE(content("e.csv") == expected) << arguments;
+#ifdef OCTOPAIR_WITH_SERVICE
+        const Outcome served =
+            shell("\"$P\" serve --listen unix:s 2>serve.log & server=$!; \"$P\" detect " + arguments +
+                  " --events --quiet --engine unix:s; status=$?; kill -INT $server; wait $server; (exit $status)");
+        EXPECT_EQ(served.status, 0) << served.err;
+        EXPECT_TRUE(served.out == expected) << arguments << ", by a server";
+#endif
     }
 
     /// Three unit boxes: 0 and 1 meet; then 1 goes on to 2; then all are apart.

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES
+#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE
 #
 # installed: `cmake --install BUILD` to a fresh prefix, which is then moved, and found there by find_package; the program
 # too, if PROGRAM is ON. With PROCESSES also what uses octopair::processes: it must run the workers' program of that tree,
-# told by no environment.
+# told by no environment. With SERVICE what uses octopair::client, of a server of that tree.
 set -euo pipefail
-how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6
+how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=
+trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
 unset OCTOPAIR_WORKER
 prefix="$work/moved prefix"
 
@@ -36,6 +37,23 @@ try_program() {
     printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,1\n' > "$work/boxes.csv"
     starts_worker "$prefix/bin/octopair" detect "$work/boxes.csv" --engine processes --quiet --output "$work/pairs.csv"
     [ "$(cat "$work/pairs.csv")" = $'a,b\n0,2' ]
+}
+
+# Runs a command with the address of a server of the installed tree, which is started as it is configured there.
+with_server() {
+    "$prefix/bin/octopair" serve --config "$prefix/share/octopair/serve.toml" --listen "unix:$work/socket" &
+    server=$!
+    for _ in $(seq 600); do [ -S "$work/socket" ] && break || sleep 0.1; done
+    "$1" "unix:$work/socket"
+    kill "$server"
+    wait "$server"
+    server=
+}
+
+# Its program is not where it was configured to be.
+check_unit() {
+    sed 's|^ExecStart=[^ ]*|ExecStart=/bin/true|' "$prefix/lib/systemd/system/octopair.service" > "$work/octopair.service"
+    ! type systemd-analyze > /dev/null 2>&1 || systemd-analyze verify --man=no "$work/octopair.service"
 }
 
 # A consumer's build: NAME TARGET OPTION...
@@ -67,6 +85,14 @@ else
     if [ "$with_processes" = ON ]; then
         build_consumer processes process_consumer "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
         starts_worker "$work/processes/process_consumer"
+    fi
+fi
+if [ "$with_service" = ON ] && [ "$how" = installed ]; then
+    build_consumer client client_consumer "${options[@]}" -DCONSUMER_WITH_CLIENT=ON
+    test -f "$prefix/share/octopair/octopair.proto"
+    if [ "$with_program" = ON ]; then
+        check_unit
+        with_server "$work/client/client_consumer"
     fi
 fi
 echo "a consumer of octopair ($how) finds its pairs"

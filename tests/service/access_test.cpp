@@ -1,0 +1,118 @@
+// Who may call a server: tokens, their files, and addresses that others can reach.
+#include "service/guarded.hpp"
+#include "service/protocol/octopair.pb.h"
+
+namespace octopair::test {
+namespace {
+
+constexpr const char* right = "0123456789abcdef";
+constexpr const char* wrong = "0123456789abcdeg";
+
+class Access : public testing::Test {
+protected:
+    Access() { write_secret(folder_.file("tokens"), "# who\nanna 0123456789abcdef\n\nbert fedcba9876543210\n"); }
+
+    service::ServerOptions with_tokens(const std::string& address) const {
+        service::ServerOptions options = options_at(address);
+        options.token_file = folder_.file("tokens");
+        return options;
+    }
+    std::string socket() const { return "unix:" + folder_.file("socket"); }
+    static ClientOptions with(const std::string& token) {
+        ClientOptions options;
+        options.token = token;
+        return options;
+    }
+    std::string refusal_of(service::ServerOptions options, ErrorCode code) const {
+        return error_of(code, [&] { const service::Server server(options, silent()); });
+    }
+
+    TemporaryDirectory folder_;
+};
+
+TEST_F(Access, TokensLetIn) {
+    const service::Server server(with_tokens(socket()), silent());
+    EXPECT_EQ(ask(socket(), with(right)), right_answer);
+    EXPECT_EQ(ask(socket(), with("fedcba9876543210")), right_answer);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(wrong)); }),
+              socket() + ": the token is none of the server's");
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with("")); }), socket() + ": the server wants a token");
+}
+
+TEST_F(Access, EveryCallWantsATokenButHealth) {
+    const service::Server server(with_tokens(socket()), silent());
+    const auto* calls = octopair::v1::Upload::descriptor()->file()->FindServiceByName("Octopair");
+    ASSERT_NE(calls, nullptr);
+    for (int i = 0; i < calls->method_count(); ++i) {
+        const std::string path = "/octopair.v1.Octopair/" + calls->method(i)->name();
+        for (const std::string& token : {std::string(), "Bearer " + std::string(wrong), std::string(right)}) {
+            const grpc::StatusCode code = call_raw(socket(), path, token).error_code();
+            EXPECT_EQ(code, grpc::StatusCode::UNAUTHENTICATED) << path << " with '" << token << "'";
+        }
+    }
+    EXPECT_GE(calls->method_count(), 11);
+    EXPECT_TRUE(call_raw(socket(), "/octopair.v1.Octopair/Describe", "Bearer " + std::string(right)).ok());
+    EXPECT_TRUE(call_raw(socket(), "/grpc.health.v1.Health/Check").ok());
+}
+
+TEST_F(Access, OnlyAServerWithoutTokensTellsItsCalls) {
+    const std::string reflection = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+    {
+        const service::Server server(with_tokens(socket()), silent());
+        EXPECT_EQ(call_raw(socket(), reflection).error_code(), grpc::StatusCode::UNIMPLEMENTED);
+    }
+    const service::Server server(options_at(socket()), silent());
+    EXPECT_NE(call_raw(socket(), reflection).error_code(), grpc::StatusCode::UNIMPLEMENTED);
+}
+
+TEST_F(Access, TokenFilesOthersMayReadAreRefused) {
+    const std::string file = folder_.file("tokens");
+    for (const mode_t mode : {0640, 0604, 0620, 0602, 0644}) {
+        ASSERT_EQ(::chmod(file.c_str(), mode), 0);
+        EXPECT_EQ(refusal_of(with_tokens(socket()), ErrorCode::usage),
+                  file + ": others may read it; a secret is its owner's alone (chmod 600)");
+    }
+    ASSERT_EQ(::chmod(file.c_str(), 0400), 0);
+    const service::Server server(with_tokens(socket()), silent());
+}
+
+TEST_F(Access, TokenFilesThatHoldNoneAreRefused) {
+    const std::string file = folder_.file("tokens");
+    const auto refused = [&](const std::string& content) {
+        write_secret(file, content);
+        return refusal_of(with_tokens(socket()), ErrorCode::bad_input);
+    };
+    EXPECT_EQ(refused(""), file + ": holds no token");
+    EXPECT_EQ(refused("# none\n"), file + ": holds no token");
+    EXPECT_EQ(refused("anna\n"), file + ": line 1: a line is NAME TOKEN");
+    EXPECT_EQ(refused("\nanna short\n"), file + ": line 2: a token has at least 16 bytes");
+    EXPECT_EQ(refused("a 0123456789abcdef\nb 0123456789abcdef\n"),
+              file + ": line 2: the name or the token is there twice");
+    ASSERT_EQ(::unlink(file.c_str()), 0);
+    EXPECT_NE(refusal_of(with_tokens(socket()), ErrorCode::io_failed).find(file), std::string::npos);
+}
+
+TEST_F(Access, AddressesThatOthersReachNeedProtection) {
+    for (const std::string address : {"0.0.0.0:0", "[::]:0", "192.0.2.1:0", "[::ffff:127.0.0.1]:0"}) {
+        EXPECT_EQ(refusal_of(options_at(address), ErrorCode::usage),
+                  address +
+                      ": other machines can reach it; that needs TLS (a certificate and its key), and tokens or an "
+                      "authority for client certificates");
+        EXPECT_EQ(refusal_of(with_tokens(address), ErrorCode::usage),
+                  address + ": other machines can reach it; that needs TLS (a certificate and its key)");
+    }
+    for (const std::string address : {"127.0.0.1:0", "127.7.0.9:0", "localhost:0"}) {
+        const service::Server server(options_at(address), silent());
+        EXPECT_EQ(ask(server.address().text(), {}), right_answer) << address;
+    }
+}
+
+TEST_F(Access, TokensDoNotLeaveTheMachineInTheClear) {
+    for (const std::string address : {"192.0.2.1:7000", "127.0.0.1.example.invalid:7000"}) {
+        EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(address, with(right)); }),
+                  address + ": a token is not sent there without encryption");
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test

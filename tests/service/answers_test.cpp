@@ -1,0 +1,157 @@
+// The same bytes from a server as from threads of one's own: every kind of scene, every way to ask.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "octopair/processes.hpp"
+#include "processes/asked.hpp"
+#include "samples/scenes.hpp"
+#include "service/served.hpp"
+#include "support/cases.hpp"
+#include "support/compare.hpp"
+#include "support/hash.hpp"
+#include "support/kinds.hpp"
+#include "support/pinned.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Answer;
+using testing::Asked;
+using testing::Case;
+using testing::Scene;
+using testing::Served;
+
+void use_processes(service::ServerOptions& options) {
+    options.engine_name = "processes";
+    options.engine = [](unsigned width) { return make_process_engine(width); };
+}
+
+struct Found {
+    std::uint64_t pairs = 0, hash = 0;
+    bool operator==(const Found&) const = default;
+};
+
+Found listed(Engine& engine, std::span<const Box3f> boxes, Order order) {
+    PairList list;
+    (void)engine.find_pairs({boxes, {}}, list, {.order = order});
+    testing::Hash hash;
+    for (const auto chunk : list.chunks()) hash.add(chunk);
+    return {list.size(), hash.value()};
+}
+
+Found streamed(Engine& engine, std::span<const Box3f> boxes, Order order) {
+    testing::Hash hash;
+    const PairSink sink = [&](std::span<const Pair> batch) { hash.add(batch); };
+    return {engine.stream_pairs({boxes, {}}, sink, {.order = order}).pairs, hash.value()};
+}
+
+class ServedHashes : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ServedHashes, AreThoseOfThreads) {
+    const testing::Pinned& pinned = testing::pinned_scene(GetParam());
+    if (testing::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a second a call";
+    const std::vector<Box3f> boxes = samples::make_scene(GetParam(), pinned.objects, 1);
+    const Found ascending{pinned.pairs, pinned.pair_hash};
+    const Found octal = listed(*make_local_engine(2), boxes, Order::octal);
+    for (const Served::Change& change : {Served::Change(), Served::Change(use_processes)}) {
+        const Served served(change);
+        const auto engine = served.client();
+        EXPECT_EQ(listed(*engine, boxes, Order::ascending), ascending);
+        EXPECT_EQ(streamed(*engine, boxes, Order::ascending), ascending);
+        EXPECT_EQ(listed(*engine, boxes, Order::octal), octal);
+        EXPECT_EQ(streamed(*engine, boxes, Order::octal), octal);
+        EXPECT_EQ(engine->count_pairs({std::span(boxes), {}}), pinned.pairs);
+        EXPECT_TRUE(served.comes_to_rest());
+    }
+}
+
+std::vector<std::string> sample_kinds() {
+    const auto kinds = samples::scene_kinds();
+    return {kinds.begin(), kinds.end()};
+}
+
+INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+
+/// The answer to a call about the objects of a case, and its summary's numbers.
+Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
+    Options options;
+    options.order = asked.order;
+    options.margin = a_case.margin;
+    options.limit = asked.limit;
+    options.buffer_bytes = a_case.buffer_bytes;
+    const Objects first = a_case.first.view();
+    const Objects second = a_case.second ? a_case.second->view() : Objects{};
+    Answer answer;
+    Summary summary;
+    if (asked.how == testing::How::list) {
+        PairList list;
+        summary = a_case.second ? engine.find_pairs_between(first, second, list, options)
+                                : engine.find_pairs(first, list, options);
+        answer.pairs = list.to_vector();
+    } else {
+        const PairSink keep = [&](auto batch) { answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end()); };
+        const PairSink sink = asked.how == testing::How::stream ? keep : PairSink();
+        summary = a_case.second ? engine.stream_pairs_between(first, second, sink, options)
+                                : engine.stream_pairs(first, sink, options);
+    }
+    answer.count = summary.pairs;
+    answer.truncated = summary.truncated;
+    return answer;
+}
+
+TEST(ServedProperty, AgreesWithThreads) {
+    const Served threads, processes(use_processes);
+    const auto local = make_local_engine(2), one = threads.client(), other = processes.client();
+    const auto kinds = testing::all_kind_names();
+    const bool held = rc::check("a server finds what threads find", [&] {
+        const auto kind = *rc::gen::elementOf(kinds);
+        const auto seed = *rc::gen::arbitrary<std::uint32_t>();
+        for (std::uint64_t i = 0; i < testing::scaled(3, 3); ++i) {
+            const Case a_case = testing::make_case(kind, seed + i);
+            RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
+            for (Asked asked : testing::all_ways()) {
+                if (asked.windows) asked.limit = a_case.limit;
+                const Answer expected = answer_of(*local, a_case, asked);
+                RC_ASSERT(answer_of(*one, a_case, asked) == expected);
+                RC_ASSERT(answer_of(*other, a_case, asked) == expected);
+            }
+        }
+    });
+    EXPECT_TRUE(held);
+}
+
+TEST(ServedJobs, AreThoseOfThreads) {
+    const Served served;
+    const auto local = make_local_engine(2), remote = served.client();
+    const Scene scene("clustered", 3000, 1);
+    const Objects first = scene.objects({}), second = scene.others({});
+    PairList expected, expected_between;
+    (void)local->find_pairs(first, expected);
+    (void)local->find_pairs_between(first, second, expected_between);
+    std::vector<Pair> streamed;
+    const PairSink sink = [&](auto batch) { streamed.insert(streamed.end(), batch.begin(), batch.end()); };
+    Job listed = remote->submit(scene.first);
+    Job between = remote->submit_between(borrowed(first), scene.second);
+    Job stream = remote->submit_stream(borrowed(first), sink);
+    EXPECT_EQ(listed.take_pairs().to_vector(), expected.to_vector());
+    EXPECT_EQ(between.take_pairs().to_vector(), expected_between.to_vector());
+    EXPECT_EQ(stream.summary().pairs, expected.size());
+    EXPECT_EQ(streamed, expected.to_vector());
+    EXPECT_EQ(listed.progress(), 1);
+}
+
+TEST(ServedProgress, NeverFallsAndEndsAtOne) {
+    const Served served;
+    const Scene scene("clustered", testing::scaled(200'000, 4), 1);
+    std::vector<double> told;
+    Options options;
+    options.progress = [&](double done) { told.push_back(done); };
+    (void)served.client()->count_pairs(scene.objects({}), options);
+    ASSERT_FALSE(told.empty());
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,102 @@
+// The machine's clock is set by a day, either way, while jobs run: what ends by time ends by a clock that nobody sets.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "io/temporary.hpp"
+#include "processes/leftovers.hpp"
+#include "service/raw_call.hpp"
+#include "service/served.hpp"
+#include "service/server_program.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using testing::ServerProgram;
+
+constexpr const char* fake_time = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
+
+class ServerClock : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        if (testing::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before all else";
+        ASSERT_TRUE(std::filesystem::exists(fake_time)) << "package faketime";
+        test::write_file(folder_.file("time"), "+0");
+    }
+    /// A server whose clock this test sets.
+    ServerProgram::Setting setting() const {
+        return {.environment = std::string("LD_PRELOAD=") + fake_time + " DONT_FAKE_MONOTONIC=1 FAKETIME_NO_CACHE=1 " +
+                               "FAKETIME_TIMESTAMP_FILE='" + folder_.file("time") + "'"};
+    }
+    /// A server that is killed leaves what faketime keeps in shared memory.
+    static void remove_leftovers(pid_t id) {
+        for (const char* const name : {"/dev/shm/faketime_shm_", "/dev/shm/sem.faketime_sem_"}) {
+            std::filesystem::remove(name + std::to_string(id));
+        }
+    }
+    void TearDown() override {
+        if (!server_) return;
+        const pid_t id = server_->id();
+        server_.reset();
+        remove_leftovers(id);
+    }
+    ServerProgram& serve(const std::string& arguments) {
+        ServerProgram::Setting with = setting();
+        with.arguments += arguments;
+        return server_.emplace(with);
+    }
+    void set_clock() const { test::write_file(folder_.file("time"), GetParam()); }
+
+    const test::TemporaryDirectory folder_;
+    std::optional<ServerProgram> server_;
+};
+
+INSTANTIATE_TEST_SUITE_P(, ServerClock, ::testing::Values("+1d", "-1d"),
+                         [](const auto& one) { return std::string(one.param[0] == '+' ? "Forward" : "Back"); });
+
+TEST_P(ServerClock, IsSetWhileAJobRuns) {
+    ServerProgram& server = serve("");
+    const auto engine = connect(server.address(), {.patience = minutes(1)});
+    const std::vector<Box3f> heap(60'000);
+    Job job = engine->submit_stream(heap, {});
+    const auto channel = testing::open_channel(server.address());
+    const auto spec = testing::spec_of(1000);
+    testing::RawCall upload(channel);
+    ASSERT_TRUE(upload.write(testing::upload_of(&spec, {})));
+    std::this_thread::sleep_for(milliseconds(200));
+    EXPECT_EQ(job.state(), JobState::running);
+    set_clock();
+    EXPECT_EQ(job.summary().pairs, heap.size() * (heap.size() - 1) / 2);
+    // The default patience with uploads is a minute: it has not come.
+    ASSERT_TRUE(upload.write(testing::upload_of(nullptr, testing::bytes_of_boxes(1000))));
+    EXPECT_TRUE(upload.finish().ok());
+    testing::check_serves(server.address());
+    server.signal(SIGTERM);
+    EXPECT_EQ(server.wait(), 0) << server.log();
+}
+
+TEST_P(ServerClock, WhatTakesTooLongStillEnds) {
+    ServerProgram& server = serve(" --max-seconds 3 --stall 3");
+    const auto engine = connect(server.address(), {.patience = minutes(1)});
+    const std::vector<Box3f> heap(400'000);  // far longer than that
+    Job job = engine->submit_stream(heap, {});
+    const auto channel = testing::open_channel(server.address());
+    const auto spec = testing::spec_of(1000);
+    testing::RawCall upload(channel);
+    ASSERT_TRUE(upload.write(testing::upload_of(&spec, {})));
+    while (job.state() == JobState::queued) std::this_thread::sleep_for(milliseconds(10));
+    set_clock();
+    ASSERT_TRUE(job.wait_for(minutes(2)));
+    EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { (void)job.summary(); }).find("job_seconds"),
+              std::string::npos);
+    EXPECT_EQ(testing::failure_in(upload.finish()).limit(), "stall_seconds");
+    testing::check_serves(server.address());
+}
+
+}  // namespace
+}  // namespace octopair

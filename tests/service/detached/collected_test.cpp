@@ -1,0 +1,137 @@
+// Results: from any place on, if they are the same; and what comes after them: cancel, release, and the time they are kept.
+#include <grpcpp/grpcpp.h>
+
+#include <cstring>
+
+#include "service/detached/host.hpp"
+#include "service/protocol/octopair.grpc.pb.h"
+#include "service/protocol/status.hpp"
+#include "support/compare.hpp"
+
+namespace octopair::testing {
+namespace {
+
+class Collected : public ::testing::Test {
+protected:
+    struct Answer {
+        std::vector<Pair> pairs;
+        std::string hash;
+    };
+
+    /// What the call Result gives; throws its status.
+    Answer ask(const std::string& id, std::uint64_t offset, const std::string& hash = {}) {
+        v1::ResultRequest request;
+        request.set_id(id);
+        request.set_offset(offset);
+        request.set_hash(hash);
+        grpc::ClientContext context;
+        const auto reader = stub_->Result(&context, request);
+        Answer answer;
+        for (v1::Download message; reader->Read(&message);) {
+            if (message.has_head()) answer.hash = message.head().hash();
+            const std::size_t had = answer.pairs.size();
+            answer.pairs.resize(had + message.pairs().size() / sizeof(Pair));
+            if (message.pairs().empty()) continue;
+            std::memcpy(answer.pairs.data() + had, message.pairs().data(), message.pairs().size());
+        }
+        const grpc::Status status = reader->Finish();
+        if (!status.ok()) service::throw_status(status, "test");
+        return answer;
+    }
+
+    std::string done() {
+        const std::string id = submit(*client_, work_);
+        EXPECT_EQ(int(client_->wait(id, std::chrono::minutes(1)).state), int(JobState::done));
+        return id;
+    }
+
+    Host host_;
+    std::unique_ptr<JobClient> client_ = host_.client();
+    std::unique_ptr<v1::Octopair::Stub> stub_ =
+        v1::Octopair::NewStub(grpc::CreateChannel(host_.address(), grpc::InsecureChannelCredentials()));
+    const std::vector<Box3f> boxes_ = make_boxes("dense", 100000, 1);
+    const Work work_{Objects{std::span(boxes_), {}}};
+};
+
+TEST_F(Collected, ComesFromAnyPlaceOn) {
+    const std::string id = done();
+    const std::vector<Pair> all = pairs_here(work_);
+    ASSERT_GT(all.size(), 3u * 131072);  // pieces
+    const std::string hash = ask(id, 0).hash;
+    for (const std::uint64_t offset :
+         {std::uint64_t(0), std::uint64_t(1), std::uint64_t(131071), std::uint64_t(131072), std::uint64_t(200001),
+          std::uint64_t(all.size() - 1), std::uint64_t(all.size())}) {
+        const Answer answer = ask(id, offset, hash);
+        EXPECT_TRUE(same_bytes(answer.pairs, {all.begin() + std::ptrdiff_t(offset), all.end()})) << offset;
+        EXPECT_EQ(answer.hash, hash);
+    }
+}
+
+TEST_F(Collected, IsRefusedBeyondItsEndOrForAnother) {
+    const std::string id = done();
+    const std::size_t all = pairs_here(work_).size();
+    EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { ask(id, all + 1); }).find(std::to_string(all)),
+              std::string::npos);
+    EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { ask(id, 1, std::string(16, 'x')); }).find("another"),
+              std::string::npos);
+    EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { ask(some_id, 0); }).find("no job"), std::string::npos);
+}
+
+TEST_F(Collected, StaysUntilItIsReleased) {
+    const std::string id = done();
+    const auto all = pairs_here(work_);
+    for (int i = 0; i < 2; ++i) EXPECT_TRUE(same_bytes(pairs_there(*client_, id), all));
+    EXPECT_EQ(host_.files().size(), 2u);
+    client_->release(id);
+    EXPECT_TRUE(host_.files().empty());
+    EXPECT_TRUE(client_->list().empty());
+    (void)test::error_of(ErrorCode::bad_input, [&] { client_->status(id); });
+    EXPECT_EQ(client_->submit(work_.first, {}, {.id = id}), id);
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, id), all));
+}
+
+TEST_F(Collected, MayBeReleasedWhileItIsRead) {
+    const std::vector<Box3f> heap(4000);  // 64 MB of pairs
+    const std::string id = client_->submit({std::span(heap), {}});
+    ASSERT_EQ(int(client_->wait(id, std::chrono::minutes(1)).state), int(JobState::done));
+    v1::ResultRequest request;
+    request.set_id(id);
+    grpc::ClientContext context;
+    const auto reader = stub_->Result(&context, request);
+    v1::Download message;
+    ASSERT_TRUE(reader->Read(&message));
+    client_->release(id);
+    while (reader->Read(&message)) {
+    }
+    const grpc::Status status = reader->Finish();
+    EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { service::throw_status(status, "test"); }).find("released"),
+              std::string::npos);
+    EXPECT_TRUE(host_.files().empty());
+}
+
+TEST_F(Collected, IsKeptForATimeThatBeginsAnewWithTheServer) {
+    const std::string id = done();
+    host_.stop();
+    host_.options().keep = std::chrono::seconds(3600);
+    host_.start();
+    EXPECT_EQ(client_->list().size(), 1u);
+    host_.stop();
+    host_.options().keep = std::chrono::seconds(1);
+    host_.start();
+    EXPECT_TRUE(comes_true([&] { return client_->list().empty() && host_.files().empty(); }));
+}
+
+TEST_F(Collected, IsAsItWasAfterARestart) {
+    const std::string id = done();
+    const std::vector<Box3f> wrong = {{{1, 0, 0}, {0, 0, 0}}};
+    const std::string failed = client_->submit({std::span(wrong), {}});
+    const JobStatus failure = client_->wait(failed, std::chrono::minutes(1));
+    host_.restart();
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, id), pairs_here(work_)));
+    EXPECT_STREQ(client_->status(failed).error.value().what(), failure.error.value().what());
+    EXPECT_EQ(client_->submit(work_.first, {}, {.id = id}), id);
+    EXPECT_EQ(host_.files(".job").size(), 2u);
+}
+
+}  // namespace
+}  // namespace octopair::testing

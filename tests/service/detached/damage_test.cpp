@@ -1,0 +1,103 @@
+// Files of the state folder that were damaged: the job says so and names the file, all others are served.
+#include <fstream>
+
+#include "service/detached/host.hpp"
+#include "support/compare.hpp"
+
+namespace octopair::testing {
+namespace {
+
+class Damage : public ::testing::Test {
+protected:
+    /// Submits, waits, stops; then changes the bytes of its file as they are.
+    template <typename Change>
+    void damage(const std::string& ending, const Change& change) {
+        id_ = submit(*client_, work_);
+        (void)client_->wait(id_, std::chrono::minutes(1));
+        host_.stop();
+        file_ = host_.files(ending).at(0);
+        std::string bytes = test::read_file(file_);
+        change(bytes);
+        test::write_file(file_, bytes);
+    }
+
+    void expect_failed() {
+        host_.start();
+        const JobStatus status = client_->wait(id_, std::chrono::minutes(1));
+        ASSERT_EQ(int(status.state), int(JobState::failed));
+        EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed));
+        EXPECT_NE(std::string(status.error.value().what()).find(file_), std::string::npos)
+            << status.error.value().what();
+        expect_served();
+        client_->release(id_);
+        EXPECT_TRUE(comes_true([&] { return host_.files(".job").size() == 1; }));
+    }
+
+    void expect_served() {
+        const std::string id = submit(*client_, work_);
+        EXPECT_TRUE(same_bytes(pairs_there(*client_, id), pairs_here(work_)));
+    }
+
+    void forget_result() { std::filesystem::remove(host_.files(".result").at(0)); }
+
+    Host host_;
+    std::unique_ptr<JobClient> client_ = host_.client();
+    const std::vector<Box3f> boxes_ = make_boxes("uniform", 2000, 1);
+    const Work work_{Objects{std::span(boxes_), {}}};
+    std::string id_, file_;
+};
+
+TEST_F(Damage, OfAnInput) {
+    damage(".job", [](std::string& bytes) { bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 1); });
+    forget_result();
+    expect_failed();
+}
+
+TEST_F(Damage, OfAJobsEnd) {
+    damage(".job", [](std::string& bytes) { bytes.back() = char(bytes.back() ^ 1); });
+    expect_failed();
+}
+
+TEST_F(Damage, OfAJobThatWasCut) {
+    damage(".job", [](std::string& bytes) { bytes.resize(bytes.size() / 2); });
+    expect_failed();
+}
+
+TEST_F(Damage, OfAJobsBeginningIsMended) {
+    damage(".job", [](std::string& bytes) { bytes[40] = char(bytes[40] ^ 1); });
+    forget_result();
+    host_.start();
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
+}
+
+TEST_F(Damage, OfAJobThatCannotBeNamed) {
+    damage(".job", [](std::string& bytes) { bytes = "nothing"; });
+    host_.start();
+    EXPECT_TRUE(client_->list().empty());
+    EXPECT_NE(host_.log().find(file_), std::string::npos) << host_.log();
+    expect_served();
+}
+
+TEST_F(Damage, OfAResultsEnd) {
+    damage(".result", [](std::string& bytes) { bytes[bytes.size() - 30] = char(bytes[bytes.size() - 30] ^ 1); });
+    expect_failed();
+}
+
+TEST_F(Damage, OfAResultThatWasCut) {
+    damage(".result", [](std::string& bytes) { bytes.resize(10); });
+    expect_failed();
+}
+
+TEST_F(Damage, OfPairs) {
+    damage(".result", [](std::string& bytes) { bytes[100] = char(bytes[100] ^ 1); });
+    host_.start();
+    EXPECT_EQ(int(client_->status(id_).state), int(JobState::done));
+    PairList pairs;
+    const std::string words = test::error_of(ErrorCode::io_failed, [&] { client_->result(id_, pairs); });
+    EXPECT_NE(words.find(file_), std::string::npos) << words;
+    EXPECT_EQ(pairs.size(), 0u);
+    expect_served();
+}
+
+}  // namespace
+}  // namespace octopair::testing

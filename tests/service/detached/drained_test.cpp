@@ -1,0 +1,96 @@
+// Detached jobs while their server goes down: those that run are waited for, those that wait are left for the next one.
+#include <thread>
+
+#include "service/detached/host.hpp"
+#include "service/server/kept_pairs.hpp"
+
+namespace octopair::testing {
+namespace {
+
+TEST(Drained, WaitsForWhatRuns) {
+    Host host([](service::ServerOptions& options) { options.grace = std::chrono::hours(1); });
+    const auto client = host.client();
+    const auto boxes = make_boxes("dense", 600000, 1);
+    const std::string id = client->submit({std::span(boxes), {}});
+    ASSERT_TRUE(comes_true([&] { return client->status(id).state != JobState::queued; }));
+    host.drain();
+    EXPECT_EQ(host.files(".result").size(), 1u);
+    host.restart();
+    EXPECT_EQ(int(client->status(id).state), int(JobState::done));
+}
+
+TEST(Drained, LeavesWhatOutlastsItsGrace) {
+    Host host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
+    const auto client = host.client();
+    // Of so many equal boxes all pairs are counted for hours.
+    const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    Work work(Objects{std::span(same), {}});
+    work.terms.count_only = true;
+    const std::string id = submit(*client, work);
+    ASSERT_TRUE(comes_true([&] { return client->status(id).state == JobState::running; }));
+    host.drain();
+    host.stop();
+    EXPECT_EQ(host.files(".job").size(), 1u);
+    EXPECT_EQ(host.files().size(), 1u);
+    EXPECT_EQ(host.log().find("cancelled"), std::string::npos) << host.log();
+    host.start();
+    EXPECT_TRUE(comes_true([&] { return client->status(id).state == JobState::running; }));
+    EXPECT_EQ(int(client->cancel(id).state), int(JobState::cancelled));
+    EXPECT_EQ(host.files(".result").size(), 1u);
+}
+
+class NoRecord final : public service::JobRecord {
+public:
+    std::string hash() const override { return "hash"; }
+    std::optional<service::Budget::Share> ask_memory() override { return service::Budget::Share(); }
+    std::unique_ptr<service::JobInput> load(Engine& engine, const std::stop_token&) const override {
+        return std::make_unique<service::JobInput>(v1::JobSpec(), engine);
+    }
+    void end(const v1::JobReport&) override {}
+    void later(std::function<void()> errand) override { errand(); }
+};
+
+/// Jobs of no objects, in lanes of their own.
+class DrainedLanes : public ::testing::Test {
+protected:
+    std::shared_ptr<service::ServerJob> queued_job(bool detached) {
+        service::ServerJob::Parts parts;
+        if (detached)
+            parts.record = std::make_shared<NoRecord>();
+        else
+            parts.input = std::make_unique<service::JobInput>(parts.spec, *engine_);
+        parts.pairs = std::make_shared<service::PairsInMemory>(memory_, 0);
+        auto job = std::make_shared<service::ServerJob>(std::move(parts));
+        job->queue();
+        return job;
+    }
+    static std::unique_ptr<Engine> make(unsigned width) { return make_local_engine(width); }
+
+    service::Budget memory_{"memory_bytes", "bytes of memory", 0};
+    const std::unique_ptr<Engine> engine_ = make_local_engine(1);
+};
+
+TEST_F(DrainedLanes, BeginNoDetachedJobs) {
+    const auto before = queued_job(true), held = queued_job(true), attached = queued_job(false);
+    service::Lanes lanes(make, {1, 1, 0});
+    lanes.add(before);
+    EXPECT_TRUE(comes_true([&] { return before->ended(); }));
+    lanes.hold_detached();
+    lanes.add(held);
+    lanes.add(attached);
+    EXPECT_TRUE(comes_true([&] { return attached->ended(); }));
+    EXPECT_EQ(int(held->state()), int(v1::QUEUED));
+}
+
+TEST_F(DrainedLanes, RunNoDetachedJobsAtOnce) {
+    const auto detached = queued_job(true), attached = queued_job(false);
+    service::Lanes lanes(make, {1, 1, 1});
+    lanes.hold_detached();
+    lanes.add(attached);
+    EXPECT_TRUE(attached->ended());
+    lanes.add(detached);
+    EXPECT_EQ(int(detached->state()), int(v1::QUEUED));
+}
+
+}  // namespace
+}  // namespace octopair::testing

@@ -1,0 +1,128 @@
+// The state folder: whose it is, how much may be in it, and what a crash left there.
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "service/detached/host.hpp"
+#include "support/compare.hpp"
+
+namespace octopair::testing {
+namespace {
+
+TEST(Folder, IsItsOwnersAndOneServers) {
+    const Host host;
+    struct stat status {};
+    ASSERT_EQ(::stat(host.state().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0700u);
+    const std::string words = test::error_of(ErrorCode::io_failed, [&] {
+        const Host other([&](service::ServerOptions& options) { options.state_folder = host.state(); });
+    });
+    EXPECT_NE(words.find("another server"), std::string::npos) << words;
+}
+
+TEST(Folder, IsNotOneThatOthersMayUse) {
+    const test::TemporaryDirectory folder;
+    const std::string open = folder.file("open");
+    std::filesystem::create_directory(open);
+    ASSERT_EQ(::chmod(open.c_str(), 0755), 0);
+    (void)test::error_of(ErrorCode::usage, [&] {
+        const Host host([&](service::ServerOptions& options) { options.state_folder = open; });
+    });
+    struct stat status {};
+    ASSERT_EQ(::stat(open.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0755u);
+}
+
+TEST(Folder, KeepsJobsBeyondTheLimitsOfToday) {
+    Host host;
+    const auto client = host.client();
+    const std::vector<Box3f> crowd(60'000);  // seconds of work
+    const auto boxes = make_boxes("uniform", 30'000, 1);
+    const Work work(Objects{std::span(boxes), {}});
+    const std::string running = client->submit({std::span(crowd), {}}, {}, {.count_only = true});
+    const std::string queued = submit(*client, work);
+    host.stop();
+    host.options().limits.memory_bytes = 1 << 20;
+    host.start();
+    for (const std::string& id : {running, queued}) {
+        const JobStatus status = client->status(id);
+        ASSERT_EQ(int(status.state), int(JobState::failed));
+        EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::resource_limit));
+    }
+    const std::string small = client->submit({std::span(boxes).first(1000), {}});
+    EXPECT_EQ(int(client->wait(small, std::chrono::minutes(1)).state), int(JobState::done));
+    client->release(running);
+    host.stop();
+    host.options().limits.memory_bytes = 0;
+    host.start();
+    EXPECT_TRUE(same_bytes(pairs_there(*client, queued), pairs_here(work)));
+}
+
+TEST(Folder, HoldsNoMoreThanItMay) {
+    constexpr std::uint64_t most = 1 << 20;
+    const Host host([](service::ServerOptions& options) { options.limits.state_bytes = most; });
+    const auto client = host.client();
+    const auto boxes = make_boxes("uniform", 20000, 1), many = make_boxes("uniform", 50000, 1);
+    const auto refused = [&](const std::vector<Box3f>& objects) {
+        const std::string words = test::error_of(ErrorCode::resource_limit, [&] {
+            client->submit({std::span(objects), {}});
+        });
+        EXPECT_NE(words.find(std::to_string(most)), std::string::npos) << words;
+    };
+    refused(many);
+    const std::string id = client->submit({std::span(boxes), {}});
+    (void)client->wait(id, std::chrono::minutes(1));
+    EXPECT_EQ(client->submit({std::span(boxes), {}}, {}, {.id = id}), id);
+    const std::string other = client->submit({std::span(boxes).first(16000), {}});
+    (void)client->wait(other, std::chrono::minutes(1));
+    refused(boxes);
+    client->release(id);
+    (void)client->submit({std::span(boxes), {}});
+}
+
+TEST(Folder, HasNoRoomForAResult) {
+    const Host host([](service::ServerOptions& options) { options.limits.state_bytes = 600 << 10; });
+    const auto client = host.client();
+    const auto boxes = make_boxes("coincident", 2000, 1);
+    const std::string id = client->submit({std::span(boxes), {}});
+    const JobStatus status = client->wait(id, std::chrono::minutes(1));
+    ASSERT_EQ(int(status.state), int(JobState::failed));
+    EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::resource_limit));
+    EXPECT_TRUE(host.files(".part").empty());
+}
+
+TEST(Folder, IsCleanedOfWhatIsHalfWritten) {
+    Host host;
+    const auto client = host.client();
+    const auto boxes = make_boxes("uniform", 1000, 1);
+    const Work work(Objects{std::span(boxes), {}});
+    const std::string id = submit(*client, work);
+    (void)client->wait(id, std::chrono::minutes(1));
+    host.stop();
+    const std::vector<std::string> done = host.files();
+    test::write_file(host.state() + "/0000000000000001.result.part", "half a result");
+    test::write_file(host.state() + "/0000000000000005.job.part", "half a job");
+    test::write_file(host.state() + "/0000000000000006.result", "of no job");
+    test::write_file(host.state() + "/notes.txt", "of a person");
+    host.start();
+    EXPECT_EQ(host.files().size(), done.size() + 1);
+    EXPECT_EQ(host.files(".txt").size(), 1u);
+    EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+}
+
+TEST(Folder, FindsAnewWhatHasNoWholeResult) {
+    Host host;
+    const auto client = host.client();
+    const auto boxes = make_boxes("uniform", 1000, 1);
+    const Work work(Objects{std::span(boxes), {}});
+    const std::string id = submit(*client, work);
+    (void)client->wait(id, std::chrono::minutes(1));
+    host.stop();
+    const std::string result = host.files(".result").at(0);
+    std::filesystem::rename(result, result + ".part");
+    host.start();
+    EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+}
+
+}  // namespace
+}  // namespace octopair::testing

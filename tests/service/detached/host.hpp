@@ -1,0 +1,126 @@
+// A server with a state folder in the test's own process, on a Unix socket; the folder outlives it.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "io/temporary.hpp"
+#include "octopair/job_client.hpp"
+#include "octopair/octopair.hpp"
+#include "service/server/server.hpp"
+#include "support/kinds.hpp"
+
+namespace octopair::testing {
+
+class Host {
+public:
+    using Change = std::function<void(service::ServerOptions&)>;
+
+    explicit Host(const Change& change = {}) {
+        options_.listen = service::parse_address(address());
+        options_.engine = [](unsigned width) { return make_local_engine(width); };
+        options_.engine_name = "local";
+        options_.lanes = {2, 2, 2};
+        options_.state_folder = state();
+        if (change) change(options_);
+        start();
+    }
+
+    std::string address() const { return "unix:" + folder_.file("socket"); }
+    std::string state() const { return folder_.file("state"); }
+    const test::TemporaryDirectory& folder() const { return folder_; }
+    service::ServerOptions& options() { return options_; }
+    std::string log() const { return words_.str(); }
+    const std::ostringstream& words() const { return words_; }
+
+    void start() {
+        const auto log =
+            std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(words_));
+        server_ = std::make_unique<service::Server>(options_, log);
+    }
+    void drain() { server_->drain(); }
+    void stop() { server_.reset(); }
+    void restart() {
+        stop();
+        start();
+    }
+
+    std::unique_ptr<JobClient> client(const std::string& token = {}) const {
+        ClientOptions options;
+        options.patience = std::chrono::seconds(30);
+        options.token = token;
+        return std::make_unique<JobClient>(address(), options);
+    }
+
+    /// The files of jobs in the state folder.
+    std::vector<std::string> files(const std::string& ending = {}) const {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(state())) {
+            const std::string name = entry.path().filename().string();
+            if (name != "lock" && name.ends_with(ending)) names.push_back(entry.path().string());
+        }
+        return names;
+    }
+
+private:
+    test::TemporaryDirectory folder_;
+    service::ServerOptions options_;
+    std::ostringstream words_;
+    std::unique_ptr<service::Server> server_;
+};
+
+/// Whether it came true within a minute.
+inline bool comes_true(const std::function<bool()>& condition) {
+    for (int i = 0; i < 6000; ++i) {
+        if (condition()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+}
+
+/// What is submitted.
+struct Work {
+    Objects first;
+    std::optional<Objects> second;
+    Options options;
+    JobTerms terms;
+
+    explicit Work(const Objects& objects) : first(objects) {}
+    Work(const Objects& one, const Objects& other) : first(one), second(other) {}
+    Work(const Objects& objects, Options asked) : first(objects), options(std::move(asked)) {}
+};
+
+inline std::string submit(JobClient& client, const Work& work) {
+    return work.second ? client.submit_between(work.first, *work.second, work.options, work.terms)
+                       : client.submit(work.first, work.options, work.terms);
+}
+
+inline std::vector<Pair> pairs_here(const Work& work) {
+    PairList pairs;
+    const auto engine = make_local_engine(1);
+    if (!work.second)
+        engine->find_pairs(work.first, pairs, work.options);
+    else
+        engine->find_pairs_between(work.first, *work.second, pairs, work.options);
+    return pairs.to_vector();
+}
+
+inline std::vector<Pair> pairs_there(JobClient& client, const std::string& id) {
+    PairList pairs;
+    const Summary summary = client.result(id, pairs);
+    EXPECT_EQ(summary.pairs, pairs.size());
+    return pairs.to_vector();
+}
+
+inline const std::string some_id = "01234567-89ab-cdef-0123-456789abcdef";
+
+}  // namespace octopair::testing

@@ -1,0 +1,115 @@
+// `octopair serve` killed again and again while jobs are queued, running and streamed: all results are right, once.
+#include <csignal>
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "service/detached/host.hpp"
+#include "support/compare.hpp"
+#include "support/scale.hpp"
+
+namespace octopair::testing {
+namespace {
+
+class ServeProgram {
+public:
+    ServeProgram() { start(); }
+    ServeProgram(const ServeProgram&) = delete;
+    ServeProgram& operator=(const ServeProgram&) = delete;
+    ~ServeProgram() { kill(); }
+
+    std::string address() const { return "unix:" + folder_.file("socket"); }
+
+    void start() {
+        std::string program = OCTOPAIR_PROGRAM, verb = "serve", listen = "--listen=" + address(),
+                    state = "--state=" + folder_.file("state"), threads = "--threads=2";
+        char* const words[] = {program.data(), verb.data(), listen.data(), state.data(), threads.data(), nullptr};
+        ASSERT_EQ(::posix_spawn(&id_, program.c_str(), nullptr, nullptr, words, environ), 0);
+    }
+
+    void kill() {
+        ::kill(id_, SIGKILL);
+        (void)::waitpid(id_, nullptr, 0);
+    }
+
+private:
+    test::TemporaryDirectory folder_;
+    pid_t id_ = 0;
+};
+
+/// A receiver that stops in the middle of what it is given, once for every kill.
+class SlowReader {
+public:
+    void take(std::span<const Pair> pairs) {
+        pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+        const int stop = stops_++;
+        while (stop < kills && kills_ <= stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    /// It waits for the next kill.
+    bool waits() const { return stops_ > kills_; }
+    void killed() { ++kills_; }
+    const std::vector<Pair>& pairs() const { return pairs_; }
+
+    static constexpr int kills = 3;
+
+private:
+    std::vector<Pair> pairs_;
+    std::atomic<int> stops_ = 0, kills_ = 0;
+};
+
+TEST(Killed, LosesAndRepeatsNothing) {
+    ServeProgram server;
+    JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
+    const std::vector<Box3f> heap(scaled(4000, 2)), crowd(60'000);  // 64 MB of pairs; seconds of work
+    const std::vector<Box3f> scene = make_boxes("dense", scaled(400'000, 10), 1);
+    const Work of_heap(Objects{std::span(heap), {}}), of_scene(Objects{std::span(scene), {}});
+    const std::string streamed = submit(client, of_heap);
+    ASSERT_EQ(int(client.wait(streamed, std::chrono::minutes(5)).state), int(JobState::done));
+    const std::string running = client.submit({std::span(crowd), {}}, {}, {.count_only = true});
+    const std::string queued = submit(client, of_scene);
+    SlowReader reader;
+    std::thread reading([&] { client.result(streamed, [&](std::span<const Pair> pairs) { reader.take(pairs); }); });
+    for (int round = 0; round < SlowReader::kills; ++round) {
+        EXPECT_TRUE(comes_true([&] {
+            return reader.waits() && client.status(running).state == JobState::running &&
+                   client.status(queued).state == JobState::queued;
+        })) << round;
+        server.kill();
+        reader.killed();
+        server.start();
+    }
+    reading.join();
+    EXPECT_TRUE(same_bytes(reader.pairs(), pairs_here(of_heap)));
+    EXPECT_TRUE(same_bytes(pairs_there(client, streamed), pairs_here(of_heap)));
+    const JobStatus counted = client.wait(running, std::chrono::minutes(5));
+    EXPECT_EQ(counted.summary.pairs, std::uint64_t(crowd.size()) * (crowd.size() - 1) / 2);
+    EXPECT_TRUE(same_bytes(pairs_there(client, queued), pairs_here(of_scene)));
+    EXPECT_EQ(client.list().size(), 3u);
+}
+
+TEST(Killed, WhileAJobIsSubmittedTakesItOnce) {
+    ServeProgram server;
+    JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
+    const auto boxes = make_boxes("uniform", scaled(1000000, 10), 1);
+    Work work(Objects{std::span(boxes), {}});
+    work.terms.id = some_id;
+    int rounds = 3;
+    work.options.progress = [&](double done) {
+        if (done < 0.4 || rounds == 0) return;
+        --rounds;
+        server.kill();
+        server.start();
+    };
+    EXPECT_EQ(submit(client, work), some_id);
+    EXPECT_EQ(rounds, 0);
+    EXPECT_EQ(client.list().size(), 1u);
+    work.options.progress = {};
+    EXPECT_TRUE(same_bytes(pairs_there(client, some_id), pairs_here(work)));
+}
+
+}  // namespace
+}  // namespace octopair::testing

@@ -1,0 +1,40 @@
+// A job is its owner's alone.
+#include <sys/stat.h>
+
+#include "service/detached/host.hpp"
+
+namespace octopair::testing {
+namespace {
+
+TEST(Owner, AloneSeesAJob) {
+    const test::TemporaryDirectory files;
+    test::write_file(files.file("tokens"), "anna annas-secret-token\nbert berts-secret-token\n");
+    ASSERT_EQ(::chmod(files.file("tokens").c_str(), 0600), 0);
+    Host host([&](service::ServerOptions& options) { options.token_file = files.file("tokens"); });
+    const auto anna = host.client("annas-secret-token"), bert = host.client("berts-secret-token");
+    const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
+    Work work(Objects{std::span(boxes), {}});
+    work.terms.id = some_id;
+    (void)submit(*anna, work);
+    for (int i = 0; i < 2; ++i) {
+        const auto refused = [&](const auto& call) {
+            EXPECT_EQ(test::error_of(ErrorCode::bad_input, call), "there is no job " + some_id);
+        };
+        PairList pairs;
+        refused([&] { bert->status(some_id); });
+        refused([&] { bert->wait(some_id, std::chrono::seconds(10)); });
+        refused([&] { bert->cancel(some_id); });
+        refused([&] { bert->release(some_id); });
+        refused([&] { bert->result(some_id, pairs); });
+        EXPECT_TRUE(bert->list().empty());
+        EXPECT_EQ(anna->list().size(), 1u);
+        EXPECT_EQ(pairs_there(*anna, some_id), pairs_here(work));
+        host.restart();
+    }
+    (void)submit(*bert, work);
+    anna->release(some_id);
+    EXPECT_EQ(pairs_there(*bert, some_id), pairs_here(work));
+}
+
+}  // namespace
+}  // namespace octopair::testing

@@ -1,0 +1,81 @@
+// octopair submit, status, result, cancel.
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class JobProgramTest : public ProgramTest {
+protected:
+    /// A script with a server beside it, which OCTOPAIR_SERVER names.
+    Outcome with_server(const std::string& script, const std::string& serve = "--state state") const {
+        return shell("\"$P\" serve --listen unix:socket " + serve +
+                     " 2>log & S=$!; trap 'kill $S; wait $S' EXIT\nexport OCTOPAIR_SERVER=unix:socket\n" + script);
+    }
+};
+
+TEST_F(JobProgramTest, WritesWhatDetectWrites) {
+    save_boxes("a.npy", {0, 0.5, 3, 3.5, 9});
+    save_boxes("b.npy", {1, 9.5});
+    for (const char* const what :
+         {"a.npy", "a.npy --against b.npy", "a.npy b.npy --margin 1 --order octal --limit 3"}) {
+        for (const char* const ending : {"npy", "csv", "jsonl"}) {
+            const std::string files = std::string("there.") + ending + " here." + ending;
+            const Outcome outcome =
+                with_server(std::string("id=$(\"$P\" submit ") + what +
+                            ") && \"$P\" result $id --release --quiet --output there." + ending + " && \"$P\" detect " +
+                            what + " --quiet --output here." + ending + " && cmp " + files + " && \"$P\" status");
+            EXPECT_EQ(outcome.status, 0) << what << outcome.err;
+            EXPECT_EQ(outcome.out, "") << "a job is there still";
+        }
+    }
+}
+
+TEST_F(JobProgramTest, PrintsJobs) {
+    save_boxes("a.npy", {0, 0.5, 3});
+    const std::string id = "01234567-89ab-cdef-0123-456789abcdef";
+    const Outcome outcome =
+        with_server("\"$P\" submit a.npy --id " + id + "\n\"$P\" status " + id +
+                    " --wait 60\n\"$P\" status\n\"$P\" result " + id + " --quiet\n\"$P\" cancel " + id);
+    const std::string line = id + "  done, 3 objects, 1 pairs\n";
+    EXPECT_EQ(outcome.out, id + "\n" + line + line + "a,b\n0,1\n" + line) << outcome.err;
+    const Outcome json = with_server("\"$P\" status " + id + " --json; \"$P\" status --json");
+    EXPECT_NE(json.out.find("\"state\": \"done\""), std::string::npos) << json.err;
+    EXPECT_NE(json.out.find("[\n"), std::string::npos);
+}
+
+TEST_F(JobProgramTest, CountsAlone) {
+    save_boxes("a.npy", {0, 0.5, 3});
+    const Outcome outcome =
+        with_server("id=$(\"$P\" submit a.npy --count-only); \"$P\" result $id; \"$P\" result $id --output a.csv");
+    EXPECT_EQ(outcome.out, "1\n");
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+}
+
+TEST_F(JobProgramTest, ShowsATokenWhereOneIsWanted) {
+    save_boxes("a.npy", {0, 0.5, 3});
+    ASSERT_EQ(shell("umask 077; echo anna 0123456789abcdef > tokens; echo 0123456789abcdef > anna").status, 0);
+    const std::string id = "01234567-89ab-cdef-0123-456789abcdef";
+    const Outcome outcome =
+        with_server("\"$P\" submit a.npy --id " + id + "; \"$P\" submit a.npy --token-file anna --id " + id +
+                        "\nexport OCTOPAIR_TOKEN=0123456789abcdef\n\"$P\" result " + id +
+                        " --quiet --release && \"$P\" status && \"$P\" cancel " + id,
+                    "--state state --tokens tokens");
+    EXPECT_EQ(outcome.out, id + "\na,b\n0,1\n");
+    EXPECT_NE(outcome.err.find("the server wants a token"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("there is no job"), std::string::npos) << outcome.err;
+}
+
+TEST_F(JobProgramTest, SaysWhatIsWrong) {
+    save_boxes("a.npy", {0, 0.5, 3});
+    const std::string id = " 01234567-89ab-cdef-0123-456789abcdef";
+    EXPECT_EQ(shell("unset OCTOPAIR_SERVER; \"$P\" status").status, 2);
+    EXPECT_EQ(with_server("\"$P\" submit a.npy", "").status, 2);
+    EXPECT_EQ(with_server("\"$P\" status" + id).status, 3);
+    EXPECT_EQ(with_server("\"$P\" result" + id).status, 3);
+    EXPECT_EQ(with_server("\"$P\" submit a.npy --id x").status, 3);
+    EXPECT_EQ(with_server("\"$P\" submit a.npy --id" + id + " && \"$P\" submit a.npy --margin 1 --id" + id).status, 3);
+    EXPECT_EQ(with_server("\"$P\" submit a.npy", "--state /proc/none").status, 6);
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,121 @@
+// Jobs that wait: for their turn, for memory; and are cancelled, waited for, or are not done when the server ends.
+#include <atomic>
+#include <thread>
+
+#include "service/detached/host.hpp"
+#include "support/compare.hpp"
+
+namespace octopair::testing {
+namespace {
+
+/// So many that pairs are found for seconds.
+std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
+
+TEST(Waiting, IsForMemory) {
+    const std::uint64_t one = 15000 * (24 + 80);
+    const Host host([&](service::ServerOptions& options) { options.limits.memory_bytes = one + one / 2; });
+    const auto client = host.client();
+    const auto boxes = make_boxes("uniform", 15000, 1), more = make_boxes("uniform", 25000, 2);
+    std::vector<std::string> ids;
+    ids.reserve(8);
+    for (int i = 0; i < 8; ++i) ids.push_back(client->submit({std::span(boxes), {}}));
+    for (const auto& id : ids) EXPECT_EQ(int(client->wait(id, std::chrono::minutes(1)).state), int(JobState::done));
+    const std::string words = test::error_of(ErrorCode::resource_limit, [&] { client->submit({std::span(more), {}}); });
+    EXPECT_NE(words.find("bytes of memory"), std::string::npos) << words;
+}
+
+TEST(Waiting, EndsWithTheTimeOrTheJob) {
+    const Host host;
+    const auto client = host.client();
+    const auto boxes = many_boxes();
+    const std::string id = client->submit({std::span(boxes), {}});
+    EXPECT_FALSE(client->wait(id, std::chrono::milliseconds(1)).ended());
+    EXPECT_FALSE(client->wait(id, std::chrono::seconds(-1)).ended());
+    EXPECT_EQ(int(client->wait(id, std::chrono::minutes(2)).state), int(JobState::done));
+}
+
+TEST(Waiting, CanBeCancelled) {
+    const Host host;
+    const auto client = host.client();
+    const auto boxes = many_boxes();
+    const std::string running = client->submit({std::span(boxes), {}}), queued = client->submit({std::span(boxes), {}});
+    ASSERT_TRUE(comes_true([&] { return client->status(running).state == JobState::running; }));
+    EXPECT_EQ(client->status(queued).queued_before, 0u);
+    EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { client->release(queued); }).find("has not ended"),
+              std::string::npos);
+    for (const auto& id : {queued, running}) EXPECT_EQ(int(client->cancel(id).state), int(JobState::cancelled));
+    PairList pairs;
+    (void)test::error_of(ErrorCode::cancelled, [&] { client->result(running, pairs); });
+    EXPECT_EQ(host.files(".result").size(), 2u);
+    client->release(queued);
+    EXPECT_EQ(host.files().size(), 2u);
+}
+
+TEST(Waiting, GoesOnWithTheNextServer) {
+    Host host;
+    const auto client = host.client();
+    const auto boxes = many_boxes();
+    const Work work(Objects{std::span(boxes), {}});
+    const std::string running = submit(*client, work), queued = submit(*client, work), gone = submit(*client, work);
+    ASSERT_TRUE(comes_true([&] { return client->status(running).state == JobState::running; }));
+    EXPECT_EQ(int(client->cancel(gone).state), int(JobState::cancelled));
+    host.restart();
+    EXPECT_EQ(int(client->status(gone).state), int(JobState::cancelled));
+    const auto expected = pairs_here(work);
+    for (const auto& id : {running, queued}) EXPECT_TRUE(same_bytes(pairs_there(*client, id), expected));
+}
+
+TEST(Waiting, AttachedJobsAreSeen) {
+    const Host host;
+    const auto client = host.client();
+    const auto boxes = many_boxes();
+    std::atomic<bool> ended = false;
+    std::thread caller([&] {
+        (void)test::error_of(ErrorCode::cancelled, [&] {
+            (void)connect(host.address())->stream_pairs({std::span(boxes), {}}, [](std::span<const Pair>) {});
+        });
+        ended = true;
+    });
+    std::vector<JobStatus> jobs;
+    EXPECT_TRUE(comes_true([&] { return !(jobs = client->list()).empty() || ended; }));
+    ASSERT_EQ(jobs.size(), 1u);
+    EXPECT_FALSE(jobs.front().detached);
+    PairList pairs;
+    EXPECT_NE(
+        test::error_of(ErrorCode::bad_input, [&] { client->result(jobs.front().id, pairs); }).find("not detached"),
+        std::string::npos);
+    (void)client->cancel(jobs.front().id);
+    caller.join();
+}
+
+TEST(WaitingAtNobody, EndsWithTheTimeForConnecting) {
+    const test::TemporaryDirectory folder;
+    JobClient client("unix:" + folder.file("nobody"),
+                     {.connect_timeout = std::chrono::milliseconds(100), .patience = std::chrono::hours(1)});
+    EXPECT_NE(test::error_of(ErrorCode::engine_failed, [&] { (void)client.list(); }).find("no server answers"),
+              std::string::npos);
+}
+
+TEST(WaitingAtFirst, IsPatientWithAServerThatWasThere) {
+    Host host;
+    const std::vector<Box3f> crowd(60'000);  // seconds of work
+    const std::string id = host.client()->submit({std::span(crowd), {}}, {}, {.count_only = true});
+    JobClient client(host.address(), {.connect_timeout = std::chrono::milliseconds(100)});
+    std::thread away([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        host.stop();
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+        host.start();
+    });
+    EXPECT_EQ(int(client.wait(id, std::chrono::minutes(5)).state), int(JobState::done));
+    away.join();
+}
+
+TEST(WaitingAtFirst, RefusesTokensThatCannotBeSent) {
+    for (const char* const token : {"0123456789abcdef\n", "0123456789abcd\xc3\xa9"}) {
+        (void)test::error_of(ErrorCode::usage, [&] { const JobClient client("unix:nobody", {.token = token}); });
+    }
+}
+
+}  // namespace
+}  // namespace octopair::testing

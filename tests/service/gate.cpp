@@ -1,0 +1,63 @@
+#include "service/gate.hpp"
+
+#include <chrono>
+
+#include "base/stop.hpp"
+#include "engine/job_queue.hpp"
+#include "engine/request.hpp"
+
+namespace octopair::testing {
+
+namespace {
+
+/// Streams and counts alone: servers ask for nothing else.
+class GatedEngine final : public Engine {
+public:
+    explicit GatedEngine(Gate& gate) : gate_(gate) {}
+
+private:
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        gate_.pass(control.stop);
+        const PairSink sink = output.sink != nullptr ? *output.sink : PairSink();
+        if (request.second == nullptr) return inner_->stream_pairs(request.first, sink, request.options, control.stop);
+        return inner_->stream_pairs_between(request.first, *request.second, sink, request.options, control.stop);
+    }
+    JobQueue& jobs() override { return jobs_; }
+
+    Gate& gate_;
+    std::unique_ptr<Engine> inner_ = make_local_engine(1);
+    JobQueue jobs_{*this};
+};
+
+}  // namespace
+
+void Gate::open() {
+    const std::lock_guard lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+}
+
+void Gate::close() {
+    const std::lock_guard lock(mutex_);
+    open_ = false;
+}
+
+void Gate::pass(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    (void)changed_.wait(lock, stop, [&] { return open_; });
+    --waiting_;
+    throw_if_stopped(stop);
+}
+
+bool Gate::wait_for(unsigned waiting) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::minutes(1), [&] { return waiting_ >= waiting; });
+}
+
+service::EngineMaker gated_engines(Gate& gate) {
+    return [&gate](unsigned) { return std::make_unique<GatedEngine>(gate); };
+}
+
+}  // namespace octopair::testing

@@ -1,0 +1,108 @@
+// A server in the test's process, at a port or a socket of its own, and files that protect it.
+#pragma once
+
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/grpcpp.h>
+#include <spdlog/sinks/null_sink.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/temporary.hpp"
+#include "octopair/client.hpp"
+#include "octopair/octopair.hpp"
+#include "service/server/event.hpp"
+#include "service/server/server.hpp"
+
+namespace octopair::test {
+
+inline std::shared_ptr<spdlog::logger> silent() {
+    return service::make_log(service::LogForm::text, std::make_shared<spdlog::sinks::null_sink_mt>());
+}
+
+inline service::ServerOptions options_at(const std::string& address) {
+    service::ServerOptions options;
+    options.listen = service::parse_address(address);
+    options.engine = [](unsigned width) { return make_local_engine(width); };
+    options.engine_name = "local";
+    return options;
+}
+
+/// Three boxes, of which two overlap.
+inline std::vector<Pair> ask(const std::string& address, ClientOptions options) {
+    options.patience = std::chrono::milliseconds(300);
+    const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{5, 5, 5}, {6, 6, 6}}, {{1, 0, 0}, {2, 1, 1}}};
+    PairList pairs;
+    connect(address, options)->find_pairs({boxes}, pairs);
+    return pairs.to_vector();
+}
+inline const std::vector<Pair> right_answer = {{0, 2}};
+
+/// The file of a test's own, which is nobody else's to read.
+inline void write_secret(const std::string& path, const std::string& content) {
+    write_file(path, content);
+    ASSERT_EQ(::chmod(path.c_str(), 0600), 0);
+}
+
+/// An authority, and what it signs, made by the openssl command line: NAME.pem and NAME.key for "server", "client" and both
+/// as "expired-server", "expired-client"; "stranger" is signed by another authority.
+class Certificates {
+public:
+    Certificates() {
+        make_authority("authority");
+        make_authority("other");
+        sign("server", "authority", 2);
+        sign("client", "authority", 2);
+        sign("expired-server", "authority", -1);
+        sign("expired-client", "authority", -1);
+        sign("stranger", "other", 2);
+    }
+
+    std::string pem(const std::string& name) const { return folder_.file(name + ".pem"); }
+    std::string key(const std::string& name) const { return folder_.file(name + ".key"); }
+
+private:
+    void run(const std::string& line) const {
+        const std::string script = "cd '" + folder_.path() + "' && { " + line + "; } >log 2>&1";
+        if (std::system(script.c_str()) != 0) throw std::runtime_error(line + ": " + read_file(folder_.file("log")));
+    }
+    void make_authority(const std::string& name) const {
+        run("openssl req -x509 " + fresh(name) + " -out " + name + ".pem -days 2 -subj /CN=" + name);
+    }
+    void sign(const std::string& name, const std::string& authority, int days) const {
+        run("openssl req " + fresh(name) + " -out request -subj /CN=" + name +
+            " && echo 'subjectAltName=DNS:localhost,IP:127.0.0.1' > names && openssl x509 -req -in request -CA " +
+            authority + ".pem -CAkey " + authority + ".key -CAcreateserial -extfile names -days " +
+            std::to_string(days) + " -out " + name + ".pem");
+    }
+    static std::string fresh(const std::string& name) {
+        return "-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout " + name + ".key";
+    }
+
+    TemporaryDirectory folder_;
+};
+
+/// One message to a method of that path, as a client without our library.
+inline grpc::Status call_raw(const std::string& address, const std::string& method, const std::string& token = "") {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+    if (!token.empty()) context.AddMetadata("authorization", token);
+    grpc::GenericStub stub(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+    grpc::CompletionQueue queue;
+    const grpc::Slice nothing;
+    const auto call = stub.PrepareUnaryCall(&context, method, grpc::ByteBuffer(&nothing, 1), &queue);
+    call->StartCall();
+    grpc::ByteBuffer answer;
+    grpc::Status status;
+    call->Finish(&answer, &status, nullptr);
+    void* tag = nullptr;
+    bool ok = false;
+    (void)queue.Next(&tag, &ok);
+    return status;
+}
+
+}  // namespace octopair::test

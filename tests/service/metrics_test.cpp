@@ -1,0 +1,68 @@
+// What a server shows to Prometheus.
+#include "service/metrics_page.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Metrics : public testing::Test {
+protected:
+    std::string socket() const { return "unix:" + folder_.file("socket"); }
+
+    service::Server& serve(service::ServerOptions options) {
+        options.metrics = service::parse_address("localhost:0");
+        server_ = std::make_unique<service::Server>(options, log_to(log_));
+        return *server_;
+    }
+
+    testing::AssertionResult comes(const std::string& line) const { return page_has(log_, line); }
+    std::string page() const { return metrics_page(log_.str()); }
+
+    TemporaryDirectory folder_;
+    std::ostringstream log_;
+    std::unique_ptr<service::Server> server_;
+};
+
+TEST_F(Metrics, CountJobs) {
+    serve(options_at(socket()));
+    EXPECT_TRUE(comes("octopair_jobs_ended_total{outcome=\"done\"} 0"));
+    EXPECT_EQ(ask(socket(), {}), right_answer);
+    EXPECT_TRUE(comes("octopair_jobs_ended_total{outcome=\"done\"} 1"));
+    EXPECT_TRUE(comes("octopair_job_seconds_count 1"));
+    for (const std::string state : {"uploading", "queued", "running"}) {
+        EXPECT_TRUE(comes("octopair_jobs{state=\"" + state + "\"} 0"));
+    }
+    EXPECT_TRUE(comes("octopair_memory_bytes 0"));
+    EXPECT_TRUE(comes("octopair_queue_length 0"));
+    EXPECT_TRUE(comes("octopair_connections 0"));
+    for (const std::string direction : {"received", "sent"}) {
+        EXPECT_EQ(page().find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page();
+    }
+}
+
+TEST_F(Metrics, CountRefusals) {
+    service::ServerOptions options = options_at(socket());
+    options.limits.objects = 2;
+    serve(options);
+    EXPECT_NE(error_of(ErrorCode::resource_limit, [&] { ask(socket(), {}); }), "");
+    EXPECT_TRUE(comes("octopair_refusals_total{limit=\"objects\"} 1"));
+    EXPECT_TRUE(comes("octopair_refusals_total{limit=\"connections\"} 0"));
+}
+
+TEST_F(Metrics, CountCallsThatAreNotLetIn) {
+    write_secret(folder_.file("tokens"), "anna 0123456789abcdef\n");
+    service::ServerOptions options = options_at(socket());
+    options.token_file = folder_.file("tokens");
+    serve(options);
+    EXPECT_EQ(call_raw(socket(), "/octopair.v1.Octopair/Describe").error_code(), grpc::StatusCode::UNAUTHENTICATED);
+    EXPECT_TRUE(comes("octopair_calls_refused_total{reason=\"unauthenticated\"} 1"));
+}
+
+TEST_F(Metrics, AreShownOnThisMachineAlone) {
+    service::ServerOptions options = options_at(socket());
+    options.metrics = service::parse_address("0.0.0.0:0");
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { const service::Server server(options, silent()); }),
+              "0.0.0.0:0: metrics are shown on this machine alone (127.0.0.1, ::1, localhost)");
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,97 @@
+// Servers that are not there, or do not answer: calls end when the patience does, no sooner.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <cstring>
+#include <thread>
+
+#include "base/descriptor.hpp"
+#include "engine/jobs.hpp"
+#include "io/temporary.hpp"
+#include "service/gate.hpp"
+#include "service/served.hpp"
+
+namespace octopair {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::Served;
+
+/// Listens, and never answers.
+class Mute {
+public:
+    explicit Mute(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_un name{};
+        name.sun_family = AF_UNIX;
+        std::memcpy(name.sun_path, path.c_str(), path.size() + 1);
+        EXPECT_EQ(::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
+        EXPECT_EQ(::listen(socket_.number(), 1000), 0);
+    }
+
+private:
+    Descriptor socket_;
+};
+
+TEST(ServedPatience, EndsWithoutAServer) {
+    const test::TemporaryDirectory folder;
+    for (const std::string& address : {"unix:" + folder.file("nobody"), std::string("127.0.0.1:1")}) {
+        const auto call = [&] { (void)connect(address, {.patience = milliseconds(300)}); };
+        EXPECT_NE(test::error_of(ErrorCode::engine_failed, call).find(address), std::string::npos);
+    }
+}
+
+TEST(ServedPatience, EndsAtAServerThatNeverAnswers) {
+    const test::TemporaryDirectory folder;
+    const Mute mute(folder.file("mute"));
+    const auto call = [&] { (void)connect("unix:" + folder.file("mute"), {.patience = milliseconds(2500)}); };
+    EXPECT_EQ(testing::code_of(call), ErrorCode::engine_failed);
+}
+
+TEST(ServedPatience, WaitsForAServerThatComesLater) {
+    Served served;
+    served.stop();
+    std::jthread later([&] {
+        std::this_thread::sleep_for(milliseconds(400));
+        served.start();
+    });
+    testing::check_serves(served.address());
+}
+
+TEST(ServedPatience, EndsWhenAServerStaysAway) {
+    testing::Gate gate;
+    Served served([&](service::ServerOptions& options) {
+        options.engine = testing::gated_engines(gate);
+        options.lanes.instant = 0;  // a gate would hold gRPC itself
+    });
+    const auto engine = served.client(milliseconds(500));
+    Job job = engine->submit(testing::touching_boxes);
+    ASSERT_TRUE(gate.wait_for(1));
+    served.stop();
+    EXPECT_EQ(testing::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
+    served.start();
+    gate.open();
+    EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+}
+
+TEST(ServedPatience, CanBeStopped) {
+    Served served;
+    const auto engine = served.client(std::chrono::hours(10));
+    served.stop();
+    Job job = engine->submit(testing::touching_boxes);
+    std::this_thread::sleep_for(milliseconds(100));
+    job.cancel();
+    ASSERT_TRUE(job.wait_for(std::chrono::minutes(1)));
+    EXPECT_EQ(job.state(), JobState::cancelled);
+}
+
+TEST(ServedPatience, WrongAddressesAreRefused) {
+    for (const char* address :
+         {"", "unix:", "localhost", "localhost:", ":1", "localhost:65536", "localhost:1x", "::1:80"}) {
+        SCOPED_TRACE(address);
+        EXPECT_EQ(testing::code_of([&] { (void)connect(address); }), ErrorCode::usage);
+    }
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,76 @@
+// A server with few descriptors, or little memory: it says so, and lives.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "engine/jobs.hpp"
+#include "processes/leftovers.hpp"
+#include "service/raw_socket.hpp"
+#include "service/served.hpp"
+#include "service/server_program.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using testing::comes_true;
+using testing::RawSocket;
+using testing::ServerProgram;
+
+TEST(ServerProgramLimits, OfDescriptors) {
+    if (testing::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    ServerProgram server({.before = "ulimit -n 60;"});
+    testing::check_serves(server.address());
+    const auto engine = connect(server.address(), {.patience = minutes(1)});
+    std::vector<RawSocket> held;
+    for (int i = 0; i < 100; ++i) held.emplace_back(server.address());
+    EXPECT_NE(held.back().receive(minutes(1)).find("no more descriptors"), std::string::npos);
+    const auto call = [&] { (void)connect(server.address(), {.patience = std::chrono::seconds(1)}); };
+    EXPECT_EQ(testing::code_of(call), ErrorCode::resource_limit);
+    EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+    EXPECT_TRUE(server.lives());
+    held.clear();
+    testing::check_serves(server.address());
+}
+
+TEST(ServerProgramLimits, OfAddressSpace) {
+    if (testing::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    ServerProgram server({.arguments = "--engine local --threads 1", .before = "ulimit -v 1000000;"});
+    testing::check_serves(server.address());
+    const auto engine = connect(server.address(), {.patience = milliseconds(300)});
+    const std::vector<Box3f> many(20'000'000), crowd(20'000);  // 480 MB, where 300 are left; 1.6 GB of pairs
+    const auto too_many = [&] { (void)engine->count_pairs({std::span(many), {}}, {.limit = 1}); };
+    PairList list;
+    const auto too_crowded = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list); };
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(testing::code_of(too_many), ErrorCode::resource_limit);
+        EXPECT_EQ(testing::code_of(too_crowded), ErrorCode::resource_limit);
+        EXPECT_TRUE(server.lives()) << server.log();
+        EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+    }
+}
+
+TEST(ServerProgramLimits, OfPairsThatArePutInOrder) {
+    if (testing::sanitized) GTEST_SKIP() << "the sanitizer's own memory counts";
+    ServerProgram server({.arguments = "--engine local --threads 1 --max-memory 64M"});
+    testing::check_serves(server.address());
+    const auto engine = connect(server.address(), {.patience = milliseconds(300)});
+    const std::vector<Box3f> crowd(12'000);  // 576 MB of pairs
+    PairList list;
+    const auto call = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list, {Order::ascending}); };
+    EXPECT_EQ(testing::code_of(call), ErrorCode::resource_limit);
+    EXPECT_LT(server.memory(), std::uint64_t(300) << 20);
+}
+
+TEST(ServerProgramLimits, EndsWhenAskedTo) {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        ServerProgram server;
+        testing::check_serves(server.address());
+        server.signal(signal);
+        EXPECT_EQ(server.wait(), 0) << server.log();
+    }
+}
+
+}  // namespace
+}  // namespace octopair

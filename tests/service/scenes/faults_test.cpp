@@ -1,0 +1,102 @@
+// Servers and clients that go away in the life of a scene.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "service/protocol/status.hpp"
+#include "service/scenes/scene_server.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
+constexpr Box3f far_away = {{5, 5, 5}, {6, 6, 6}};
+
+const std::vector<Box3f> twice = {unit, unit};
+
+/// Of two objects that are a pair; not stepped yet.
+std::vector<ObjectId> add_pair(RemoteScene& scene) {
+    std::vector<ObjectId> ids(2);
+    scene.add(Objects{std::span(twice)}, ids);
+    return ids;
+}
+
+TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
+    testing::SceneServer server;
+    RemoteScene scene = connect_scene(server.address(), {}, {.patience = std::chrono::milliseconds(100)});
+    const std::vector<ObjectId> ids = add_pair(scene);
+    (void)scene.step();
+    server.go();
+    scene.move(std::span(ids).first(1), std::span(&far_away, 1));
+    try {
+        (void)scene.step();
+        FAIL() << "stepped";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::engine_failed);
+    }
+    EXPECT_EQ(scene.pairs().to_vector(), (std::vector<Pair>{{0, 1}}));
+    server.come();
+    const StepResult& step = scene.step();
+    EXPECT_TRUE(step.full);
+    EXPECT_TRUE(step.began.empty());
+    ASSERT_EQ(step.ended.size(), 1u);
+    EXPECT_EQ(step.persisting, 0u);
+}
+
+TEST(RemoteSceneFaults, AServerThatIsAwayForAWhileIsWaitedFor) {
+    testing::SceneServer server;
+    RemoteScene scene = server.scene();
+    (void)add_pair(scene);
+    (void)scene.step();
+    server.go();
+    const std::jthread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        server.come();
+    });
+    EXPECT_EQ(scene.step().persisting, 1u);
+}
+
+TEST(RemoteSceneFaults, AServerThatGoesDownDoesNotWaitForIdleScenes) {
+    testing::SceneServer server;
+    RemoteScene scene = server.scene();
+    (void)add_pair(scene);
+    (void)scene.step();
+    server.server().drain();  // which waits for ever if the scene does not end
+    server.go();
+    server.come();
+    EXPECT_EQ(scene.step().persisting, 1u);
+}
+
+TEST(RemoteSceneFaults, AClientThatGoesAwayFreesItsScene) {
+    testing::SceneServer server({.jobs = 1});
+    std::optional<RemoteScene> first = server.scene();
+    RemoteScene second = server.scene();
+    (void)add_pair(*first);
+    (void)add_pair(second);
+    (void)first->step();
+    const auto steps = [&] {
+        try {
+            return second.step().pairs() == 1;
+        } catch (const service::LimitError& error) {
+            EXPECT_EQ(error.name(), "jobs");
+            return false;
+        }
+    };
+    EXPECT_FALSE(steps()) << "a scene that does not count";
+    first.reset();
+    EXPECT_TRUE(testing::comes_true(steps));
+}
+
+TEST(RemoteSceneFaults, AStopBeforeAStepLeavesTheServersScene) {
+    testing::SceneServer server;
+    RemoteScene scene = server.scene();
+    (void)add_pair(scene);
+    (void)scene.step();
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW((void)scene.step(stop.get_token()), Error);
+    EXPECT_FALSE(scene.step().full);
+}
+
+}  // namespace
+}  // namespace octopair

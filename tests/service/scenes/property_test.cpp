@@ -1,0 +1,119 @@
+// Remote scenes on random histories: each call is made to a local scene as well, ids and results must be the same, and brute
+// force is the judge of both. Now and then the server goes and comes back, or a step is cancelled.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <thread>
+
+#include "scene/history.hpp"
+#include "service/scenes/scene_server.hpp"
+#include "support/cases.hpp"
+#include "support/kinds.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr std::uint64_t histories_a_kind = testing::scaled(10, 5);
+
+/// A local and a remote scene that must not differ.
+class TwinScene {
+public:
+    TwinScene() = default;
+    TwinScene(const SceneOptions& options, testing::SceneServer& server, std::uint64_t seed)
+        : server_(&server),
+          random_(seed),
+          local_(std::in_place, options),
+          remote_(server.scene({options.precision, options.margin})) {}
+
+    void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
+        local_->add(objects, ids, traits);
+        std::vector<ObjectId> given(ids.size());
+        remote_->add(objects, given, traits);
+        EXPECT_EQ(std::vector(ids.begin(), ids.end()), given);
+    }
+    void move(std::span<const ObjectId> ids, const Boxes& boxes) {
+        local_->move(ids, boxes);
+        remote_->move(ids, boxes);
+    }
+    void sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
+        local_->sweep(ids, boxes);
+        remote_->sweep(ids, boxes);
+    }
+    void remove(std::span<const ObjectId> ids) {
+        local_->remove(ids);
+        remote_->remove(ids);
+    }
+    void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
+        local_->set_traits(ids, traits);
+        remote_->set_traits(ids, traits);
+    }
+
+    const StepResult& step() {
+        const std::uint64_t what = random_() % 12;
+        if (what == 0) {
+            server_->go();
+            server_->come();
+        }
+        const StepResult& expected = local_->step();
+        const StepResult& found = what == 1 ? step_twice() : remote_->step();
+        EXPECT_EQ(std::vector(found.began.begin(), found.began.end()),
+                  std::vector(expected.began.begin(), expected.began.end()));
+        EXPECT_EQ(std::vector(found.ended.begin(), found.ended.end()),
+                  std::vector(expected.ended.begin(), expected.ended.end()));
+        EXPECT_EQ(found.persisting, expected.persisting);
+        EXPECT_EQ(remote_->size(), local_->size());
+        EXPECT_EQ(remote_->indices(), local_->indices());
+        return found;
+    }
+
+    const PairList& pairs() { return remote_->pairs(); }
+    const PairList& persisting() { return remote_->persisting(); }
+    std::uint64_t size() const { return remote_->size(); }
+    std::uint64_t indices() const { return remote_->indices(); }
+    bool contains(ObjectId id) const { return remote_->contains(id); }
+
+private:
+    /// The first one is cancelled, wherever it is then, unless it is done before.
+    const StepResult& step_twice() {
+        const std::vector<Pair> before = remote_->pairs().to_vector();
+        std::stop_source stop;
+        const std::jthread canceller([&, pause = std::chrono::microseconds(random_() % 600)] {
+            std::this_thread::sleep_for(pause);
+            stop.request_stop();
+        });
+        try {
+            return remote_->step(stop.get_token());
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+            EXPECT_EQ(remote_->pairs().to_vector(), before);
+        }
+        return remote_->step();
+    }
+
+    testing::SceneServer* server_ = nullptr;
+    std::mt19937_64 random_;
+    std::optional<Scene> local_;
+    std::optional<RemoteScene> remote_;
+};
+
+class RemoteSceneProperty : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
+    testing::SceneServer server;
+    const std::uint64_t count = testing::case_count(histories_a_kind);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+        SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        testing::History<TwinScene> history(
+            GetParam(), seed, [&](const SceneOptions& options) { return TwinScene(options, server, seed); });
+        history.run();
+        if (HasFailure()) return;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(testing::all_kind_names()),
+                         testing::param_name);
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,94 @@
+// The options of `octopair serve`, in a file and on the command line, and those that are refused.
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class ServeOptions : public ProgramTest {
+protected:
+    /// What it says of a file of these lines, before it would listen.
+    std::string refused(const std::string& lines, int status = 2) const {
+        write_file(file("c.toml"), lines);
+        const Outcome outcome = run("serve --config c.toml --listen unix:socket");
+        EXPECT_EQ(outcome.status, status) << lines << outcome.err;
+        EXPECT_FALSE(std::filesystem::exists(file("socket"))) << lines;
+        return outcome.err;
+    }
+    /// Serves until it has started.
+    Outcome served(const std::string& arguments) const {
+        return shell("\"$P\" serve " + arguments + R"( 2>log & child=$!
+            for i in $(seq 1200); do
+                [ -S socket ] && break
+                kill -0 $child 2>/dev/null || break
+                sleep 0.05
+            done
+            kill $child; wait $child)");
+    }
+};
+
+TEST_F(ServeOptions, UnknownKeysNameFileAndKey) {
+    EXPECT_EQ(refused("max-jbos = 5\n"), "octopair: c.toml: max-jbos: is no option of 'serve'\n");
+    EXPECT_EQ(refused("[limits]\nmax-jobs = 5\n").find("octopair: c.toml: limits"), 0u);
+    EXPECT_EQ(refused("config = 'd.toml'\n"), "octopair: c.toml: config: is no option of 'serve'\n");
+}
+
+TEST_F(ServeOptions, WrongValuesNameFileAndKey) {
+    EXPECT_EQ(refused("max-jobs = many\n").find("octopair: c.toml: max-jobs: --max-jobs: 'many' is not a whole number"),
+              0u);
+    EXPECT_EQ(refused("max-memory = \"8 GB\"\n"),
+              "octopair: c.toml: max-memory: --max-memory: '8 GB' is no number of bytes, as 65536, 64K, 4G\n");
+    EXPECT_EQ(refused("stall = 0\n"), "octopair: c.toml: stall: --stall: at least 1 second\n");
+    EXPECT_EQ(refused("max-jobs = [1, 2]\n"), "octopair: c.toml: max-jobs: one value is wanted\n");
+    EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not known"), 0u);
+}
+
+TEST_F(ServeOptions, MissingFileIsNamed) {
+    const Outcome outcome = run("serve --config none.toml --listen unix:socket");
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_EQ(outcome.err.find("octopair: none.toml: cannot open"), 0u) << outcome.err;
+}
+
+TEST_F(ServeOptions, CommandLineComesFirst) {
+    write_file(file("c.toml"), "listen = \"0.0.0.0:0\"\nmax-memory = \"2G\"\nthreads = 1\nquiet = true\n");
+    EXPECT_EQ(run("serve --config c.toml").status, 2);
+    EXPECT_EQ(served("--config c.toml --listen unix:socket").status, 0) << content("log");
+    EXPECT_EQ(content("log"), "");
+    EXPECT_EQ(served("--config c.toml --listen unix:socket --max-memory wrong").status, 2);
+}
+
+TEST_F(ServeOptions, ExampleConfigurationIsAccepted) {
+    const Outcome outcome = served("--config " OCTOPAIR_SOURCE "/packaging/serve.toml --listen unix:socket");
+    EXPECT_EQ(outcome.status, 0) << content("log");
+    EXPECT_NE(content("log").find("started"), std::string::npos);
+}
+
+TEST_F(ServeOptions, BytesHaveSuffixes) {
+    for (const std::string bytes : {"0", "65536", "64K", "1M", "4G", "16T"}) {
+        EXPECT_EQ(served("--listen unix:socket --threads 1 --max-memory " + bytes).status, 0) << bytes;
+    }
+    for (const std::string bytes : {"''", "K", "-1", "4g", "4GB", "1.5G", "99999999999999T", "0x10"}) {
+        EXPECT_EQ(run("serve --listen unix:socket --max-memory " + bytes).status, 2) << bytes;
+    }
+}
+
+TEST_F(ServeOptions, OpenAddressesAreRefused) {
+    const Outcome outcome = run("serve --listen 0.0.0.0:0");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(
+        outcome.err,
+        "octopair: 0.0.0.0:0: other machines can reach it; that needs TLS (a certificate and its key), and tokens or "
+        "an authority for client certificates\n");
+    EXPECT_EQ(run("serve --listen unix:socket --metrics 0.0.0.0:0").status, 2);
+}
+
+TEST_F(ServeOptions, WhatDoesNotFitIsRefused) {
+    for (const std::string arguments : {"", "--listen nowhere", "--listen unix:socket --engine unix:other",
+                                        "--listen unix:socket --engine local --workers 2",
+                                        "--listen unix:socket --tls-key key.pem", "--listen unix:socket --log xml",
+                                        "--listen unix:socket --log-level loud", "--listen unix:socket --token abc"}) {
+        EXPECT_EQ(run("serve " + arguments).status, 2) << arguments;
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,60 @@
+#include "service/served.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/null_sink.h>
+
+#include "octopair/error.hpp"
+#include "processes/leftovers.hpp"
+
+namespace octopair::testing {
+
+namespace {
+
+std::shared_ptr<spdlog::logger> silent_log() {
+    return std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::null_sink_mt>());
+}
+
+}  // namespace
+
+Served::Served(const Change& change) {
+    options_.listen = service::parse_address("unix:" + folder_.file("socket"));
+    options_.engine = [](unsigned width) { return make_local_engine(width); };
+    options_.engine_name = "local";
+    options_.lanes = {2, 2, 2};
+    if (change) change(options_);
+    start();
+}
+
+void Served::start() {
+    server_ = std::make_unique<service::Server>(options_, silent_log());
+    address_ = server_->address().text();
+}
+
+bool Served::comes_to_rest() const {
+    return comes_true([&] { return load().jobs == 0 && load().memory_bytes == 0; }, std::chrono::minutes(1));
+}
+
+std::unique_ptr<Engine> Served::client(std::chrono::milliseconds patience) const {
+    return connect(address_, {.patience = patience});
+}
+
+void check_serves(const std::string& address) {
+    const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{5, 5, 5}, {6, 6, 6}}};
+    PairList pairs;
+    (void)connect(address, {.patience = std::chrono::seconds(60)})->find_pairs({std::span(boxes), {}}, pairs);
+    EXPECT_EQ(pairs.to_vector(), (std::vector<Pair>{{0, 1}}));
+}
+
+void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call) {
+    try {
+        call();
+        ADD_FAILURE() << "was not refused, though beyond " << limit;
+    } catch (const Error& error) {
+        const std::string words = error.what();
+        EXPECT_EQ(int(error.code()), int(ErrorCode::resource_limit)) << words;
+        EXPECT_NE(words.find(limit), std::string::npos) << words;
+        EXPECT_NE(words.find(std::to_string(allowed)), std::string::npos) << words;
+    }
+}
+
+}  // namespace octopair::testing

@@ -1,0 +1,47 @@
+// A server in the test's own process, on a Unix socket in a folder of its own.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "io/temporary.hpp"
+#include "octopair/client.hpp"
+#include "service/server/server.hpp"
+#include "service/server/server_options.hpp"
+
+namespace octopair::testing {
+
+class Served {
+public:
+    using Change = std::function<void(service::ServerOptions&)>;
+
+    /// Serves with a local engine of two threads, unless `change` says otherwise.
+    explicit Served(const Change& change = {});
+
+    const std::string& address() const { return address_; }
+    service::Server& server() { return *server_; }
+    service::ServerLoad load() const { return server_->load(); }
+    /// No job is on the server, and none of its memory taken; waits for it.
+    bool comes_to_rest() const;
+
+    void stop() { server_ = nullptr; }
+    void start();
+
+    std::unique_ptr<Engine> client(std::chrono::milliseconds patience = std::chrono::seconds(60)) const;
+
+private:
+    test::TemporaryDirectory folder_;
+    service::ServerOptions options_;
+    std::string address_;
+    std::unique_ptr<service::Server> server_;
+};
+
+/// Throws Error if a job of a few objects does not find its pairs.
+void check_serves(const std::string& address);
+
+/// Fails the test unless `call` throws Error{resource_limit} that names the limit and how much it allows.
+void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call);
+
+}  // namespace octopair::testing

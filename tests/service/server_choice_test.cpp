@@ -1,0 +1,78 @@
+// octopair detect --engine ADDRESS: the options for a server, and what is said of it.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class ServerChoice : public ProgramTest {
+protected:
+    ServerChoice() {
+        save_boxes("a.npy", {0, 10, 0.5});
+        write_file(file("tokens"), "anna 0123456789abcdef\n");
+        write_file(file("token"), "0123456789abcdef\n");
+        write_file(file("wrong"), "0123456789abcdeg\n");
+    }
+    /// With a server at unix:socket that wants a token.
+    Outcome with_server(const std::string& lines) const {
+        return shell(R"(chmod 600 tokens token wrong
+            "$P" serve --listen unix:socket --threads 1 --tokens tokens 2>log & child=$!
+            for i in $(seq 1200); do grep -q started log && break; sleep 0.05; done
+            D='detect a.npy --engine unix:socket'
+            )" + lines +
+                     "\nstatus=$?; kill $child; wait $child; exit $status");
+    }
+};
+
+TEST_F(ServerChoice, TokensComeFromAFileOrTheEnvironment) {
+    const std::string answer = "a,b\n0,2\n";
+    EXPECT_EQ(with_server("\"$P\" $D --quiet --token-file token").out, answer);
+    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=0123456789abcdef \"$P\" $D --quiet").out, answer);
+    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=other \"$P\" $D --quiet --token-file token").out, answer);
+    const Outcome wrong = with_server("\"$P\" $D --quiet --token-file wrong"), none = with_server("\"$P\" $D --quiet");
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_EQ(wrong.err, "octopair: unix:socket: the token is none of the server's\n");
+    EXPECT_EQ(none.status, 2);
+    EXPECT_EQ(none.err, "octopair: unix:socket: the server wants a token\n");
+}
+
+TEST_F(ServerChoice, EventsAskWithTheSameToken) {
+    const Outcome outcome = with_server("\"$P\" $D --events --quiet --token-file token");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "frame,event,a,b\n0,begin,0,2\n");
+}
+
+TEST_F(ServerChoice, TokenFilesOthersMayReadAreRefused) {
+    const Outcome outcome = with_server("chmod 644 token; \"$P\" $D --quiet --token-file token");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err, "octopair: token: others may read it; a secret is its owner's alone (chmod 600)\n");
+}
+
+TEST_F(ServerChoice, SummaryAndStatsNameTheServer) {
+    const Outcome outcome = with_server("\"$P\" $D --token-file token --stats stats.json");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find(" objects/s on server unix:socket\n"), std::string::npos) << outcome.err;
+    const auto stats = nlohmann::json::parse(content("stats.json"));
+    EXPECT_EQ(stats["engine"], "server");
+    EXPECT_EQ(stats["server"], "unix:socket");
+    EXPECT_EQ(stats["threads"], 0);
+}
+
+TEST_F(ServerChoice, WhatDoesNotFitIsRefused) {
+    for (const std::string options :
+         {"--engine unix:socket --threads 2", "--engine unix:socket --workers 2", "--token-file token", "--tls",
+          "--tls-authority a.pem", "--engine local --patience 3", "--engine processes --tls-key k",
+          "--engine unix:socket --patience -1", "--engine unix:socket --tls-key k",
+          "--engine unix:", "--engine host:99999"}) {
+        const Outcome outcome = run("detect a.npy --quiet " + options);
+        EXPECT_EQ(outcome.status, 2) << options << ": " << outcome.err;
+    }
+    const Outcome away = run("detect a.npy --quiet --engine unix:none --patience 0.2");
+    EXPECT_EQ(away.status, 6);
+    EXPECT_EQ(away.err.find("octopair: unix:none: no server answers"), 0u) << away.err;
+    EXPECT_NE(run("info").out.find(", server (ADDRESS)\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octopair::test

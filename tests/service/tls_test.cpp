@@ -1,0 +1,104 @@
+// Connections under TLS, and certificates instead of tokens.
+#include "service/guarded.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Tls : public testing::Test {
+protected:
+    static const Certificates& files() {
+        static const Certificates made;
+        return made;
+    }
+    static service::ServerOptions secured(const std::string& name, bool clients_too = false) {
+        service::ServerOptions options = options_at("127.0.0.1:0");
+        options.tls = {files().pem(name), files().key(name), clients_too ? files().pem("authority") : ""};
+        return options;
+    }
+    static ClientOptions trusting(const std::string& name = "") {
+        ClientOptions options;
+        options.authority = files().pem("authority");
+        if (!name.empty()) options.certificate = files().pem(name);
+        if (!name.empty()) options.key = files().key(name);
+        return options;
+    }
+    static std::string failure_of(const std::string& address, const ClientOptions& options) {
+        return error_of(ErrorCode::engine_failed, [&] { ask(address, options); });
+    }
+    static std::string refusal_of(const service::ServerOptions& options, ErrorCode code) {
+        return error_of(code, [&] { const service::Server server(options, silent()); });
+    }
+};
+
+TEST_F(Tls, ClientsFindTheirPairs) {
+    const service::Server server(secured("server"), silent());
+    EXPECT_EQ(ask(server.address().text(), trusting()), right_answer);
+    EXPECT_EQ(ask("localhost:" + server.address().port, trusting()), right_answer);
+}
+
+TEST_F(Tls, OtherMachinesMayReachAProtectedServer) {
+    service::ServerOptions options = secured("server", true);
+    options.listen = service::parse_address("0.0.0.0:0");
+    const service::Server server(options, silent());
+    EXPECT_EQ(ask("127.0.0.1:" + server.address().port, trusting("client")), right_answer);
+    options = secured("server");
+    options.listen = service::parse_address("0.0.0.0:0");
+    EXPECT_EQ(refusal_of(options, ErrorCode::usage),
+              "0.0.0.0:0: other machines can reach it; that needs tokens or an authority for client certificates");
+}
+
+TEST_F(Tls, ClientsDoNotTrustEverybody) {
+    const service::Server expired(secured("expired-server"), silent()), stranger(secured("stranger"), silent());
+    EXPECT_NE(failure_of(expired.address().text(), trusting()).find("certificate verify failed"), std::string::npos);
+    EXPECT_NE(failure_of(stranger.address().text(), trusting()).find("certificate verify failed"), std::string::npos);
+}
+
+TEST_F(Tls, ClientsShowTheirCertificates) {
+    const service::Server server(secured("server", true), silent());
+    const std::string address = server.address().text();
+    EXPECT_EQ(ask(address, trusting("client")), right_answer);
+    for (const std::string name : {"", "expired-client", "stranger"}) {
+        EXPECT_TRUE(failure_of(address, trusting(name)).starts_with(address + ": no server answers: ")) << name;
+    }
+    EXPECT_EQ(ask(address, trusting("client")), right_answer);
+}
+
+TEST_F(Tls, PlainAndEncryptedDoNotMix) {
+    const service::Server encrypted(secured("server"), silent()), plain(options_at("127.0.0.1:0"), silent());
+    for (const auto& [server, options] : {std::pair(&encrypted, ClientOptions()), std::pair(&plain, trusting())}) {
+        const std::string address = server->address().text();
+        EXPECT_TRUE(failure_of(address, options).starts_with(address + ": no server answers: "));
+    }
+    EXPECT_EQ(ask(encrypted.address().text(), trusting()), right_answer);
+    EXPECT_EQ(ask(plain.address().text(), {}), right_answer);
+}
+
+TEST_F(Tls, FilesThatDoNotFitAreRefused) {
+    service::ServerOptions options = secured("server");
+    options.tls.key = files().key("client");
+    EXPECT_EQ(refusal_of(options, ErrorCode::bad_input),
+              files().key("client") + ": is not the key of " + files().pem("server"));
+    options.tls.key = "";
+    EXPECT_EQ(refusal_of(options, ErrorCode::usage), "a certificate needs its key, and a key its certificate");
+    options.tls = {files().key("server"), files().key("server"), ""};
+    EXPECT_EQ(refusal_of(options, ErrorCode::bad_input), files().key("server") + ": holds no certificate (PEM)");
+    options.tls = {files().pem("server"), files().key("server"), files().key("client")};
+    EXPECT_EQ(refusal_of(options, ErrorCode::bad_input), files().key("client") + ": holds no certificate (PEM)");
+    options.tls = {"", "", files().pem("authority")};
+    EXPECT_EQ(refusal_of(options, ErrorCode::usage),
+              "an authority for clients needs a certificate of the server as well");
+}
+
+TEST_F(Tls, KeysOthersMayReadAreRefused) {
+    const TemporaryDirectory folder;
+    service::ServerOptions options = secured("server");
+    options.tls.key = folder.file("key");
+    write_secret(options.tls.key, read_file(files().key("server")));
+    { const service::Server server(options, silent()); }
+    ASSERT_EQ(::chmod(options.tls.key.c_str(), 0644), 0);
+    EXPECT_EQ(refusal_of(options, ErrorCode::usage),
+              options.tls.key + ": others may read it; a secret is its owner's alone (chmod 600)");
+}
+
+}  // namespace
+}  // namespace octopair::test
