@@ -22,7 +22,8 @@ def load(path):
 
 def machine(results):
     """What measured."""
-    others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json")]
+    others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
+              *results.glob("service.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
     said = files[0]
     commits = sorted({file["commit"] for file in files})
@@ -245,9 +246,48 @@ def engine_choice(results):
     return "\n".join(lines)
 
 
+def service(results):
+    """A row for each job and order, and one for a scene's frame: here, and on a server."""
+    study = load(results / "service.json")
+    lines = ["| milliseconds | local | on a server | against local | `submit()` |", "|---|--:|--:|--:|--:|"]
+    rows = [(f"{row['objects']:,} boxes, {row['order']}", row) for row in study["against_local"]]
+    scene = study["scene"]
+    rows.append((f"a frame of a scene of {scene['objects']:,}, {scene['moved']:,} moved", scene))
+    for title, row in rows:
+        local, remote = row["local_seconds"], row["remote_seconds"]
+        submit = f"{row['submit_seconds'] * 1e3:.3f}" if "submit_seconds" in row else ""
+        same = "" if row["same"] else ", other pairs"
+        cells = [title + same, milliseconds(local), milliseconds(remote), f"{remote / local:.2f} x", submit]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def service_crowds(results):
+    """Many clients at once."""
+    lines = ["| clients | boxes a job | jobs | wrong or lost | jobs a second | ms: median | 99% | slowest |",
+             "|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    for row in load(results / "service.json")["crowds"]:
+        times = [milliseconds(row[key]) for key in ("median_seconds", "p99_seconds", "slowest_seconds")]
+        cells = [row["clients"], f"{row['objects']:,}", f"{row['jobs']:,}", row["wrong"],
+                 f"{row['jobs_per_second']:,.0f}", *times]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+def service_aims(results):
+    """Aims and what was measured."""
+    lines = ["| what | aim | measured | |", "|---|--:|--:|---|"]
+    for aim in load(results / "service.json")["aims"]:
+        cells = [aim["what"], f"at {'most' if aim['at_most'] else 'least'} {aim['bound']:,g}", f"{aim['reached']:,.3g}"
+                 if aim["reached"] < 1000 else f"{aim['reached']:,.0f}", "" if aim["kept"] else "missed"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "scenes": scenes, "frames": frames,
           "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
-          "engine_memory": engine_memory, "engine_choice": engine_choice}
+          "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
+          "service_crowds": service_crowds, "service_aims": service_aims}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
     BLOCKS[f"peers_{table}"] = lambda results, table=table: peers(results, table)
 

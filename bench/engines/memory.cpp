@@ -1,8 +1,5 @@
 #include "engines/memory.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,6 +10,7 @@
 #include <thread>
 
 #include "engines/contenders.hpp"
+#include "measured_apart.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::bench {
@@ -107,27 +105,7 @@ std::vector<EngineMemoryCase> engine_memory_cases() {
 }
 
 EngineMemoryUse measure_memory(const EngineMemoryCase& which, unsigned width) {
-    int ends[2];
-    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("no process");
-    if (child == 0) {
-        EngineMemoryUse use;
-        try {
-            use = measure_here(which, width);
-        } catch (...) {
-            ::_exit(1);
-        }
-        ::_exit(::write(ends[1], &use, sizeof use) == ssize_t(sizeof use) ? 0 : 1);
-    }
-    ::close(ends[1]);
-    EngineMemoryUse use;
-    const bool told = ::read(ends[0], &use, sizeof use) == ssize_t(sizeof use);
-    ::close(ends[0]);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    if (!told || status != 0) throw std::runtime_error("the process that measures memory failed");
-    return use;
+    return measured_apart([&] { return measure_here(which, width); });
 }
 
 }  // namespace octopair::bench

@@ -1,12 +1,9 @@
 #include "frames/memory.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <stdexcept>
 
 #include "frames/motion.hpp"
+#include "measured_apart.hpp"
 #include "octopair/scene.hpp"
 #include "resident_memory.hpp"
 #include "samples/scenes.hpp"
@@ -55,27 +52,7 @@ std::vector<MemoryCase> memory_cases() {
 }
 
 MemoryUse measure_memory(const MemoryCase& which) {
-    int ends[2];
-    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("no process");
-    if (child == 0) {
-        MemoryUse use;
-        try {
-            use = measure_here(which);
-        } catch (...) {
-            ::_exit(1);
-        }
-        ::_exit(::write(ends[1], &use, sizeof use) == ssize_t(sizeof use) ? 0 : 1);
-    }
-    ::close(ends[1]);
-    MemoryUse use;
-    const bool told = ::read(ends[0], &use, sizeof use) == ssize_t(sizeof use);
-    ::close(ends[0]);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    if (!told || status != 0) throw std::runtime_error("the process that measures memory failed");
-    return use;
+    return measured_apart([&] { return measure_here(which); });
 }
 
 }  // namespace octopair::bench

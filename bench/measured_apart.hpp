@@ -1,0 +1,41 @@
+// Measuring memory in a process of its own, where no other case has left any.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <stdexcept>
+#include <type_traits>
+
+namespace octopair::bench {
+
+/// What `measure` returns, which goes through a pipe as it lies in memory. Forks, so it is to be called while the process
+/// has one thread. Throws std::runtime_error if the other process fails.
+template <typename Measure>
+auto measured_apart(const Measure& measure) {
+    using Use = decltype(measure());
+    static_assert(std::is_trivially_copyable_v<Use>);
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    const pid_t child = ::fork();
+    if (child < 0) throw std::runtime_error("no process");
+    if (child == 0) {
+        Use use;
+        try {
+            use = measure();
+        } catch (...) {
+            ::_exit(1);
+        }
+        ::_exit(::write(ends[1], &use, sizeof use) == ssize_t(sizeof use) ? 0 : 1);
+    }
+    ::close(ends[1]);
+    Use use;
+    const bool told = ::read(ends[0], &use, sizeof use) == ssize_t(sizeof use);
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (!told || status != 0) throw std::runtime_error("the process that measures memory failed");
+    return use;
+}
+
+}  // namespace octopair::bench

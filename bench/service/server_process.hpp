@@ -1,0 +1,27 @@
+// A server process of the program's own, on a Unix socket in a folder that goes with it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace octopair::bench {
+
+class ServerProcess {
+public:
+    /// `program`: octopair; `options`: of `octopair serve`, beside the address. Throws Error if it does not start.
+    ServerProcess(const std::string& program, const std::vector<std::string>& options);
+    ServerProcess(const ServerProcess&) = delete;
+    ServerProcess& operator=(const ServerProcess&) = delete;
+    ~ServerProcess();
+
+    std::string address() const { return "unix:" + (folder_ / "socket").string(); }
+
+private:
+    std::filesystem::path folder_;
+    pid_t process_ = -1;
+};
+
+}  // namespace octopair::bench
