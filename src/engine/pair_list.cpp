@@ -37,9 +37,9 @@ std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
         // A large block that has become too small gives way, so that a list does not hoard all sizes it ever had.
         const auto hoarded = [&](const auto& block) { return block.size() > block_pairs; };
         blocks_.erase(std::remove_if(free, blocks_.end(), hoarded), blocks_.end());
-        const std::size_t size = std::max(pairs, block_pairs);
-        if (room_) room_(size * sizeof(Pair));
-        blocks_.emplace_back(size);
+        const std::size_t fresh = std::max(pairs, block_pairs);
+        if (room_) room_(fresh * sizeof(Pair));
+        blocks_.emplace_back(fresh);
         found = blocks_.end() - 1;
     }
     std::swap(*found, blocks_[taken_]);

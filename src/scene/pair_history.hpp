@@ -34,7 +34,7 @@ public:
     using Room = std::function<void(std::uint64_t bytes)>;
 
     /// `room`: asked before memory is taken for pairs; what it throws is thrown on. May be none.
-    explicit PairHistory(Room room);
+    explicit PairHistory(Room room = {});
 
     /// The list as it will be after a full detection: to be filled, ascending, then taken over.
     PairList& fresh() {
