@@ -36,8 +36,12 @@ protected:
     std::stop_source stop_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Threads, Stream, ::testing::Values(1, 2, 3, 8),
-                         [](const auto& one) { return std::to_string(one.param); });
+/// Of more than one.
+class StreamOfThreads : public Stream {};
+
+std::string threads_of(const ::testing::TestParamInfo<unsigned>& info) { return std::to_string(info.param); }
+INSTANTIATE_TEST_SUITE_P(Threads, Stream, ::testing::Values(1, 2, 3, 8), threads_of);
+INSTANTIATE_TEST_SUITE_P(Threads, StreamOfThreads, ::testing::Values(2, 3, 8), threads_of);
 
 TEST_P(Stream, IsInTheOrderOfItsShares) {
     for (const std::uint64_t buffer : {1, 100, 100'000}) {
@@ -51,8 +55,7 @@ TEST_P(Stream, IsInTheOrderOfItsShares) {
 }
 
 /// A share that another thread runs does not keep the calling thread from running the next.
-TEST_P(Stream, RunsSharesSideBySide) {
-    if (GetParam() == 1) GTEST_SKIP() << "one thread";
+TEST_P(StreamOfThreads, RunSharesSideBySide) {
     constexpr std::size_t shares = 20;
     std::mutex mutex;
     std::condition_variable changed;

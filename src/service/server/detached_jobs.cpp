@@ -126,7 +126,7 @@ Submission DetachedJobs::begin_job(const std::string& owner, v1::JobSpec spec) {
     stored.algorithm = algorithm_version;
     stored.spec = std::move(spec);
     Submission submission;
-    if (host_.jobs.has(owner, stored.spec.id())) {
+    if (host_.jobs.look_up(owner, stored.spec.id())) {
         submission.upload = std::make_unique<StoredUpload>(std::move(stored));
         return submission;
     }
@@ -138,9 +138,8 @@ Submission DetachedJobs::begin_job(const std::string& owner, v1::JobSpec spec) {
 /// The job that was submitted before, if there is one.
 std::shared_ptr<ServerJob> DetachedJobs::find_same(const StoredUpload& upload) const {
     const std::string &owner = upload.stored().owner, &id = upload.stored().spec.id();
-    if (!host_.jobs.has(owner, id)) return {};
-    std::shared_ptr<ServerJob> known = host_.jobs.find(owner, id);
-    if (!known->detached() || known->input_hash() != upload.hash()) {
+    std::shared_ptr<ServerJob> known = host_.jobs.look_up(owner, id);
+    if (known && (!known->detached() || known->input_hash() != upload.hash())) {
         throw Error(ErrorCode::bad_input, "job " + id + " is there already, with other input or options");
     }
     return known;
@@ -168,9 +167,9 @@ std::shared_ptr<ServerJob> DetachedJobs::commit(Submission& submission) {
         (void)host_.jobs.enter(job);
     } catch (...) {
         host_.ledger.job_moved(*job, v1::QUEUED, v1::CANCELLED);
-        static_cast<StoredJob&>(*job->record()).remove();
         throw;
     }
+    upload.hand_over();
     host_.queue(job);
     return job;
 }

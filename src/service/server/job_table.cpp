@@ -44,10 +44,15 @@ std::shared_ptr<ServerJob> JobTable::enter(const std::shared_ptr<ServerJob>& job
 }
 
 std::shared_ptr<ServerJob> JobTable::find(const std::string& owner, const std::string& id) const {
+    std::shared_ptr<ServerJob> found = look_up(owner, id);
+    if (!found) throw Error(ErrorCode::bad_input, "there is no job " + id.substr(0, 36));
+    return found;
+}
+
+std::shared_ptr<ServerJob> JobTable::look_up(const std::string& owner, const std::string& id) const {
     const std::lock_guard lock(mutex_);
     const auto found = jobs_.find({owner, id});
-    if (found == jobs_.end()) throw Error(ErrorCode::bad_input, "there is no job " + id.substr(0, 36));
-    return found->second;
+    return found == jobs_.end() ? nullptr : found->second;
 }
 
 std::vector<std::shared_ptr<ServerJob>> JobTable::of(const std::string& owner, const std::string& after,
@@ -59,11 +64,6 @@ std::vector<std::shared_ptr<ServerJob>> JobTable::of(const std::string& owner, c
         jobs.push_back(at->second);
     }
     return jobs;
-}
-
-bool JobTable::has(const std::string& owner, const std::string& id) const {
-    const std::lock_guard lock(mutex_);
-    return jobs_.contains({owner, id});
 }
 
 std::vector<std::shared_ptr<ServerJob>> JobTable::all() const {

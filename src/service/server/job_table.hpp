@@ -54,7 +54,8 @@ public:
     std::shared_ptr<ServerJob> enter(const std::shared_ptr<ServerJob>& job);
     /// Throws Error{bad_input} if the owner has no such job.
     std::shared_ptr<ServerJob> find(const std::string& owner, const std::string& id) const;
-    bool has(const std::string& owner, const std::string& id) const;
+    /// The same, or null.
+    std::shared_ptr<ServerJob> look_up(const std::string& owner, const std::string& id) const;
     /// The owner's, ascending by id, those behind `after`, at most so many.
     std::vector<std::shared_ptr<ServerJob>> of(const std::string& owner, const std::string& after,
                                                std::size_t most) const;

@@ -61,6 +61,7 @@ StoredUpload::StoredUpload(StateFolder& folder, StoredSpec stored) : StoredUploa
     const std::uint64_t bytes = job_file_bytes(block_, missing_);
     disk_ = folder.disk().take(bytes + StateFolder::bytes_beside);
     base_ = folder.new_base();
+    job_path_ = base_ + ".job";
     file_ = File(base_ + ".job.part", File::Mode::create);
     try {
         file_.reserve(bytes);
@@ -73,7 +74,9 @@ StoredUpload::StoredUpload(StateFolder& folder, StoredSpec stored) : StoredUploa
 }
 
 StoredUpload::~StoredUpload() {
-    if (file_.open() && !committed_) remove_file(file_.path());
+    if (!file_.open() || handed_over_) return;
+    remove_file(file_.path());
+    remove_file(job_path_);
 }
 
 void StoredUpload::append(std::span<const std::byte> data) {
@@ -88,8 +91,7 @@ std::string StoredUpload::commit() {
     stored_.hash = hash_.digest();
     const std::string end = encode_job_end(block_, stored_.hash);
     file_.write(at_, std::as_bytes(std::span(end)));
-    file_.finish(base_ + ".job");
-    committed_ = true;
+    file_.finish(job_path_);
     return base_;
 }
 

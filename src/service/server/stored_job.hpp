@@ -54,7 +54,7 @@ public:
     explicit StoredUpload(StoredSpec stored);
     StoredUpload(const StoredUpload&) = delete;
     StoredUpload& operator=(const StoredUpload&) = delete;
-    /// Takes away what was not committed.
+    /// Takes away what was not handed over.
     ~StoredUpload() override;
 
     void append(std::span<const std::byte> data) override;
@@ -67,16 +67,18 @@ public:
     /// When it returns, the job is on the disk. Gives the base of its paths, and what it takes. Throws Error{io_failed}.
     std::string commit();
     Budget::Share take_disk() { return std::move(disk_); }
+    /// What was committed is another's to remove.
+    void hand_over() { handed_over_ = true; }
 
 private:
     StoredSpec stored_;
     JobHash hash_;
     std::uint64_t missing_ = 0;
-    std::string base_, block_;
+    std::string base_, job_path_, block_;
     Budget::Share disk_;
     File file_;
     std::uint64_t at_ = 0;
-    bool committed_ = false;
+    bool handed_over_ = false;
 };
 
 }  // namespace octopair::service
