@@ -34,7 +34,8 @@ struct ClientOptions {
 };
 
 /// `address`: unix:PATH or HOST:PORT. Throws Error{usage} for what is none, or options that do not fit together;
-/// Error{io_failed} for a file that cannot be read, Error{engine_failed} if the server cannot be reached.
+/// Error{io_failed} for a file that cannot be read, Error{bad_input} for one that holds no certificate or not its key,
+/// Error{engine_failed} if the server cannot be reached.
 std::unique_ptr<Engine> connect(std::string_view address, const ClientOptions& options = {});
 
 }  // namespace octopair

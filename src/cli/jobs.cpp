@@ -109,7 +109,12 @@ int run_status(const JobRequest& request) {
 int run_cancel(const JobRequest& request) {
     const Interrupt interrupt;
     JobClient client(request.server.address, client_options(request.server));
-    print(text_of(request, client.cancel(request.id, interrupt.token())), interrupt.token());
+    JobStatus status = client.cancel(request.id, interrupt.token());
+    if (request.release) {
+        status = client.wait(request.id, std::chrono::minutes(1), interrupt.token());
+        client.release(request.id, interrupt.token());
+    }
+    print(text_of(request, status), interrupt.token());
     return 0;
 }
 
@@ -126,10 +131,11 @@ public:
         }
         try {
             count_only ? count() : stream();
-        } catch (const Error&) {
+        } catch (const Error& error) {
             // What the job itself ended with is all that there is to collect.
             if (request_.release && has_no_result()) client_.release(request_.id, stop_);
-            throw;
+            if (error.code() != ErrorCode::cancelled || stop_.stop_requested()) throw;
+            throw Error(ErrorCode::engine_failed, "job " + request_.id + " was cancelled");
         }
         if (request_.release) client_.release(request_.id, stop_);
     }
@@ -203,8 +209,9 @@ void add_status(CLI::App& app, Action& action) {
         ->needs(id);
     command->add_flag("--json", request->json, "as JSON");
     add_server_address(*command, request->server);
-    command->callback([request, &action] {
+    command->callback([request, id, &action] {
         check_server_named(request->server);
+        if (id->count() > 0 && request->id.empty()) throw Error(ErrorCode::usage, "ID: an empty one is no job's");
         action = [request] { return request->id.empty() ? run_list(*request) : run_status(*request); };
     });
 }
@@ -226,6 +233,7 @@ void add_cancel(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("cancel", "end a job of a server");
     const auto request = std::make_shared<JobRequest>();
     command->add_option("ID", request->id, "of the job")->required();
+    command->add_flag("--release", request->release, "the server forgets it, however it ended");
     command->add_flag("--json", request->json, "as JSON");
     add_server_address(*command, request->server);
     command->callback([request, &action] {

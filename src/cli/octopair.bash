@@ -90,7 +90,7 @@ _octopair() {
         status) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --wait --json --help $asked" -- "$current") ;;
         result)
             mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --output --keep --release --quiet --help $asked" -- "$current") ;;
-        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --help $asked" -- "$current") ;;
+        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --release --help $asked" -- "$current") ;;
         info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
     esac
 }

@@ -75,9 +75,10 @@ void add_state(CLI::App& command, service::ServerOptions& options) {
     command
         .add_option("--state", options.state_folder,
                     "a folder for detached jobs, which outlive the server (default: there are none)")
-        ->type_name("DIR");
+        ->type_name("DIR")
+        ->check([](const std::string& folder) { return folder.empty() ? "a folder is wanted" : ""; });
     add_seconds(command, {"--keep", "SECONDS", "that results of detached jobs wait to be released (default 86400)"},
-                options.keep, 0);
+                options.keep, 1);
 }
 
 void add_access(CLI::App& command, service::ServerOptions& options) {

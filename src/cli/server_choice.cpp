@@ -25,7 +25,7 @@ void add_server_options(CLI::App& command, ServerChoice& choice) {
     command
         .add_option_function<std::string>(
             "--patience", [&choice](const std::string& text) { choice.patience = parse_length("--patience", text); },
-            "of a server: how long it may be away (default 30)")
+            "of a server that was there: how long it may be away (default 30)")
         ->type_name("SECONDS");
 }
 

@@ -1,10 +1,11 @@
 // What a server shows to Prometheus.
 #include "service/metrics_page.hpp"
+#include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
-class Metrics : public testing::Test {
+class Metrics : public ::testing::Test {
 protected:
     std::string socket() const { return "unix:" + folder_.file("socket"); }
 
@@ -14,7 +15,7 @@ protected:
         return *server_;
     }
 
-    testing::AssertionResult comes(const std::string& line) const { return page_has(log_, line); }
+    ::testing::AssertionResult comes(const std::string& line) const { return page_has(log_, line); }
     std::string page() const { return metrics_page(log_.str()); }
 
     TemporaryDirectory folder_;
@@ -37,6 +38,22 @@ TEST_F(Metrics, CountJobs) {
     for (const std::string direction : {"received", "sent"}) {
         EXPECT_EQ(page().find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page();
     }
+}
+
+/// What does not fit into one message is found twice, the first time not to the end; and once for the next job that may be
+/// as large.
+TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
+    serve(options_at(socket()));
+    const auto client = connect(socket());
+    const std::vector<Box3f> crowd(testing::scaled(8000, 2));
+    for (const char* const done : {"1", "2"}) {
+        std::uint64_t pairs = 0;
+        (void)client->stream_pairs({std::span(crowd), {}}, [&](std::span<const Pair> some) { pairs += some.size(); });
+        EXPECT_EQ(pairs, crowd.size() * (crowd.size() - 1) / 2);
+        EXPECT_TRUE(comes(std::string("octopair_jobs_ended_total{outcome=\"done\"} ") + done));
+        EXPECT_TRUE(comes("octopair_jobs_ended_total{outcome=\"cancelled\"} 1"));
+    }
+    EXPECT_EQ(client->count_pairs({std::span(crowd), {}}), crowd.size() * (crowd.size() - 1) / 2);
 }
 
 TEST_F(Metrics, CountRefusals) {

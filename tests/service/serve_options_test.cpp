@@ -38,6 +38,8 @@ TEST_F(ServeOptions, WrongValuesNameFileAndKey) {
     EXPECT_EQ(refused("max-memory = \"8 GB\"\n"),
               "octopair: c.toml: max-memory: --max-memory: '8 GB' is no number of bytes, as 65536, 64K, 4G\n");
     EXPECT_EQ(refused("stall = 0\n"), "octopair: c.toml: stall: --stall: at least 1 second\n");
+    EXPECT_EQ(refused("keep = 0\n"), "octopair: c.toml: keep: --keep: at least 1 second\n");
+    EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: a folder is wanted\n");
     EXPECT_EQ(refused("max-jobs = [1, 2]\n"), "octopair: c.toml: max-jobs: one value is wanted\n");
     EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not known"), 0u);
 }

@@ -89,6 +89,19 @@ TEST_F(Tls, FilesThatDoNotFitAreRefused) {
               "an authority for clients needs a certificate of the server as well");
 }
 
+TEST_F(Tls, FilesOfAClientThatDoNotFitAreRefused) {
+    const auto refusal = [](const ClientOptions& options) {
+        return error_of(ErrorCode::bad_input, [&] { (void)connect("127.0.0.1:1", options); });
+    };
+    ClientOptions options = trusting("client");
+    options.key = files().key("server");
+    EXPECT_EQ(refusal(options), files().key("server") + ": is not the key of " + files().pem("client"));
+    options.certificate = files().key("client");
+    EXPECT_EQ(refusal(options), files().key("client") + ": holds no certificate (PEM)");
+    options.authority = files().key("client");
+    EXPECT_EQ(refusal(options), files().key("client") + ": holds no certificate (PEM)");
+}
+
 TEST_F(Tls, KeysOthersMayReadAreRefused) {
     const TemporaryDirectory folder;
     service::ServerOptions options = secured("server");

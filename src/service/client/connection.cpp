@@ -9,6 +9,7 @@
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/address.hpp"
+#include "service/protocol/certificate.hpp"
 #include "service/protocol/library.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/private_file.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 /// For a call to go there and back.
 constexpr std::chrono::milliseconds shortest_wait(1000);
-
-std::string contents_of(const std::string& file) { return file.empty() ? std::string() : read_small_file(file); }
 
 bool encrypts(const ClientOptions& options) {
     return options.tls || !options.authority.empty() || !options.certificate.empty();
@@ -37,8 +36,17 @@ std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address,
         }
         return grpc::InsecureChannelCredentials();
     }
-    const std::string key = options.key.empty() ? std::string() : read_private_file(options.key);
-    return grpc::SslCredentials({contents_of(options.authority), key, contents_of(options.certificate)});
+    grpc::SslCredentialsOptions files;
+    if (!options.authority.empty()) {
+        files.pem_root_certs = read_small_file(options.authority);
+        check_certificate({files.pem_root_certs, options.authority});
+    }
+    if (!options.certificate.empty()) {
+        files.pem_cert_chain = read_small_file(options.certificate);
+        files.pem_private_key = read_private_file(options.key);
+        check_key({files.pem_cert_chain, options.certificate}, {files.pem_private_key, options.key});
+    }
+    return grpc::SslCredentials(files);
 }
 
 grpc::ChannelArguments arguments() {
@@ -62,7 +70,9 @@ bool takes_no_more(const grpc::Status& status) { return status.error_message().f
 
 /// The call was lost, rather than never sent.
 bool was_connected(const grpc::Status& status) {
-    return !takes_no_more(status) && status.error_message().find("failed to connect") == std::string::npos;
+    const std::string words = status.error_message();
+    return !takes_no_more(status) && words.find("failed to connect") == std::string::npos &&
+           words.find("empty address list") == std::string::npos;
 }
 
 /// What may stand in a call's metadata; gRPC ends the program at anything else.

@@ -34,6 +34,9 @@ public:
     /// What the server is. Throws as persist.
     v1::ServerDescription describe();
 
+    /// Jobs with an input of at most so many bytes had results that fit into one message, as far as is known.
+    std::atomic<std::uint64_t>& small_input() { return small_input_; }
+
     /// The server did something: it is not away.
     void heard() {
         heard_ = Clock::now();
@@ -75,6 +78,7 @@ private:
     std::unique_ptr<v1::Octopair::Stub> calls_;
     std::atomic<Clock::time_point> heard_ = Clock::time_point();
     std::atomic<bool> met_ = false;  // the server was there once
+    std::atomic<std::uint64_t> small_input_ = ~std::uint64_t(0);
 };
 
 }  // namespace octopair::service

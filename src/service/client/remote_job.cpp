@@ -25,18 +25,29 @@ RemoteJob::RemoteJob(Connection& connection, const Engine::Request& request, con
                      const Engine::Control& control)
     : connection_(connection),
       stop_(control.stop),
-      upload_(spec_of(request, is_pairs_wanted(output)), arrays_of(request)),
+      pairs_wanted_(is_pairs_wanted(output)),
+      upload_(spec_of(request, pairs_wanted_), arrays_of(request)),
       received_(connection.server(), output, control) {}
 
-/// False if input or result are too large for it.
+/// False if input or result are too large for it, or may be by what is known of other jobs: a result that does not fit was
+/// found in vain.
 bool RemoteJob::run_small() {
-    if (upload_.bytes() > most_small_bytes) return false;
+    const std::uint64_t bytes = upload_.bytes();
+    if (bytes > most_small_bytes || (pairs_wanted_ && bytes > connection_.small_input())) return false;
     try {
         connection_.persist(stop_, [&] { return call_small(); });
         return true;
     } catch (const LimitError& error) {
         if (error.name() != "message_bytes") throw;
+        connection_.small_input() = bytes / 2;
         return false;
+    }
+}
+
+void RemoteJob::raise_small_input() {
+    auto& known = connection_.small_input();
+    std::uint64_t before = known;
+    while (before < upload_.bytes() && !known.compare_exchange_weak(before, upload_.bytes())) {
     }
 }
 
@@ -82,6 +93,7 @@ Summary RemoteJob::run() {
         if (!run_small()) {
             upload_.set_id(new_id());
             connection_.persist(stop_, [&] { return call_stream(); });
+            if (received_.pairs() * sizeof(Pair) <= piece_bytes) raise_small_input();
         }
     }
     Summary summary = received_.finish();

@@ -22,12 +22,14 @@ public:
 
 private:
     bool run_small();
+    void raise_small_input();
     grpc::Status call_small();
     grpc::Status call_stream();
     void begin_attempt();
 
     Connection& connection_;
     const std::stop_token stop_;
+    const bool pairs_wanted_;
     Uploader upload_;
     Received received_;
 };

@@ -132,16 +132,24 @@ public:
     void OnDone() override { self_.reset(); }
 
     void job_changed() override {
-        if (!job_->ended()) return;
+        if (!job_->ended()) {
+            if (job_->pairs().ready() <= piece_bytes / sizeof(Pair)) return;
+            answer({}, too_large());
+            return job_->cancel();
+        }
         Download::Next next = Download(job_, job_->spec().offset()).next();
         if (next.kind == Download::Next::Kind::message) {
-            next.status = status_of(LimitError("message_bytes", most_message_bytes,
-                                               "the result is too large for one message; ask for it in a stream"));
+            next.status = too_large();
         }
         answer(next.message, next.status);
     }
 
 private:
+    static grpc::Status too_large() {
+        return status_of(LimitError("message_bytes", most_message_bytes,
+                                    "the result is too large for one message; ask for it in a stream"));
+    }
+
     /// Once.
     void answer(const grpc::ByteBuffer& message, const grpc::Status& status) {
         {

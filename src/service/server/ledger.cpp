@@ -43,6 +43,13 @@ void Ledger::limit_refused(const std::string& owner, const LimitError& error) {
               {{"owner", owner}, {"limit", error.name()}, {"allowed", error.allowed()}, {"reason", error.what()}});
 }
 
+void Ledger::connections_refused(std::uint64_t allowed, std::uint64_t refused) {
+    log_event(*log_, spdlog::level::warn, "refused",
+              {{"limit", "connections"},
+               {"allowed", allowed},
+               {"reason", std::to_string(refused) + " connections refused since the start"}});
+}
+
 void Ledger::call_refused(const std::string& peer, const grpc::Status& why) {
     const bool going = why.error_code() == grpc::StatusCode::UNAVAILABLE;
     metrics_.call_refused(going ? "going down" : "unauthenticated");

@@ -23,6 +23,8 @@ public:
     void job_moved(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to);
     /// Somebody asked for more than a limit allows.
     void limit_refused(const std::string& owner, const LimitError& error);
+    /// There are more connections than are allowed; `refused` were, since the start.
+    void connections_refused(std::uint64_t allowed, std::uint64_t refused);
     /// A call was not let in. `peer`: as gRPC names it.
     void call_refused(const std::string& peer, const grpc::Status& why);
     void received(std::uint64_t bytes) { metrics_.received(bytes); }

@@ -26,6 +26,8 @@ namespace octopair::service {
 namespace {
 
 constexpr int backlog = 1024;
+constexpr std::chrono::seconds apart(1);  // looks for what was closed, and words about refusals
+constexpr std::size_t most_leaving = 64;
 
 ino_t socket_of(int descriptor) {
     struct stat found {};
@@ -39,6 +41,14 @@ std::string goaway(const std::string& words) {
     frames += {char(length >> 16), char(length >> 8), char(length), 7, 0, 0, 0, 0, 0};
     frames += std::string("\0\0\0\0\0\0\0\13", 8);
     return frames + words;
+}
+
+/// Whether there is a socket. Throws Error{io_failed} for what is none.
+bool is_there(const Address& address) {
+    struct stat found {};
+    if (::lstat(address.path.c_str(), &found) != 0) return false;
+    if (!S_ISSOCK(found.st_mode)) throw Error(ErrorCode::io_failed, address.text() + ": there is a file already");
+    return true;
 }
 
 }  // namespace
@@ -55,8 +65,9 @@ Listener::~Listener() {
     if (address_.is_unix()) ::unlink(address_.path.c_str());
 }
 
-/// Whoever holds the lock may take away what lies at the path: its server is dead.
+/// Whoever holds the lock may take away a socket at the path: its server is dead.
 void Listener::bind_unix() {
+    (void)is_there(address_);
     const std::string lock = address_.path + ".lock";
     lock_ = Descriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!lock_.open()) fail_io(lock, "cannot open", errno);
@@ -66,11 +77,7 @@ void Listener::bind_unix() {
         }
         fail_io(lock, "cannot lock", errno);
     }
-    struct stat found {};
-    if (::lstat(address_.path.c_str(), &found) == 0) {
-        if (!S_ISSOCK(found.st_mode)) throw Error(ErrorCode::io_failed, address_.text() + ": there is a file already");
-        if (::unlink(address_.path.c_str()) != 0) fail_io(address_.text(), "cannot replace", errno);
-    }
+    if (is_there(address_) && ::unlink(address_.path.c_str()) != 0) fail_io(address_.text(), "cannot replace", errno);
     socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!socket_.open()) fail_io(address_.text(), "cannot listen", errno);
     sockaddr_un name{};
@@ -125,11 +132,12 @@ void Listener::stop() {
 }
 
 void Listener::take_connections() {
-    constexpr int apart = 1000;  // milliseconds
+    constexpr int look = std::chrono::milliseconds(apart).count();
     std::array<pollfd, 2> watched = {{{socket_.number(), POLLIN, 0}, {wake_.number(), POLLIN, 0}}};
     for (int ready = 0; ready >= 0 || errno == EINTR;) {
-        ready = ::poll(watched.data(), watched.size(), known_.empty() ? -1 : apart);
+        ready = ::poll(watched.data(), watched.size(), known_.empty() && leaving_.empty() ? -1 : look);
         if (ready == 0) forget_closed();
+        close_refused();
         if (ready <= 0) continue;
         if (watched[1].revents != 0) return;
         Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -161,8 +169,12 @@ void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
     const std::uint64_t most = terms_.most_connections;
     if (known_.size() >= forget_from_ || (most > 0 && known_.size() >= most)) forget_closed();
-    if (most > 0 && known_.size() >= most)
-        return refuse(connection, "at most " + std::to_string(most) + " connections");
+    if (most > 0 && known_.size() >= most) {
+        refuse(connection, "at most " + std::to_string(most) + " connections");
+        if (leaving_.size() >= most_leaving) leaving_.pop_front();
+        leaving_.push_back({std::move(connection), std::chrono::steady_clock::now()});
+        return;
+    }
     if (!spare_.open()) take_spare();
     if (!address_.is_unix()) {
         const int on = 1;
@@ -191,9 +203,21 @@ void Listener::forget_closed() {
 
 void Listener::refuse(const Descriptor& connection, const std::string& why) {
     ++refused_;
-    if (terms_.encrypted) return;
-    const std::string frames = goaway("octopair: " + why);
-    (void)::send(connection.number(), frames.data(), frames.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    const auto now = std::chrono::steady_clock::now();
+    if (terms_.refused && now - told_ >= apart) {
+        told_ = now;
+        terms_.refused();
+    }
+    if (!terms_.encrypted) {
+        const std::string frames = goaway("octopair: " + why);
+        (void)::send(connection.number(), frames.data(), frames.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    }
+    (void)::shutdown(connection.number(), SHUT_WR);
+}
+
+void Listener::close_refused() {
+    const auto now = std::chrono::steady_clock::now();
+    while (!leaving_.empty() && now - leaving_.front().since >= apart) leaving_.pop_front();
 }
 
 }  // namespace octopair::service

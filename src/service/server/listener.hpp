@@ -7,7 +7,9 @@
 #include <sys/stat.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <thread>
@@ -36,8 +38,9 @@ public:
         std::uint64_t most_connections = 0;  ///< 0: no limit
         bool encrypted = false;              ///< then a refusal cannot say why
         std::function<void(Descriptor)> accept;
+        std::function<void()> refused;  ///< not told of each one in a flood
     };
-    /// From now on connections are accepted, on a thread of its own; `terms.accept` is called there.
+    /// From now on connections are accepted, on a thread of its own; the functions of `terms` are called there.
     void start(Terms terms);
     /// No more.
     void stop();
@@ -51,6 +54,12 @@ private:
         ino_t socket;
     };
 
+    /// One that was told why it is refused. Closed at once, it might not read that: its own words would find nobody.
+    struct Refused {
+        Descriptor connection;
+        std::chrono::steady_clock::time_point since;
+    };
+
     void bind_unix();
     void bind_tcp(const std::string& unprotected);
     void take_connections();
@@ -60,12 +69,15 @@ private:
     void refuse_one_more();
     void take_spare();
     void refuse(const Descriptor& connection, const std::string& why);
+    void close_refused();
 
     Address address_;
     Terms terms_;
     Descriptor lock_, socket_, wake_;
     Descriptor spare_;  // given up to tell one more that there are no more
     std::vector<Known> known_;
+    std::deque<Refused> leaving_;
+    std::chrono::steady_clock::time_point told_;  // of a refusal
     std::size_t forget_from_ = 64;
     std::atomic<std::uint64_t> connections_ = 0, refused_ = 0;
     std::thread thread_;

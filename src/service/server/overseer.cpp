@@ -1,5 +1,8 @@
 #include "service/server/overseer.hpp"
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace octopair::service {
@@ -36,6 +39,13 @@ void Overseer::look_around() {
         }
         lock.lock();
     }
+}
+
+LimitError ran_too_long(const std::string& what, double most_seconds) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), most_seconds).ptr;
+    return {"job_seconds", std::uint64_t(std::ceil(most_seconds)),
+            "job_seconds: " + what + " ran longer than the " + std::string(text.data(), end) + " s that one may take"};
 }
 
 }  // namespace octopair::service

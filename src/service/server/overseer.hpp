@@ -5,8 +5,11 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "service/protocol/status.hpp"
 
 namespace octopair::service {
 
@@ -39,5 +42,8 @@ private:
     bool ending_ = false;
     std::thread thread_;
 };
+
+/// The limit that `what` ("the job") ran into.
+LimitError ran_too_long(const std::string& what, double most_seconds);
 
 }  // namespace octopair::service

@@ -1,7 +1,6 @@
 #include "service/server/scene_call.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <condition_variable>
 #include <cstring>
 #include <memory>
@@ -244,12 +243,7 @@ private:
                        "stall_seconds: nothing came for " + std::to_string(seconds) + " s in the middle of a frame"));
     }
 
-    grpc::Status stepped_too_long() {
-        const auto seconds = std::uint64_t(std::ceil(host_.options.limits.job_seconds));
-        return refused(LimitError(
-            "job_seconds", seconds,
-            "job_seconds: the step ran longer than the " + std::to_string(seconds) + " s that one may take"));
-    }
+    grpc::Status stepped_too_long() { return refused(ran_too_long("the step", host_.options.limits.job_seconds)); }
 
     Host& host_;
     grpc::CallbackServerContext& context_;

@@ -161,8 +161,10 @@ public:
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "gRPC does not start");
         if (options.metrics) show_metrics(*options.metrics);
-        listener_.start({options.limits.connections, !options.tls.certificate.empty(),
-                         [this](Descriptor connection) { hand_over(std::move(connection)); }});
+        listener_.start(
+            {options.limits.connections, !options.tls.certificate.empty(),
+             [this](Descriptor connection) { hand_over(std::move(connection)); },
+             [this] { host_.ledger.connections_refused(host_.options.limits.connections, listener_.refused()); }});
     }
 
     ~State() {

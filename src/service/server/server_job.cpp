@@ -1,7 +1,6 @@
 #include "service/server/server_job.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -245,10 +244,7 @@ void ServerJob::look(Clock::time_point now) {
         const std::chrono::duration<double> ran = now - began_;
         if (state_ != v1::RUNNING || parts_.most_seconds <= 0 || ran.count() <= parts_.most_seconds) return;
     }
-    const auto seconds = std::uint64_t(std::ceil(parts_.most_seconds));
-    fail(failure_of(
-        LimitError("job_seconds", seconds,
-                   "job_seconds: the job ran longer than the " + std::to_string(seconds) + " s that one may take")));
+    fail(failure_of(ran_too_long("the job", parts_.most_seconds)));
 }
 
 std::optional<ServerJob::Clock::time_point> ServerJob::ended_at() const {

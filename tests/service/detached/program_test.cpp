@@ -65,6 +65,20 @@ TEST_F(JobProgramTest, ShowsATokenWhereOneIsWanted) {
     EXPECT_NE(outcome.err.find("there is no job"), std::string::npos) << outcome.err;
 }
 
+TEST_F(JobProgramTest, TellsWhatWasCancelled) {
+    save_boxes("a.npy", {0, 0.5, 3});
+    const std::string id = "01234567-89ab-cdef-0123-456789abcdef";
+    ASSERT_EQ(shell("\"$P\" generate coincident --objects 200000 --output crowd.npy").status, 0);
+    const Outcome outcome = with_server("\"$P\" submit crowd.npy --count-only --id " + id + "\n\"$P\" cancel " + id +
+                                        " >cancelled; \"$P\" status --wait 60 " + id + "; \"$P\" result " + id);
+    EXPECT_EQ(outcome.status, 6);
+    EXPECT_EQ(outcome.out, id + "\n" + id + "  cancelled, 200,000 objects\n");
+    EXPECT_EQ(outcome.err, "octopair: job " + id + " was cancelled\n");
+    const Outcome released = with_server("\"$P\" cancel --release " + id + "; \"$P\" status");
+    EXPECT_EQ(released.status, 0) << released.err;
+    EXPECT_EQ(released.out, id + "  cancelled, 200,000 objects\n") << "a job is there still";
+}
+
 TEST_F(JobProgramTest, SaysWhatIsWrong) {
     save_boxes("a.npy", {0, 0.5, 3});
     const std::string id = " 01234567-89ab-cdef-0123-456789abcdef";
@@ -75,6 +89,7 @@ TEST_F(JobProgramTest, SaysWhatIsWrong) {
     EXPECT_EQ(with_server("\"$P\" submit a.npy --id x").status, 3);
     EXPECT_EQ(with_server("\"$P\" submit a.npy --id" + id + " && \"$P\" submit a.npy --margin 1 --id" + id).status, 3);
     EXPECT_EQ(with_server("\"$P\" submit a.npy", "--state /proc/none").status, 6);
+    EXPECT_EQ(with_server("\"$P\" status ''").status, 2);
 }
 
 }  // namespace
