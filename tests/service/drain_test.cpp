@@ -105,12 +105,12 @@ constexpr const char* functions = R"(
         n=$1; shift
         "$P" serve --listen unix:socket --threads 1 "$@" 2>log$n & child=$!
         for i in $(seq 1200); do
-            grep -q started log$n && return
+            grep -qs started log$n && return
             kill -0 $child 2>/dev/null || return
             sleep 0.05
         done
     }
-    says() { for i in $(seq 1200); do grep -q "$2" log$1 && return; sleep 0.05; done; echo "log$1 never says $2"; }
+    says() { for i in $(seq 1200); do grep -qs "$2" log$1 && return; sleep 0.05; done; echo "log$1 never says $2"; }
     )";
 
 class ServeProgram : public ProgramTest {

@@ -18,7 +18,7 @@ protected:
     Outcome with_server(const std::string& lines) const {
         return shell(R"(chmod 600 tokens token wrong
             "$P" serve --listen unix:socket --threads 1 --tokens tokens 2>log & child=$!
-            for i in $(seq 1200); do grep -q started log && break; sleep 0.05; done
+            for i in $(seq 1200); do grep -qs started log && break; sleep 0.05; done
             D='detect a.npy --engine unix:socket'
             )" + lines +
                      "\nstatus=$?; kill $child; wait $child; exit $status");

@@ -127,7 +127,8 @@ void Connection::Patience::wait_or_throw(const grpc::Status& status, const std::
     constexpr std::chrono::milliseconds apart(50);
     const auto now = Clock::now();
     if (away_since_ == Clock::time_point() || connection_.heard_.load() > away_since_) away_since_ = now;
-    std::this_thread::sleep_for(apart);
+    // gRPC would connect again at once, thousands of times a second.
+    std::this_thread::sleep_for(takes_no_more(status) ? 4 * apart : apart);
     // gRPC only connects while somebody waits in it; a call to a server that never answers would wait for longer.
     do {
         throw_if_stopped(stop);

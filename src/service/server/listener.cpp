@@ -17,6 +17,8 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "base/io_failure.hpp"
 #include "octopair/error.hpp"
@@ -26,7 +28,8 @@ namespace octopair::service {
 namespace {
 
 constexpr int backlog = 1024;
-constexpr std::chrono::seconds apart(1);  // looks for what was closed, and words about refusals
+constexpr std::chrono::seconds apart(1);         // looks for what was closed, and words about refusals
+constexpr std::chrono::milliseconds leave(250);  // until a refused connection is told why, and until it is closed
 constexpr std::size_t most_leaving = 64;
 
 ino_t socket_of(int descriptor) {
@@ -34,13 +37,18 @@ ino_t socket_of(int descriptor) {
     return ::fstat(descriptor, &found) == 0 && S_ISSOCK(found.st_mode) ? found.st_ino : 0;
 }
 
-/// HTTP/2 (RFC 9113): empty settings, then GOAWAY for no stream, with error 11, "enhance your calm", and words.
+void send(const Descriptor& connection, std::string_view bytes) {
+    (void)::send(connection.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+// HTTP/2 (RFC 9113)
+constexpr std::string_view empty_settings("\0\0\0\4\0\0\0\0\0", 9);
+/// GOAWAY for no stream, with error 11, "enhance your calm", and words.
 std::string goaway(const std::string& words) {
     const auto length = std::uint32_t(8 + words.size());
-    std::string frames("\0\0\0\4\0\0\0\0\0", 9);
-    frames += {char(length >> 16), char(length >> 8), char(length), 7, 0, 0, 0, 0, 0};
-    frames += std::string("\0\0\0\0\0\0\0\13", 8);
-    return frames + words;
+    std::string frame = {char(length >> 16), char(length >> 8), char(length), 7, 0, 0, 0, 0, 0};
+    frame += std::string("\0\0\0\0\0\0\0\13", 8);
+    return frame + words;
 }
 
 /// Whether there is a socket. Throws Error{io_failed} for what is none.
@@ -132,12 +140,15 @@ void Listener::stop() {
 }
 
 void Listener::take_connections() {
-    constexpr int look = std::chrono::milliseconds(apart).count();
+    const auto look = [&] {
+        if (!leaving_.empty()) return int(leave.count());
+        return known_.empty() ? -1 : int(std::chrono::milliseconds(apart).count());
+    };
     std::array<pollfd, 2> watched = {{{socket_.number(), POLLIN, 0}, {wake_.number(), POLLIN, 0}}};
     for (int ready = 0; ready >= 0 || errno == EINTR;) {
-        ready = ::poll(watched.data(), watched.size(), known_.empty() && leaving_.empty() ? -1 : look);
+        ready = ::poll(watched.data(), watched.size(), look());
         if (ready == 0) forget_closed();
-        close_refused();
+        see_out_refused();
         if (ready <= 0) continue;
         if (watched[1].revents != 0) return;
         Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -158,7 +169,10 @@ void Listener::refuse_one_more() {
     spare_ = {};
     {
         const Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-        if (connection.open() && is_ours(connection)) refuse(connection, "no more descriptors for connections");
+        if (connection.open() && is_ours(connection)) {
+            refuse(connection);
+            say_why(connection, "no more descriptors for connections");
+        }
     }
     take_spare();
 }
@@ -170,9 +184,10 @@ void Listener::take(Descriptor connection) {
     const std::uint64_t most = terms_.most_connections;
     if (known_.size() >= forget_from_ || (most > 0 && known_.size() >= most)) forget_closed();
     if (most > 0 && known_.size() >= most) {
-        refuse(connection, "at most " + std::to_string(most) + " connections");
-        if (leaving_.size() >= most_leaving) leaving_.pop_front();
+        refuse(connection);
         leaving_.push_back({std::move(connection), std::chrono::steady_clock::now()});
+        if (leaving_.size() > most_leaving) see_out(leaving_.front());
+        if (leaving_.size() > most_leaving) leaving_.pop_front();
         return;
     }
     if (!spare_.open()) take_spare();
@@ -201,23 +216,36 @@ void Listener::forget_closed() {
     forget_from_ = std::max<std::size_t>(64, 2 * known_.size());
 }
 
-void Listener::refuse(const Descriptor& connection, const std::string& why) {
+void Listener::refuse(const Descriptor& connection) {
     ++refused_;
     const auto now = std::chrono::steady_clock::now();
     if (terms_.refused && now - told_ >= apart) {
         told_ = now;
         terms_.refused();
     }
-    if (!terms_.encrypted) {
-        const std::string frames = goaway("octopair: " + why);
-        (void)::send(connection.number(), frames.data(), frames.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    }
+    if (!terms_.encrypted) send(connection, empty_settings);
+}
+
+void Listener::say_why(const Descriptor& connection, const std::string& why) const {
+    if (!terms_.encrypted) send(connection, goaway("octopair: " + why));
     (void)::shutdown(connection.number(), SHUT_WR);
 }
 
-void Listener::close_refused() {
+void Listener::see_out(Refused& refused) const {
+    if (std::exchange(refused.told, true)) return;
+    // What is unread when it is closed would reset the connection, and the words with it.
+    for (std::array<char, 4096> said;
+         ::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT) > 0;) {
+    }
+    say_why(refused.connection, "at most " + std::to_string(terms_.most_connections) + " connections");
+}
+
+void Listener::see_out_refused() {
     const auto now = std::chrono::steady_clock::now();
-    while (!leaving_.empty() && now - leaving_.front().since >= apart) leaving_.pop_front();
+    for (Refused& refused : leaving_) {
+        if (now - refused.since >= leave) see_out(refused);
+    }
+    while (!leaving_.empty() && now - leaving_.front().since >= 2 * leave) leaving_.pop_front();
 }
 
 }  // namespace octopair::service

@@ -54,10 +54,12 @@ private:
         ino_t socket;
     };
 
-    /// One that was told why it is refused. Closed at once, it might not read that: its own words would find nobody.
+    /// One that is beyond the limit. It is told why a little later, or gRPC would connect again at once, thousands of times a
+    /// second; and closed later still, or its own words would find nobody, and it would not read ours.
     struct Refused {
         Descriptor connection;
         std::chrono::steady_clock::time_point since;
+        bool told = false;
     };
 
     void bind_unix();
@@ -68,8 +70,10 @@ private:
     void forget_closed();
     void refuse_one_more();
     void take_spare();
-    void refuse(const Descriptor& connection, const std::string& why);
-    void close_refused();
+    void refuse(const Descriptor& connection);
+    void say_why(const Descriptor& connection, const std::string& why) const;
+    void see_out(Refused& refused) const;
+    void see_out_refused();
 
     Address address_;
     Terms terms_;
