@@ -233,10 +233,9 @@ void Listener::say_why(const Descriptor& connection, const std::string& why) con
 
 void Listener::see_out(Refused& refused) const {
     if (std::exchange(refused.told, true)) return;
-    // What is unread when it is closed would reset the connection, and the words with it.
-    for (std::array<char, 4096> said;
-         ::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT) > 0;) {
-    }
+    // What is unread when it is closed would reset the connection, and the words with it. gRPC's greeting is short.
+    std::array<char, 1 << 16> said;
+    (void)::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT);
     say_why(refused.connection, "at most " + std::to_string(terms_.most_connections) + " connections");
 }
 
