@@ -186,7 +186,9 @@ TEST_F(ServedKilledClient, WhileItsJobIsQueuedOrRuns) {
 }
 
 TEST_F(ServedKilledClient, WhileItDoesNotReadItsResult) {
-    ClientProgram client(save(std::vector<Box3f>(3000)), served_.address());  // 36 MB of pairs
+    std::vector<Box3f> boxes(3000);  // 36 MB of pairs
+    while (boxes.size() < 50'000) boxes.push_back({{float(boxes.size()), 0, 0}, {float(boxes.size()), 0, 0}});
+    ClientProgram client(save(boxes), served_.address());
     ASSERT_TRUE(gate_.wait_for(1));
     client.stop();
     gate_.open();
