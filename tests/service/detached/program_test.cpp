@@ -8,10 +8,9 @@ class JobProgramTest : public ProgramTest {
 protected:
     /// A script with a server beside it, which OCTOPAIR_SERVER names.
     Outcome with_server(const std::string& script, const std::string& serve = "--state state") const {
-        return shell("\"$P\" serve --listen unix:socket " + serve +
+        return shell("rm -f log; \"$P\" serve --listen unix:socket " + serve +
                      " 2>log & S=$!; trap 'kill $S; wait $S' EXIT\nexport OCTOPAIR_SERVER=unix:socket\n" +
-                     "for i in $(seq 1200); do [ -S socket ] || ! kill -0 $S 2>/dev/null && break; sleep 0.05; done\n" +
-                     script);
+                     "for i in $(seq 1200); do [ -s log ] && break; sleep 0.05; done\n" + script);
     }
 };
 
