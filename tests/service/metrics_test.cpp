@@ -48,7 +48,8 @@ TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
     const std::vector<Box3f> crowd(testing::scaled(8000, 2));
     for (const char* const done : {"1", "2"}) {
         std::uint64_t pairs = 0;
-        (void)client->stream_pairs({std::span(crowd), {}}, [&](std::span<const Pair> some) { pairs += some.size(); });
+        const PairSink count = [&](std::span<const Pair> some) { pairs += some.size(); };
+        (void)client->stream_pairs({std::span(crowd), {}}, count, {.order = Order::octal});
         EXPECT_EQ(pairs, crowd.size() * (crowd.size() - 1) / 2);
         EXPECT_TRUE(comes(std::string("octopair_jobs_ended_total{outcome=\"done\"} ") + done));
         EXPECT_TRUE(comes("octopair_jobs_ended_total{outcome=\"cancelled\"} 1"));

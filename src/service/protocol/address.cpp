@@ -49,6 +49,7 @@ Address parse_address(std::string_view text) {
     if (!is_port(port)) refuse(text, "has no port from 0 to 65535");
     if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
         host = host.substr(1, host.size() - 2);
+        if (host.find(':') == std::string_view::npos) refuse(text, "has no IPv6 address in its brackets");
     } else if (host.find(':') != std::string_view::npos) {
         refuse(text, "has an IPv6 address without brackets");
     }
