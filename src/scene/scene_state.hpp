@@ -70,7 +70,8 @@ private:
     double seconds_a_change_ = 0;
 
     PairHistory history_;
-    PairChanges changes_;
+    PairChanges changes_;  // of the last step
+    PairChanges found_;    // by one that may fail yet
     PairList persisting_;
     StepResult result_;
     std::unique_ptr<Recorder> recorder_;  // null: none

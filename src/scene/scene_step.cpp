@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
+#include <utility>
 
 #include "engine/ascending.hpp"
 #include "octopair/error.hpp"
@@ -56,6 +57,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     }
+    std::swap(changes_, found_);
     objects_.finish_step();
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
@@ -85,7 +87,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
         refills_ = most_refills;
         built_ = false;
     }
-    history_.take_over(changes_);  // the last step: one that fails before has changed nothing
+    history_.take_over(found_);  // the last step: one that fails before has changed nothing
     planted_ = plant;
 }
 
@@ -123,12 +125,12 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
                                       objects_.table().size() / 2 + least_visits, history_.size() + least_found, stop};
     planted_ = false;  // until all of this is done
     try {
-        search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, changes_, limits);
+        search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
     } catch (const ChangeSearch::TooDear&) {
         seconds_a_change_ = std::max(seconds_a_change_, full_seconds_ / double(changed));
         return false;
     }
-    history_.apply(changes_);
+    history_.apply(found_);
     planted_ = true;
     constexpr std::size_t enough = 64;  // to tell what one costs
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;

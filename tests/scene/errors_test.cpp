@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "octopair/octopair.hpp"
 #include "support/scale.hpp"
@@ -177,6 +178,34 @@ TEST(Scene, AStepThatHasNoRoomForItsPairsCanBeRepeated) {
         EXPECT_GE(room.taken, 16 * step.pairs()) << "those of the list, and those that began";
         EXPECT_LE(room.taken, 32 * step.pairs());
     }
+}
+
+TEST(Scene, StepsThatHaveNoRoomLeaveWhatPersists) {
+    Room room(100'000'000);
+    Scene scene({.threads = 1, .room_for_pairs = std::ref(room)});
+    std::vector<ObjectId> ids(700);
+    scene.add(Objects{boxes_of(std::vector<Box3f>(ids.size(), unit))}, std::span(ids));
+    (void)scene.step();
+    scene.move(std::span(ids).first(1), boxes_of({{{5, 5, 5}, {6, 6, 6}}}));
+    (void)scene.step();
+    const std::uint64_t pairs = 699 * 698 / 2;
+    std::vector<ObjectId> more(700);
+    scene.add(Objects{boxes_of(std::vector<Box3f>(more.size(), unit))}, more);
+    unsigned failed = 0;
+    for (room.left = 0; failed < 100; room.left += 300'000, ++failed) {
+        try {
+            (void)scene.step();
+            break;
+        } catch (const std::runtime_error&) {
+        }
+        const std::uint64_t left = std::exchange(room.left, 100'000'000);
+        EXPECT_EQ(scene.pairs().size(), pairs);
+        EXPECT_EQ(scene.persisting().size(), pairs);
+        room.left = left;
+    }
+    EXPECT_GE(failed, 10u);
+    EXPECT_EQ(scene.pairs().size(), 1399u * 1398 / 2);
+    EXPECT_EQ(scene.persisting().size(), pairs);
 }
 
 TEST(Scene, VeryManyPairsBeginWhereLittleMoves) {

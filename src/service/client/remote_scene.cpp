@@ -78,7 +78,8 @@ private:
     Answer answer_;
 
     PairHistory history_;
-    PairChanges changes_;
+    PairChanges changes_;  // of the last step
+    PairChanges found_;    // by one that may fail yet
     PairList persisting_;
     StepResult result_;
 };
@@ -91,6 +92,7 @@ const StepResult& RemoteScene::State::step(const std::stop_token& stop) {
         connection_.persist(stop, [&] { return ask(stop); });
         history_.prepare(!whole_);
         take();
+        std::swap(changes_, found_);
     } catch (const std::bad_alloc&) {
         forget_stream();
         throw Error(ErrorCode::resource_limit, "out of memory");
@@ -166,17 +168,17 @@ bool RemoteScene::State::fits(const Answer& answer) const {
 void RemoteScene::State::take() {
     const auto ended = answer_.pairs.begin() + std::ptrdiff_t(answer_.told.began());
     if (!whole_) {
-        changes_.began.reserve(std::size_t(answer_.told.began()));
-        changes_.ended.reserve(std::size_t(answer_.told.ended()));
-        changes_.began.assign(answer_.pairs.begin(), ended);
-        changes_.ended.assign(ended, answer_.pairs.end());
-        history_.apply(changes_);
+        found_.began.reserve(std::size_t(answer_.told.began()));
+        found_.ended.reserve(std::size_t(answer_.told.ended()));
+        found_.began.assign(answer_.pairs.begin(), ended);
+        found_.ended.assign(ended, answer_.pairs.end());
+        history_.apply(found_);
         return;
     }
     PairList::Storage& fresh = history_.fresh().storage();
     fresh.reset();
     fresh.append(fresh.copy(answer_.pairs));
-    history_.take_over(changes_);
+    history_.take_over(found_);
 }
 
 void RemoteScene::State::forget_stream() {

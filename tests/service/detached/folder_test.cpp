@@ -91,37 +91,40 @@ TEST(Folder, HasNoRoomForAResult) {
     EXPECT_TRUE(host.files(".part").empty());
 }
 
-TEST(Folder, IsCleanedOfWhatIsHalfWritten) {
-    Host host;
-    const auto client = host.client();
-    const auto boxes = make_boxes("uniform", 1000, 1);
-    const Work work(Objects{std::span(boxes), {}});
-    const std::string id = submit(*client, work);
-    (void)client->wait(id, std::chrono::minutes(1));
-    host.stop();
-    const std::vector<std::string> done = host.files();
-    test::write_file(host.state() + "/0000000000000001.result.part", "half a result");
-    test::write_file(host.state() + "/0000000000000005.job.part", "half a job");
-    test::write_file(host.state() + "/0000000000000006.result", "of no job");
-    test::write_file(host.state() + "/notes.txt", "of a person");
-    host.start();
-    EXPECT_EQ(host.files().size(), done.size() + 1);
-    EXPECT_EQ(host.files(".txt").size(), 1u);
-    EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+/// With a job that is done; the server has ended.
+class FolderOfADoneJob : public ::testing::Test {
+protected:
+    FolderOfADoneJob() {
+        (void)client_->wait(id_, std::chrono::minutes(1));
+        host_.stop();
+    }
+    void expect_right_after_start() {
+        host_.start();
+        EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
+    }
+
+    Host host_;
+    const std::unique_ptr<JobClient> client_ = host_.client();
+    const std::vector<Box3f> boxes_ = make_boxes("uniform", 1000, 1);
+    const Work work_{Objects{std::span(boxes_), {}}};
+    const std::string id_ = submit(*client_, work_);
+};
+
+TEST_F(FolderOfADoneJob, IsCleanedOfWhatIsHalfWritten) {
+    const std::vector<std::string> done = host_.files();
+    test::write_file(host_.state() + "/0000000000000001.result.part", "half a result");
+    test::write_file(host_.state() + "/0000000000000005.job.part", "half a job");
+    test::write_file(host_.state() + "/0000000000000006.result", "of no job");
+    test::write_file(host_.state() + "/notes.txt", "of a person");
+    expect_right_after_start();
+    EXPECT_EQ(host_.files().size(), done.size() + 1);
+    EXPECT_EQ(host_.files(".txt").size(), 1u);
 }
 
-TEST(Folder, FindsAnewWhatHasNoWholeResult) {
-    Host host;
-    const auto client = host.client();
-    const auto boxes = make_boxes("uniform", 1000, 1);
-    const Work work(Objects{std::span(boxes), {}});
-    const std::string id = submit(*client, work);
-    (void)client->wait(id, std::chrono::minutes(1));
-    host.stop();
-    const std::string result = host.files(".result").at(0);
+TEST_F(FolderOfADoneJob, FindsAnewWhatHasNoWholeResult) {
+    const std::string result = host_.files(".result").at(0);
     std::filesystem::rename(result, result + ".part");
-    host.start();
-    EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+    expect_right_after_start();
 }
 
 }  // namespace
