@@ -105,8 +105,12 @@ public:
 
 private:
     Summary call(const Request& request, const Output& output, std::stop_token stop);
+    template <typename Work>
+    Job submit_work(Work work);
     std::shared_ptr<void> allocate_array(std::uint64_t count, std::size_t element_bytes);
 
+    /// Before run(), of options and sizes. Throws Error.
+    virtual void check(const Request& request) const;
     virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
     /// Every engine has one, as its last member: it ends the jobs before what they use goes.
     virtual JobQueue& jobs() = 0;

@@ -40,11 +40,13 @@ void check_request(const Engine::Request& request) {
     }
 }
 
+void Engine::check(const Request& request) const { check_request(request); }
+
 /// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
 /// after.
 Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
     if (output.list != nullptr) output.list->storage().reset();
-    check_request(request);
+    check(request);
     try {
         return run(request, output, {stop, request.options.progress});
     } catch (const std::bad_alloc&) {
@@ -90,40 +92,36 @@ namespace {
 
 [[noreturn]] void throw_out_of_memory() { throw Error(ErrorCode::resource_limit, "out of memory"); }
 
-void check(const Job::Task::Work& work) {
-    const Objects first = view(work.first);
-    if (!work.second) return check_request({first, nullptr, work.options});
-    const Objects second = view(*work.second);
-    check_request({first, &second, work.options});
-}
+}  // namespace
 
-Job submit_to(JobQueue& queue, Job::Task::Work work) {
-    check(work);
+template <typename Work>
+Job Engine::submit_work(Work work) {
+    const Objects first = view(work.first);
+    const Objects second = work.second ? view(*work.second) : Objects{};
+    check({first, work.second ? &second : nullptr, work.options});
     try {
         const auto task = std::make_shared<Job::Task>(std::move(work));
-        queue.add(task);
+        jobs().add(task);
         return Job(task);
     } catch (const std::bad_alloc&) {
         throw_out_of_memory();
     }
 }
 
-}  // namespace
-
 Job Engine::submit(JobObjects objects, Options options) {
-    return submit_to(jobs(), {std::move(objects), {}, {}, std::move(options)});
+    return submit_work(Job::Task::Work{std::move(objects), {}, {}, std::move(options)});
 }
 
 Job Engine::submit_between(JobObjects first, JobObjects second, Options options) {
-    return submit_to(jobs(), {std::move(first), std::move(second), {}, std::move(options)});
+    return submit_work(Job::Task::Work{std::move(first), std::move(second), {}, std::move(options)});
 }
 
 Job Engine::submit_stream(JobObjects objects, PairSink sink, Options options) {
-    return submit_to(jobs(), {std::move(objects), {}, std::move(sink), std::move(options)});
+    return submit_work(Job::Task::Work{std::move(objects), {}, std::move(sink), std::move(options)});
 }
 
 Job Engine::submit_stream_between(JobObjects first, JobObjects second, PairSink sink, Options options) {
-    return submit_to(jobs(), {std::move(first), std::move(second), std::move(sink), std::move(options)});
+    return submit_work(Job::Task::Work{std::move(first), std::move(second), std::move(sink), std::move(options)});
 }
 
 std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/job_task.hpp"
 #include "octopair/error.hpp"
@@ -16,17 +17,21 @@ JobQueue::~JobQueue() {
         ending_ = true;
         changed_.notify_all();
     }
-    // The thread takes no job any more, and nobody submits to an engine that goes.
-    for (const auto& task : waiting_) task->cancel();
-    if (!thread_.joinable()) return;
-    if (const auto running = [&] { return std::lock_guard(mutex_), running_; }()) running->cancel();
-    thread_.join();
+    // Nobody submits to an engine that goes.
+    std::vector<std::shared_ptr<Job::Task>> left;
+    {
+        const std::lock_guard lock(mutex_);
+        left.assign(waiting_.begin(), waiting_.end());
+        if (running_) left.push_back(running_);
+    }
+    for (const auto& task : left) task->cancel();
+    if (thread_.joinable()) thread_.join();
 }
 
 void JobQueue::add(const std::shared_ptr<Job::Task>& task) {
     const std::lock_guard lock(mutex_);
     if (!thread_.joinable()) start_thread();
-    if (waiting_.size() >= drop_from_) drop_ended();
+    if (waiting_.size() >= drop_from_ && !skipped_) drop_ended();
     task->belong_to(thread_.get_id());
     waiting_.push_back(task);
     changed_.notify_all();
@@ -41,18 +46,27 @@ void JobQueue::start_thread() {
 }
 
 void JobQueue::run_jobs() {
-    while (const auto task = next()) task->run(engine_);
+    while (const auto task = next()) {
+        if (!task->run(engine_) && skipped_) skipped_();
+    }
 }
 
 /// The job whose turn it is; null at the end.
 std::shared_ptr<Job::Task> JobQueue::next() {
     std::unique_lock lock(mutex_);
     running_ = nullptr;
+    if (waiting_.empty()) idle_.notify_all();
     changed_.wait(lock, [&] { return ending_ || !waiting_.empty(); });
-    if (ending_) return nullptr;
+    if (waiting_.empty() || (ending_ && !skipped_)) return nullptr;
     running_ = std::move(waiting_.front());
     waiting_.pop_front();
     return running_;
+}
+
+void JobQueue::wait_for_all() {
+    std::unique_lock lock(mutex_);
+    if (thread_.get_id() == std::this_thread::get_id()) return;
+    idle_.wait(lock, [&] { return waiting_.empty() && running_ == nullptr; });
 }
 
 void JobQueue::drop_ended() {

@@ -41,8 +41,8 @@ void Job::Task::belong_to(std::thread::id thread) {
     queue_thread_ = thread;
 }
 
-void Job::Task::run(Engine& engine) noexcept {
-    if (!hold(JobState::running)) return;
+bool Job::Task::run(Engine& engine) noexcept {
+    if (!hold(JobState::running)) return false;
     try {
         const Summary summary = call(engine);
         progress_.store(1, std::memory_order_relaxed);
@@ -50,6 +50,7 @@ void Job::Task::run(Engine& engine) noexcept {
     } catch (...) {
         end(failure());
     }
+    return true;
 }
 
 /// Makes this thread the one that holds the task, unless there is one.

@@ -37,7 +37,8 @@ public:
 
     /// For the queue: its thread, before that gets the task; and the task's turn, on that thread.
     void belong_to(std::thread::id thread);
-    void run(Engine& engine) noexcept;
+    /// False where it had ended before.
+    bool run(Engine& engine) noexcept;
 
     /// For the handle; as Job's.
     JobState state() const;

@@ -1,11 +1,11 @@
 #include "engine/search.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "base/timed.hpp"
 #include "engine/pair_pages.hpp"
+#include "engine/receiver.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -20,65 +20,6 @@ constexpr double built = 0.3;  // of the progress
 std::uint64_t Call::buffer_pairs() const {
     return std::max(request.options.buffer_bytes, least_buffer_bytes) / sizeof(Pair);
 }
-
-/// Receives pairs in their final order, up to the limit.
-class Search::Receiver {
-public:
-    Receiver(const Engine::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
-
-    struct LimitReached {};
-
-    /// Throws LimitReached at the first pair beyond the limit.
-    void take(std::span<const Pair> pairs) {
-        const std::uint64_t room = limit_ ? *limit_ - pairs_ : ~std::uint64_t(0);
-        const auto kept = pairs.first(std::size_t(std::min<std::uint64_t>(pairs.size(), room)));
-        pairs_ += kept.size();
-        if (!kept.empty()) deliver(kept);
-        if (kept.size() < pairs.size()) {
-            truncated_ = true;
-            throw LimitReached{};
-        }
-    }
-
-    void flush() {
-        if (held_.empty()) return;
-        give(held_);
-        held_.clear();
-    }
-
-    std::uint64_t pairs() const { return pairs_; }
-    bool truncated() const { return truncated_; }
-    double sink_seconds() const { return sink_seconds_; }
-
-private:
-    void deliver(std::span<const Pair> pairs) {
-        constexpr std::size_t worth_a_call = 1 << 13;  // pairs; small batches are put together
-        if (output_.list != nullptr) return keep(pairs);
-        if (held_.size() + pairs.size() > worth_a_call) flush();
-        if (pairs.size() >= worth_a_call) {
-            give(pairs);
-        } else {
-            held_.insert(held_.end(), pairs.begin(), pairs.end());
-        }
-    }
-
-    void give(std::span<const Pair> pairs) {
-        const Timed timed(sink_seconds_);
-        (*output_.sink)(pairs);
-    }
-
-    void keep(std::span<const Pair> pairs) {
-        PairList::Storage& list = output_.list->storage();
-        list.append(list.copy(pairs));
-    }
-
-    const Engine::Output& output_;
-    std::optional<std::uint64_t> limit_;
-    std::uint64_t pairs_ = 0;
-    bool truncated_ = false;
-    double sink_seconds_ = 0;
-    std::vector<Pair> held_;
-};
 
 namespace {
 

@@ -20,6 +20,8 @@
 
 namespace octopair {
 
+class Receiver;
+
 /// What one call needs, beside the engine's own memory.
 struct Call {
     const Engine::Request& request;
@@ -64,7 +66,6 @@ public:
     Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
 
 private:
-    class Receiver;
     void find(Call& call);
     void count(Call& call);
     void find_octal(Call& call);

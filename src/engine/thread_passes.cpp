@@ -3,16 +3,18 @@
 #include "base/timed.hpp"
 #include "engine/ascending.hpp"
 #include "engine/writers.hpp"
-#include "octree/scan.hpp"
 
 namespace octopair {
 
-/// One pass over the octree.
 void ThreadPasses::scan_into(Call& call, Executor& executor, double progress) {
+    scan_into(call, octree_, executor, progress);
+}
+
+void ThreadPasses::scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress) {
     const Timed timed(call.summary.steps.scan);
-    call.progress.stage(progress, octree_.entry_count());
+    call.progress.stage(progress, octants.octree.entry_count(octants.begin, octants.end));
     const ScanContext context{call.source, call.stop.get_token()};
-    scan(octree_, context, executor, [&](std::uint64_t entries) { call.progress.add(entries); });
+    scan(octants, context, executor, [&](std::uint64_t entries) { call.progress.add(entries); });
 }
 
 std::uint64_t ThreadPasses::count(Call& call, double progress) {

@@ -3,6 +3,7 @@
 
 #include "engine/search.hpp"
 #include "octree/linear_octree.hpp"
+#include "octree/scan.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {
@@ -22,10 +23,12 @@ protected:
     Team& team() { return team_; }
     /// Of the call's objects after build().
     LinearOctree& octree() { return octree_; }
+    /// One pass over the octree.
+    virtual void scan_into(Call& call, Executor& executor, double progress);
+    /// Over these octants.
+    static void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
 
 private:
-    void scan_into(Call& call, Executor& executor, double progress);
-
     Team team_;
     LinearOctree octree_;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "geometry/box_kernel.hpp"
 #include "octopair/error.hpp"
@@ -30,31 +31,45 @@ Box3d wide_box(const Objects& set, std::size_t index) {
 
 }  // namespace
 
-BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
-    : first_(&first), second_(second), first_size_(first.size()), second_size_(second != nullptr ? second->size() : 0) {
-    rounding_.margin = margin;
-    const auto plain = [](const Objects& set) { return holds_float32(set) && set.padding.empty(); };
-    exact_ = margin == 0 && plain(first) && (second == nullptr || plain(*second));
-    if (!exact_) choose_origin();
+bool is_plain(const Objects& set) { return holds_float32(set) && set.padding.empty(); }
+
+std::array<double, 4> OriginSample::median(std::span<const Corner> corners) {
+    std::array<double, 4> origin = {0, 0, 0, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<double> lows;
+        for (const Corner& corner : corners) {
+            if (std::abs(corner[axis]) <= DBL_MAX) lows.push_back(corner[axis]);
+        }
+        if (lows.empty()) continue;
+        const auto middle = lows.begin() + std::ptrdiff_t(lows.size() / 2);
+        std::nth_element(lows.begin(), middle, lows.end());
+        origin[axis] = *middle;
+    }
+    return origin;
 }
 
-void BoxSource::choose_origin() {
-    // The median of a strided sample: near the bulk, whatever a few far objects do.
-    constexpr std::size_t samples = 255;
-    const std::size_t count = std::min(samples, size());
-    if (count == 0) return;
-    for (int axis = 0; axis < 3; ++axis) {
-        std::array<double, samples> lows{};
-        std::size_t used = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            double padding = 0;
-            const double low = box(std::uint32_t(i * size() / count), padding).min[axis];
-            if (std::abs(low) <= DBL_MAX) lows[used++] = low;
-        }
-        if (used == 0) continue;
-        std::nth_element(lows.begin(), lows.begin() + std::ptrdiff_t(used / 2), lows.begin() + std::ptrdiff_t(used));
-        rounding_.origin[std::size_t(axis)] = lows[used / 2];
-    }
+BoxSource::BoxSource(const Objects& first, const Objects* second, const EntryForm& form)
+    : first_(&first),
+      second_(second),
+      first_size_(first.size()),
+      second_size_(second != nullptr ? second->size() : 0),
+      form_(form) {}
+
+BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
+    : BoxSource(first, second,
+                EntryForm{margin == 0 && is_plain(first) && (second == nullptr || is_plain(*second)),
+                          {.origin = {}, .margin = margin}}) {
+    if (exact()) return;
+    const OriginSample sample{size()};
+    std::vector<OriginSample::Corner> corners(sample.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = low_corner(sample[i]);
+    form_.rounding.origin = OriginSample::median(corners);
+}
+
+OriginSample::Corner BoxSource::low_corner(std::size_t position) const {
+    double padding = 0;
+    const Box3d low = box(std::uint32_t(position), padding);
+    return {low.min[0], low.min[1], low.min[2]};
 }
 
 Box3d BoxSource::box(std::uint32_t object, double& padding) const {
@@ -70,7 +85,7 @@ bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);
     const Box3d box_b = box(b, padding_b);
-    return within_reach(box_a, box_b, rounding_.margin + (padding_a + padding_b));
+    return within_reach(box_a, box_b, form_.rounding.margin + (padding_a + padding_b));
 }
 
 RoundingSlack BoxSource::slack() const {
@@ -79,7 +94,7 @@ RoundingSlack BoxSource::slack() const {
     // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
     RoundingSlack slack;
     for (unsigned axis = 0; axis < 3; ++axis)
-        slack.base[axis] = round_up(std::abs(rounding_.origin[axis]) * 0x1p-44 + FLT_MIN);
+        slack.base[axis] = round_up(std::abs(form_.rounding.origin[axis]) * 0x1p-44 + FLT_MIN);
     return slack;
 }
 
@@ -88,9 +103,9 @@ bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const doubl
                          std::span<Entry> out) const {
     const auto some = boxes.subspan(begin, out.size());
     if constexpr (std::is_same_v<Real, float>) {
-        if (exact_) return copy_boxes(some, out);
+        if (form_.exact) return copy_boxes(some, out);
     }
-    return round_boxes(some, padding.empty() ? padding : padding.subspan(begin, out.size()), rounding_, out);
+    return round_boxes(some, padding.empty() ? padding : padding.subspan(begin, out.size()), form_.rounding, out);
 }
 
 bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
@@ -113,7 +128,7 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
 }
 
 std::span<const Box3f> BoxSource::plain(std::size_t begin, std::size_t count) const {
-    if (!exact_ || join()) return {};
+    if (!form_.exact || join()) return {};
     return std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count);
 }
 
@@ -125,14 +140,17 @@ void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> ou
     for (std::size_t i = 0; i < out.size(); ++i) {
         double padding = 0;
         const Box3d wide = box(std::uint32_t(positions[i]), padding);
-        out[i] = rounding_.entry(wide, padding);
+        out[i] = form_.rounding.entry(wide, padding);
     }
 }
 
-std::optional<std::string> BoxSource::fault(const Objects& set, std::size_t index) const {
+std::optional<std::string> BoxSource::fault(std::size_t position, const SetBegins& begins) const {
+    const bool in_first = position < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t index = in_first ? position : position - first_size_;
+    const std::string which = in_first ? "object " + std::to_string(begins.first + index)
+                                       : "of the second set object " + std::to_string(begins.second + index);
     const Box3d box = wide_box(set, index);
-    const std::string which =
-        std::string(&set == first_ ? "" : "of the second set ") + "object " + std::to_string(index);
     for (int axis = 0; axis < 3; ++axis) {
         const std::string name(1, axis_names[axis]);
         for (const auto& [value, end] : {std::pair{box.min[axis], "min "}, std::pair{box.max[axis], "max "}}) {
@@ -150,11 +168,9 @@ std::optional<std::string> BoxSource::fault(const Objects& set, std::size_t inde
     return std::nullopt;
 }
 
-void BoxSource::refuse(std::size_t begin) const {
+void BoxSource::refuse(std::size_t begin, const SetBegins& begins) const {
     for (std::size_t i = begin; i < size(); ++i) {
-        const bool in_first = i < first_size_;
-        const auto found = fault(in_first ? *first_ : *second_, in_first ? i : i - first_size_);
-        if (found) throw Error(ErrorCode::bad_input, *found);
+        if (const auto found = fault(i, begins)) throw Error(ErrorCode::bad_input, *found);
     }
     throw Error(ErrorCode::bad_input, "an object changed while it was read");
 }

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "base/stop.hpp"
-#include "octree/sample.hpp"
 
 namespace octopair {
 
@@ -43,7 +42,7 @@ double seconds_since(std::chrono::steady_clock::time_point& last) {
 }
 
 std::vector<Entry> sample_of(const EntrySource& source) {
-    const Sample sample(source.size(), sample_stride, most_samples);
+    const Sample sample = octant_sample(source.size());
     std::vector<std::size_t> positions(sample.size());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
     std::vector<Entry> sampled(sample.size());
@@ -53,21 +52,33 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 
 }  // namespace
 
+Sample octant_sample(std::uint64_t objects) { return {std::size_t(objects), sample_stride, most_samples}; }
+
+PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
+    PlantedOctants octants;
+    octants.frame = Frame::fit(sampled, objects);
+    Directory::Boxes cells(sampled.size());
+    octants.frame.cells(sampled, cells);
+    const double weight = double(objects) / double(std::max<std::size_t>(1, cells.size()));
+    octants.directory = Directory(octants.frame, std::move(cells), weight, stop);
+    return octants;
+}
+
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop) {
     // The sample is gone when the entries need the memory.
     const std::vector<Entry> sampled = sample_of(source);
-    PlantedOctants octants;
-    octants.frame = Frame::fit(sampled, source.size());
-    Directory::Boxes cells(sampled.size());
-    octants.frame.cells(sampled, cells);
-    const double weight = double(source.size()) / double(std::max<std::size_t>(1, cells.size()));
-    octants.directory = Directory(octants.frame, std::move(cells), weight, stop);
-    return octants;
+    return plant_octants(sampled, source.size(), stop);
 }
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
     const auto begin = std::chrono::steady_clock::now();
     octants_ = plant_octants(source, stop);
+    fill(source, executor, stop, begin);
+}
+
+void LinearOctree::build(PlantedOctants octants, const EntrySource& source, Executor& executor, std::stop_token stop) {
+    const auto begin = std::chrono::steady_clock::now();
+    octants_ = std::move(octants);
     fill(source, executor, stop, begin);
 }
 

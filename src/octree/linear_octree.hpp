@@ -24,6 +24,7 @@
 #include "octree/directory.hpp"
 #include "octree/executor.hpp"
 #include "octree/frame.hpp"
+#include "octree/sample.hpp"
 
 namespace octopair {
 
@@ -37,7 +38,10 @@ struct PlantedOctants {
     Directory directory{Frame{}, {}, 0, {}};
 };
 
-/// Throws Error{cancelled}.
+/// The positions of the sample, of so many objects.
+Sample octant_sample(std::uint64_t objects);
+/// From the sampled entries. Throws Error{cancelled}.
+PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop);
 
 /// The entries of some objects, sorted by octant: in each those of boxes whose home it is, then the others.
@@ -61,6 +65,9 @@ public:
     struct Invalid {
         std::size_t begin;
     };
+
+    /// The same, in octants that are given.
+    void build(PlantedOctants octants, const EntrySource& source, Executor& executor, std::stop_token stop);
 
     /// The same, in the octants that there are: sooner done, and as good while boxes are much where they were.
     void refill(const EntrySource& source, Executor& executor, std::stop_token stop);

@@ -228,12 +228,14 @@ struct Share {
     bool large = false;
 };
 
-std::vector<Share> shares_of(const LinearOctree& octree, unsigned width) {
-    const std::uint64_t even = octree.entry_count() / (std::uint64_t(width) * shares_per_thread) + 1;
+std::vector<Share> shares_of(const OctreeRange& octants, unsigned width) {
+    const LinearOctree& octree = octants.octree;
+    const std::uint64_t even =
+        octree.entry_count(octants.begin, octants.end) / (std::uint64_t(width) * shares_per_thread) + 1;
     const std::uint64_t most = std::min<std::uint64_t>(even, share_entries);
     std::vector<Share> shares;
     std::uint64_t held = 0;
-    for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
+    for (NodeIndex node = octants.begin; node < octants.end; ++node) {
         const std::size_t size = octree.entries(node).size();
         const bool large = size > large_node;
         if (shares.empty() || large || shares.back().large || held + size > most) {
@@ -248,9 +250,10 @@ std::vector<Share> shares_of(const LinearOctree& octree, unsigned width) {
 
 }  // namespace
 
-void scan(const LinearOctree& octree, const ScanContext& context, Executor& executor,
+void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
           const std::function<void(std::uint64_t)>& progress) {
-    const std::vector<Share> shares = shares_of(octree, executor.width());
+    const LinearOctree& octree = octants.octree;
+    const std::vector<Share> shares = shares_of(octants, executor.width());
     const auto scan_share = [&](const Share& share, Executor& within) {
         HandedDown handed(octree);
         NodeScan nodes(context, within);

@@ -16,9 +16,20 @@
 
 namespace octopair {
 
-/// Writes the pairs of `octree` in pre-order. `progress` (may be empty) is told how many entries are done, from any of
+/// The octants [begin, end) of an octree, in pre-order. Borrows it.
+struct OctreeRange {
+    OctreeRange(const LinearOctree& whole)  // NOLINT(google-explicit-constructor): a tree is a range of itself
+        : OctreeRange(whole, 0, NodeIndex(whole.nodes().size())) {}
+    OctreeRange(const LinearOctree& tree, NodeIndex first, NodeIndex last) : octree(tree), begin(first), end(last) {}
+
+    const LinearOctree& octree;
+    NodeIndex begin, end;
+};
+
+/// Writes the pairs that these octants report, in pre-order. Of octants outside, only entries that reach into these are
+/// read. `progress` (may be empty) is told how many entries are done, from any of
 /// the executor's threads. Throws Error{cancelled}.
-void scan(const LinearOctree& octree, const ScanContext& context, Executor& executor,
+void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
           const std::function<void(std::uint64_t)>& progress);
 
 }  // namespace octopair

@@ -6,6 +6,7 @@
 
 #include "octopair/processes.hpp"
 #include "processes/leftovers.hpp"
+#include "support/any_call.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
@@ -14,44 +15,8 @@
 namespace octopair {
 namespace {
 
+using testing::AnyCall;
 using testing::Case;
-
-/// One call about the objects of a case, by any engine.
-struct AnyCall {
-    const Case& asked;
-    Order order;
-    bool streamed;
-    bool limited;
-
-    std::vector<Pair> made_by(Engine& engine) const {
-        Options options;
-        options.order = order;
-        options.margin = asked.margin;
-        options.buffer_bytes = asked.buffer_bytes;
-        if (limited) options.limit = asked.limit;
-        const Objects first = asked.first.view();
-        std::vector<Pair> found;
-        if (streamed) {
-            const PairSink sink = [&](auto batch) { found.insert(found.end(), batch.begin(), batch.end()); };
-            asked.second ? engine.stream_pairs_between(first, asked.second->view(), sink, options)
-                         : engine.stream_pairs(first, sink, options);
-        } else {
-            PairList list;
-            asked.second ? engine.find_pairs_between(first, asked.second->view(), list, options)
-                         : engine.find_pairs(first, list, options);
-            found = list.to_vector();
-        }
-        return found;
-    }
-    std::uint64_t counted_by(Engine& engine) const {
-        Options options;
-        options.margin = asked.margin;
-        if (limited) options.limit = asked.limit;
-        const Objects first = asked.first.view();
-        return asked.second ? engine.count_pairs_between(first, asked.second->view(), options)
-                            : engine.count_pairs(first, options);
-    }
-};
 
 /// Kept from case to case: what a call leaves behind must not show in the next.
 class Engines {

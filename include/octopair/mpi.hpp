@@ -1,0 +1,39 @@
+// The MPI engine: pairs are found by the ranks of an MPI program, each with a part of the objects.
+//
+// Calls     every call is collective: all ranks of the communicator make the same calls in the same order, with the same
+//           options. Each gives its own slice of the objects (of each set, in a join); the slices in the order of the ranks
+//           are the objects of the call, numbered on from rank to rank. A slice may be empty.
+// Result    each rank receives a piece of the pairs, or streams it; the pieces in the order of the ranks are the same bytes
+//           as from every engine. A Summary counts the pairs of all ranks; PairList::size() those of the piece.
+// Errors    what is wrong on one rank ends the call on all, with the same Error; a stop request on one, too. A rank that
+//           dies ends the program, as MPI has it.
+// Threads   MPI must have been started with MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread,
+//           MPI_THREAD_SERIALIZED from others, MPI_THREAD_MULTIPLE for jobs. Jobs run in the order in which they were
+//           submitted, which must be the same on all ranks, and before calls that come after them.
+// Memory    about 130 bytes an object of float32 boxes that a rank has, beside input and output. Pairs in ascending order are held whole,
+//           on all ranks together, also while they are streamed.
+// CMake     link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "octopair/engine.hpp"
+
+namespace octopair {
+
+struct MpiOptions {
+    unsigned threads = 1;  ///< of each rank; 0: one per core
+};
+
+/// Collective. The engine works on a duplicate of `comm` and must go on all ranks before MPI_Finalize. Throws Error{usage}
+/// outside MPI_Init_thread and MPI_Finalize, Error{engine_failed} if MPI fails.
+std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options = {});
+
+/// Collective: `pairs` of rank 0 becomes the pieces of all ranks, one after another; those of the others become empty.
+/// Throws Error{usage} unless make_mpi_engine made the engine.
+void gather_pairs(Engine& engine, PairList& pairs);
+
+}  // namespace octopair

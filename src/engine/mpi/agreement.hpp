@@ -1,0 +1,58 @@
+// Agreement: all ranks go on with a call together, or all end it with the same Error.
+//
+// What fails on one rank alone (a box that is not one, a full disk, a stop) would let the others wait for it forever. So
+// each part of a call that may fail runs in together(), at whose end the ranks tell each other how it went. Of several
+// failures the one that the local engine would have met comes first: the object with the lowest index; a stop comes last.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "engine/mpi/communicator.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+/// Bad input of which the others must know where it stands.
+struct BadObject {
+    std::uint64_t position;  ///< among the objects of all ranks, those of a second set after those of the first
+    std::string message;
+};
+
+/// Makes the stop of any rank that of all, also while they work.
+class StopRelay {
+public:
+    /// `stop`: of this rank's call.
+    StopRelay(Communicator& comm, std::stop_source& stop) : comm_(comm), stop_(stop) {}
+    StopRelay(const StopRelay&) = delete;
+    StopRelay& operator=(const StopRelay&) = delete;
+
+    /// To be called every few milliseconds, on the thread of the call.
+    void pass_on();
+    /// Collective: afterwards nothing is under way.
+    void end();
+
+private:
+    Communicator& comm_;
+    std::stop_source& stop_;
+    bool sent_ = false;
+};
+
+class Agreement {
+public:
+    explicit Agreement(Communicator& comm) : comm_(comm) {}
+
+    /// Runs `part`; throws on all ranks if it threw on any: Error, or what is not one on the rank that threw it.
+    void together(const std::function<void()>& part);
+
+private:
+    struct Outcome;
+    static Outcome outcome_of(const std::function<void()>& part);
+
+    Communicator& comm_;
+};
+
+}  // namespace octopair

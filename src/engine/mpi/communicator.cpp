@@ -1,0 +1,172 @@
+#include "engine/mpi/communicator.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "base/timed.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr int exchange_tag = 1;
+constexpr int stop_tag = 2;
+
+void check(int code) {
+    if (code == MPI_SUCCESS) return;
+    char text[MPI_MAX_ERROR_STRING];
+    int length = 0;
+    MPI_Error_string(code, text, &length);
+    throw Error(ErrorCode::engine_failed, "MPI: " + std::string(text, std::size_t(length)));
+}
+
+bool is_running() {
+    int begun = 0, ended = 0;
+    MPI_Initialized(&begun);
+    MPI_Finalized(&ended);
+    return begun != 0 && ended == 0;
+}
+
+}  // namespace
+
+Communicator::Communicator(MPI_Comm comm, std::size_t message_bytes) : message_bytes_(message_bytes) {
+    if (!is_running()) throw Error(ErrorCode::usage, "an MPI engine is made after MPI_Init and before MPI_Finalize");
+    if (comm == MPI_COMM_NULL) throw Error(ErrorCode::usage, "no engine can be made on MPI_COMM_NULL");
+    check(MPI_Comm_dup(comm, &comm_));
+    check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN));
+    int rank = 0, size = 0, level = 0;
+    check(MPI_Comm_rank(comm_, &rank));
+    check(MPI_Comm_size(comm_, &size));
+    check(MPI_Query_thread(&level));
+    rank_ = unsigned(rank);
+    size_ = unsigned(size);
+    any_thread_ = level == MPI_THREAD_MULTIPLE;
+}
+
+Communicator::~Communicator() {
+    if (is_running()) MPI_Comm_free(&comm_);
+}
+
+void Communicator::count(std::uint64_t bytes, std::uint64_t messages) {
+    traffic_.bytes += bytes;
+    traffic_.messages += messages;
+}
+
+void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
+    const Timed timed(traffic_.seconds);
+    check(MPI_Allgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_));
+    count(own.size() * (size_ - 1), size_ - 1);
+}
+
+void Communicator::gather_parts(const Values& own, std::span<const std::size_t> begins, void* all) {
+    const Timed timed(traffic_.seconds);
+    if (begins.back() > std::size_t(INT32_MAX)) throw Error(ErrorCode::resource_limit, "too much to tell all ranks");
+    std::vector<int> counts(size_);
+    for (unsigned r = 0; r < size_; ++r) counts[r] = int(begins[r + 1] - begins[r]);
+    const std::vector<int> places(begins.begin(), begins.end() - 1);
+    MPI_Datatype item = MPI_DATATYPE_NULL;
+    check(MPI_Type_contiguous(int(own.item_bytes), MPI_BYTE, &item));
+    check(MPI_Type_commit(&item));
+    const int result = MPI_Allgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_);
+    MPI_Type_free(&item);
+    check(result);
+    count(std::uint64_t(counts[rank_]) * own.item_bytes * (size_ - 1), size_ - 1);
+}
+
+void Communicator::add_up(std::span<std::uint64_t> values) {
+    const Timed timed(traffic_.seconds);
+    for (std::span<std::uint64_t> left = values; !left.empty();) {
+        const auto some = left.first(std::min(left.size(), message_bytes_ / sizeof(std::uint64_t)));
+        check(MPI_Allreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_));
+        count(some.size_bytes() * (size_ - 1), size_ - 1);
+        left = left.subspan(some.size());
+    }
+}
+
+void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
+    const Timed timed(traffic_.seconds);
+    for (std::span<std::byte> left = bytes; !left.empty();) {
+        const auto some = left.first(std::min(left.size(), message_bytes_));
+        check(MPI_Bcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_));
+        if (rank_ == from) count(some.size() * (size_ - 1), size_ - 1);
+        left = left.subspan(some.size());
+    }
+}
+
+RankCounts Communicator::exchange_counts(const RankCounts& counts) {
+    const Timed timed(traffic_.seconds);
+    RankCounts received(size_);
+    check(MPI_Alltoall(counts.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, comm_));
+    count(sizeof(std::uint64_t) * (size_ - 1), size_ - 1);
+    return received;
+}
+
+namespace {
+
+/// Where each rank's part begins, in bytes, and the end.
+std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_bytes) {
+    std::vector<std::uint64_t> begins = {0};
+    for (const std::uint64_t values : counts) begins.push_back(begins.back() + values * item_bytes);
+    return begins;
+}
+
+}  // namespace
+
+void Communicator::exchange_parts(const Values& out, const RankCounts& sent, void* in, const RankCounts& received) {
+    const Timed timed(traffic_.seconds);
+    const auto* const from = static_cast<const std::byte*>(out.data);
+    auto* const to = static_cast<std::byte*>(in);
+    const auto from_begins = begins_of(sent, out.item_bytes), to_begins = begins_of(received, out.item_bytes);
+    std::vector<MPI_Request> requests;
+    const auto length = [&](std::uint64_t at, std::uint64_t end) {
+        return int(std::min<std::uint64_t>(message_bytes_, end - at));
+    };
+    // Messages of one rank arrive in the order in which they were sent. Each begins with the ranks after it, so that not
+    // all send to the same one at first.
+    for (unsigned i = 1; i < size_; ++i) {
+        const unsigned r = (rank_ + size_ - i) % size_;
+        for (std::uint64_t at = to_begins[r]; at < to_begins[r + 1]; at += message_bytes_) {
+            check(MPI_Irecv(to + at, length(at, to_begins[r + 1]), MPI_BYTE, int(r), exchange_tag, comm_,
+                            &requests.emplace_back()));
+        }
+    }
+    for (unsigned i = 1; i < size_; ++i) {
+        const unsigned r = (rank_ + i) % size_;
+        for (std::uint64_t at = from_begins[r]; at < from_begins[r + 1]; at += message_bytes_) {
+            const int bytes = length(at, from_begins[r + 1]);
+            check(MPI_Isend(from + at, bytes, MPI_BYTE, int(r), exchange_tag, comm_, &requests.emplace_back()));
+            count(std::uint64_t(bytes), 1);
+        }
+    }
+    if (sent[rank_] > 0) {
+        std::memcpy(to + to_begins[rank_], from + from_begins[rank_], std::size_t(sent[rank_]) * out.item_bytes);
+    }
+    check(MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE));
+}
+
+void Communicator::send_stop() {
+    stops_.clear();
+    stops_.reserve(size_);
+    for (unsigned r = 0; r < size_; ++r) {
+        if (r != rank_) check(MPI_Isend(nullptr, 0, MPI_BYTE, int(r), stop_tag, comm_, &stops_.emplace_back()));
+    }
+}
+
+bool Communicator::stop_has_come(int from) {
+    int there = 0;
+    check(MPI_Iprobe(from < 0 ? MPI_ANY_SOURCE : from, stop_tag, comm_, &there, MPI_STATUS_IGNORE));
+    return there != 0;
+}
+
+void Communicator::receive_stop(unsigned from) {
+    check(MPI_Recv(nullptr, 0, MPI_BYTE, int(from), stop_tag, comm_, MPI_STATUS_IGNORE));
+}
+
+void Communicator::finish_stop() {
+    check(MPI_Waitall(int(stops_.size()), stops_.data(), MPI_STATUSES_IGNORE));
+    stops_.clear();
+}
+
+}  // namespace octopair

@@ -1,0 +1,117 @@
+// Communicator: what the engine asks of MPI, typed, with failures as Errors and every byte counted.
+//
+// Every function but rank() and size() is collective: all ranks call it, in the same order. What is sent are the bytes of
+// trivially copyable values, so all ranks run on machines of one kind. Counts are 64 bit; a part that is longer than
+// `most_message_bytes` goes as several messages.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace octopair {
+
+/// What one rank has sent to others. What a rank tells all counts once for each of them, whatever way MPI sends it.
+struct Traffic {
+    std::uint64_t bytes = 0, messages = 0;
+    double seconds = 0;  ///< wall-clock, within MPI
+};
+
+/// How many values go to each rank, or come from each, one rank's after another's.
+using RankCounts = std::vector<std::uint64_t>;
+
+/// What all ranks told, rank after rank; `begins` has one more than there are ranks.
+template <typename T>
+struct Gathered {
+    std::vector<T> values;
+    std::vector<std::size_t> begins;
+};
+
+class Communicator {
+public:
+    static constexpr std::size_t most_message_bytes = std::size_t(1) << 30;
+
+    /// A duplicate of `comm`, which keeps its own. Throws Error{usage} outside MPI_Init and MPI_Finalize,
+    /// Error{engine_failed}, as all functions do where MPI fails.
+    explicit Communicator(MPI_Comm comm, std::size_t message_bytes = most_message_bytes);
+    Communicator(const Communicator&) = delete;
+    Communicator& operator=(const Communicator&) = delete;
+    ~Communicator();
+
+    unsigned rank() const { return rank_; }
+    unsigned size() const { return size_; }
+    /// Whether any thread may call, beside others of the program.
+    bool any_thread() const { return any_thread_; }
+    const Traffic& traffic() const { return traffic_; }
+
+    /// One value of each rank.
+    template <typename T>
+    std::vector<T> all_gather(const T& own) {
+        std::vector<T> all(size_);
+        gather_equal(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)));
+        return all;
+    }
+    /// As many as each has; in all less than 2^31.
+    template <typename T>
+    Gathered<T> all_gather(std::span<const T> own) {
+        Gathered<T> all;
+        all.begins = {0};
+        for (const std::uint64_t count : all_gather(std::uint64_t(own.size())))
+            all.begins.push_back(all.begins.back() + std::size_t(count));
+        all.values.resize(all.begins.back());
+        const std::span<const std::byte> bytes = std::as_bytes(own);
+        gather_parts({bytes.data(), sizeof(T)}, all.begins, all.values.data());
+        return all;
+    }
+    /// Each value becomes the sum of all ranks'.
+    void add_up(std::span<std::uint64_t> values);
+    std::uint64_t sum(std::uint64_t value) {
+        add_up({&value, 1});
+        return value;
+    }
+    /// `values` of rank `from` come to all; their number is known to all.
+    template <typename T>
+    void broadcast(std::span<T> values, unsigned from) {
+        broadcast_bytes(std::as_writable_bytes(values), from);
+    }
+    /// counts[r] goes to rank r; what each rank has for this one comes back.
+    RankCounts exchange_counts(const RankCounts& counts);
+    /// The first sent[0] values go to rank 0, and so on; `in` is as large as what `received` says.
+    template <typename T>
+    void exchange(const T* out, const RankCounts& sent, T* in, const RankCounts& received) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        exchange_parts({out, sizeof(T)}, sent, in, received);
+    }
+
+    /// Not collective: a message without content that says "stop" goes to all others, once a call; true where one of
+    /// rank `from` has come, or of any where from < 0.
+    void send_stop();
+    bool stop_has_come(int from = -1);
+    /// Waits for those of rank `from`.
+    void receive_stop(unsigned from);
+    void finish_stop();
+
+private:
+    struct Values {
+        const void* data;
+        std::size_t item_bytes;
+    };
+    void gather_equal(std::span<const std::byte> own, std::span<std::byte> all);
+    void gather_parts(const Values& own, std::span<const std::size_t> begins, void* all);
+    void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
+    void exchange_parts(const Values& out, const RankCounts& sent, void* in, const RankCounts& received);
+    void count(std::uint64_t bytes, std::uint64_t messages);
+
+    MPI_Comm comm_ = MPI_COMM_NULL;
+    unsigned rank_ = 0, size_ = 1;
+    bool any_thread_ = false;
+    std::size_t message_bytes_;
+    Traffic traffic_;
+    std::vector<MPI_Request> stops_;
+};
+
+}  // namespace octopair

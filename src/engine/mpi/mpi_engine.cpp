@@ -1,0 +1,63 @@
+// The MPI engine: the steps of the algorithm on ranks that each have a part of the objects.
+
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "engine/job_queue.hpp"
+#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/rank_search.hpp"
+#include "octopair/error.hpp"
+#include "octopair/mpi.hpp"
+
+namespace octopair {
+
+namespace {
+
+class MpiEngine final : public Engine {
+public:
+    MpiEngine(MPI_Comm comm, const MpiOptions& options) : comm_(comm), search_(comm_, options.threads) {}
+
+    void gather(PairList& pairs) {
+        jobs_.wait_for_all();
+        const std::lock_guard lock(calls_);
+        PairList all;
+        search_.gather(pairs, all.storage());
+        pairs = std::move(all);
+    }
+
+private:
+    /// Jobs that were submitted before come first, on all ranks.
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        jobs_.wait_for_all();
+        const std::lock_guard lock(calls_);
+        return search_.run(request, output, control);
+    }
+    /// All ranks must hear of it: run() does that.
+    void check(const Request&) const override {}
+    JobQueue& jobs() override {
+        if (!comm_.any_thread()) {
+            throw Error(ErrorCode::usage, "jobs of an MPI engine need MPI_Init_thread with MPI_THREAD_MULTIPLE");
+        }
+        return jobs_;
+    }
+
+    Communicator comm_;
+    RankSearch search_;
+    std::mutex calls_;
+    JobQueue jobs_{*this, [this] { search_.skip(); }};  // the last, so that it ends first
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options) {
+    return std::make_unique<MpiEngine>(comm, options);
+}
+
+void gather_pairs(Engine& engine, PairList& pairs) {
+    auto* const ranks = dynamic_cast<MpiEngine*>(&engine);
+    if (ranks == nullptr) throw Error(ErrorCode::usage, "not an MPI engine");
+    ranks->gather(pairs);
+}
+
+}  // namespace octopair

@@ -1,0 +1,53 @@
+// OctantOwners: which rank owns which octants: the pre-order of the octree, cut into one run for each rank.
+//
+// A rank's run may be empty. An object belongs to every rank that owns an octant with an entry of it, and where it is kept
+// in an octant above, to every rank that owns one of those below which it touches: so what is handed down to a rank's octants
+// is there too.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/directory.hpp"
+#include "octree/octants_of.hpp"
+
+namespace octopair {
+
+class OctantOwners {
+public:
+    /// Borrows the directory. Cuts it between octants so that each of `ranks` has about the same of `work`, which has an
+    /// element for each octant: a function of these numbers alone.
+    OctantOwners(const Directory& directory, std::span<const std::uint64_t> work, unsigned ranks);
+
+    unsigned ranks() const { return unsigned(begins_.size() - 1); }
+    NodeIndex begin(unsigned rank) const { return NodeIndex(begins_[rank]); }
+    NodeIndex end(unsigned rank) const { return NodeIndex(begins_[rank + 1]); }
+    unsigned owner(NodeIndex node) const { return owners_[node]; }
+
+    /// Calls place(rank) for each rank that a box belongs to which reaches beyond the leaf it begins in, `home`; a rank
+    /// may come more than once.
+    template <typename Place>
+    void for_each_owner(const CellBox& box, Directory::Leaf home, Place&& place) const {
+        for_each_octant_of(box, directory_, home, [&](NodeIndex node, unsigned) { add_owners(box, node, place); });
+    }
+
+private:
+    /// Of an octant that the box touches, and all below.
+    template <typename Place>
+    void add_owners(const CellBox& box, NodeIndex node, Place& place) const {
+        const Node& octant = directory_.nodes()[node];
+        place(owner(node));
+        if (owner(octant.next - 1) == owner(node)) return;
+        for (unsigned digit = 0; digit < 8; ++digit) {
+            const NodeIndex child = directory_.child(octant, digit);
+            if (directory_.nodes()[child].touches(box)) add_owners(box, child, place);
+        }
+    }
+
+    const Directory& directory_;
+    std::vector<std::size_t> begins_;
+    std::vector<std::uint32_t> owners_;
+};
+
+}  // namespace octopair

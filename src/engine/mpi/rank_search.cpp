@@ -1,0 +1,258 @@
+#include "engine/mpi/rank_search.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "base/timed.hpp"
+#include "engine/mpi/agreement.hpp"
+#include "engine/mpi/ascending_pieces.hpp"
+#include "engine/mpi/joint_call.hpp"
+#include "engine/mpi/octant_owners.hpp"
+#include "engine/mpi/routing.hpp"
+#include "engine/receiver.hpp"
+#include "engine/writers.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+Outlet outlet_of(const Engine::Output& output) {
+    if (output.list != nullptr) return Outlet::list;
+    return output.sink != nullptr ? Outlet::sink : Outlet::count;
+}
+
+}  // namespace
+
+/// One call.
+struct RankSearch::Task {
+    Task(Communicator& comm, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
+        : request(asked), output(out), stops(comm, stop), agreement(comm), progress(sink) {}
+
+    const Engine::Request& request;
+    const Engine::Output& output;
+    std::stop_source stop;
+    StopRelay stops;
+    Agreement agreement;
+    Progress progress;
+    JointCall joint;
+    Summary summary;
+};
+
+Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
+    Task task(comm_, request, output, control.progress);
+    const std::stop_callback forward(control.stop, [&] { task.stop.request_stop(); });
+    const auto end = [&] {
+        found_.storage().reset();
+        task.stops.end();
+    };
+    try {
+        const Timed timed(task.summary.seconds);
+        find(task);
+    } catch (...) {
+        end();
+        throw;
+    }
+    end();
+    task.progress.finish();
+    return task.summary;
+}
+
+void RankSearch::skip() noexcept {
+    std::stop_source stop;
+    StopRelay stops(comm_, stop);
+    try {
+        Agreement(comm_).together([] { throw Error(ErrorCode::cancelled, "cancelled"); });
+    } catch (...) {
+    }
+    try {
+        stops.end();
+    } catch (...) {
+    }
+}
+
+void RankSearch::find(Task& task) {
+    const Engine::Request& asked = task.request;
+    task.joint = join_call(comm_, asked, outlet_of(task.output));
+    const BoxSource own(asked.first, asked.second, task.joint.form);
+    PlantedOctants octants = plant(task, own);
+    if (comm_.size() == 1) {
+        const NodeIndex all = NodeIndex(octants.directory.nodes().size());
+        passes_.take({std::move(octants), 0, all}, task.stops);
+        return search(task, asked);
+    }
+    passes_.take(route(task, own, std::move(octants)), task.stops);
+    const Objects first = received_[0].view(), second = received_[1].view();
+    search(task, {first, task.joint.join ? &second : nullptr, asked.options});
+}
+
+/// Each rank plants the whole tree.
+PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {
+    const Sample sample = octant_sample(task.joint.objects());
+    const auto bounds = gather_sample<std::array<float, 6>>(comm_, task.joint, sample, [&](std::size_t position) {
+        Entry entry{};
+        own.pick({&position, 1}, {&entry, 1});
+        return std::array{entry.min[0], entry.min[1], entry.min[2], entry.max[0], entry.max[1], entry.max[2]};
+    });
+    std::vector<Entry> sampled(bounds.size());
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        const std::array<float, 6>& b = bounds[i];
+        sampled[i] = {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}, 0, 0};
+    }
+    PlantedOctants octants;
+    task.agreement.together([&] {
+        task.stops.pass_on();
+        octants = plant_octants(sampled, task.joint.objects(), task.stop.get_token());
+    });
+    return octants;
+}
+
+/// To the ranks whose octants they touch, which thus receive theirs.
+RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants octants) {
+    TeamExecutor threads(passes_.threads());
+    RankExecutor executor(threads, task.stops);
+    std::vector<std::uint64_t> work(octants.directory.nodes().size(), 0);
+    Routing routing(task.joint, own, octants, task.stop.get_token());
+    task.agreement.together([&] { routing.find(executor, work); });
+    comm_.add_up(work);
+    const OctantOwners owners(octants.directory, work, comm_.size());
+    task.agreement.together([&] { routing.address(executor, owners); });
+    for (unsigned set = 0; set < (task.joint.join ? 2u : 1u); ++set) {
+        ObjectArrays &out = sent_[set], &in = received_[set];
+        for (ObjectArrays* arrays : {&out, &in}) {
+            arrays->wide = task.joint.wide[set];
+            arrays->padded = task.joint.padded[set];
+        }
+        const RankCounts counts = routing.counts(set);
+        const RankCounts received = comm_.exchange_counts(counts);
+        task.agreement.together([&] {
+            in.resize(std::size_t(std::accumulate(received.begin(), received.end(), std::uint64_t(0))));
+            routing.pack(executor, set, set == 0 ? task.request.first : *task.request.second, out);
+        });
+        exchange(comm_, out, counts, in, received);
+    }
+    const PairNumbers numbers{received_[0].positions.span(), received_[task.joint.join ? 1 : 0].positions.span()};
+    return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
+}
+
+void RankSearch::search(Task& task, const Engine::Request& own_octants) {
+    const BoxSource source(own_octants.first, own_octants.second, task.joint.form);
+    Call call{own_octants, task.output, source, task.stop, task.progress, {}};
+    constexpr double built = 0.3;  // of the progress
+    task.agreement.together([&] {
+        try {
+            passes_.build(call, built);
+        } catch (const LinearOctree::Invalid&) {
+            throw Error(ErrorCode::bad_input, "an object changed while it was read");
+        }
+    });
+    task.summary.entries = comm_.sum(call.summary.entries);
+    if (outlet_of(task.output) == Outlet::count) {
+        count(task, call);
+    } else if (task.request.options.order == Order::octal) {
+        find_octal(task, call);
+    } else {
+        find_ascending(task, call);
+    }
+    task.summary.steps = call.summary.steps;
+}
+
+namespace {
+
+/// Of pieces of these sizes, how many pairs of one rank's are within the limit; the summary gets what there are in all.
+std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, const Options& options,
+                      Summary& summary) {
+    const std::uint64_t all = std::accumulate(pieces.begin(), pieces.end(), std::uint64_t(0));
+    const std::uint64_t before = std::accumulate(pieces.begin(), pieces.begin() + rank, std::uint64_t(0));
+    const std::uint64_t limit = options.limit.value_or(all);
+    summary.pairs = std::min(all, limit);
+    summary.truncated = all > limit;
+    return std::min(pieces[rank], limit - std::min(limit, before));
+}
+
+/// What `give` hands over, up to so many pairs.
+template <typename Give>
+void receive(const Engine::Output& output, std::uint64_t allowance, const Give& give) {
+    Receiver receiver(output, allowance);
+    try {
+        give(receiver);
+    } catch (const Receiver::LimitReached&) {
+    }
+    receiver.flush();
+}
+
+}  // namespace
+
+void RankSearch::gather(PairList& piece, PairList::Storage& all) {
+    RankCounts counts(comm_.size(), 0);
+    counts[0] = piece.size();
+    const RankCounts received = comm_.exchange_counts(counts);
+    Buffer<Pair> sent;
+    std::span<Pair> gathered;
+    Agreement(comm_).together([&] {
+        sent.resize_discard(std::size_t(piece.size()));
+        std::size_t at = 0;
+        for (const auto chunk : piece.chunks()) {
+            std::copy(chunk.begin(), chunk.end(), sent.data() + at);
+            at += chunk.size();
+        }
+        const std::uint64_t size = std::accumulate(received.begin(), received.end(), std::uint64_t(0));
+        if (size > 0) gathered = all.take_block(std::size_t(size)).first(std::size_t(size));
+    });
+    comm_.exchange(sent.data(), counts, gathered.data(), received);
+    if (!gathered.empty()) all.append(gathered);
+}
+
+void RankSearch::count(Task& task, Call& call) {
+    std::uint64_t pairs = 0;
+    task.agreement.together([&] { pairs = passes_.count(call, 1); });
+    (void)allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+}
+
+void RankSearch::find_octal(Task& task, Call& call) {
+    const std::optional<std::uint64_t> limit = task.request.options.limit;
+    std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
+    if (limit) {
+        task.agreement.together([&] { pairs = passes_.count(call, 0.6); });
+        allowance = allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    }
+    task.agreement.together([&] {
+        if (task.output.list != nullptr && !limit) {
+            passes_.list_octal(call, task.output.list->storage(), 1);
+            pairs = task.output.list->size();
+        } else {
+            receive(task.output, allowance, [&](Receiver& receiver) {
+                passes_.stream_octal(
+                    call,
+                    [&](std::span<const Pair> some) {
+                        receiver.take(some);
+                        if (!limit) pairs += some.size();
+                    },
+                    1);
+            });
+        }
+    });
+    if (!limit) (void)allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+}
+
+void RankSearch::find_ascending(Task& task, Call& call) {
+    const std::stop_token stop = task.stop.get_token();
+    task.agreement.together([&] { passes_.list_octal(call, found_.storage(), 0.8); });
+    const JointCall& joint = task.joint;
+    AscendingPieces pieces(comm_, passes_.threads(), joint.totals[0], joint.totals[joint.join ? 1 : 0]);
+    const bool whole = task.output.list != nullptr && !task.request.options.limit;
+    PairList sorted;
+    PairList& piece = whole ? *task.output.list : sorted;
+    pieces.bring_together(found_, piece.storage(), stop);
+    const std::uint64_t allowance =
+        allowed(comm_.all_gather(piece.size()), comm_.rank(), task.request.options, task.summary);
+    if (whole) return;
+    task.agreement.together([&] {
+        receive(task.output, allowance, [&](Receiver& receiver) {
+            for (const auto chunk : piece.chunks()) receiver.take(chunk);
+        });
+    });
+}
+
+}  // namespace octopair

@@ -1,0 +1,51 @@
+// RankSearch: what a rank does in a call, from its slice of the objects to its piece of the pairs.
+//
+//   join    what all ranks ask for                                                           (joint_call.hpp)
+//   plant   the octree's octants, from the sample that the local engine would take
+//   cut     the pre-order of octants into runs of about equal work, one for each rank         (octant_owners.hpp)
+//   route   objects to the ranks whose octants they touch                                     (routing.hpp)
+//   search  each rank the octants it owns, as the local engine would                          (rank_passes.hpp)
+//   order   ascending: pairs to the ranks that their `a` belongs to, where they are sorted    (ascending_pieces.hpp)
+//
+// The pieces of all ranks, one after another, are what the local engine finds. Nothing is gathered in one place but the
+// sample and a few numbers for each rank and octant.
+#pragma once
+
+#include <array>
+
+#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/object_arrays.hpp"
+#include "engine/mpi/rank_passes.hpp"
+#include "engine/pair_list.hpp"
+#include "engine/request.hpp"
+
+namespace octopair {
+
+class RankSearch {
+public:
+    RankSearch(Communicator& comm, unsigned threads) : comm_(comm), passes_(threads) {}
+
+    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's.
+    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
+    /// In place of run() on a rank whose call was cancelled before it began: ends it on all. Does not throw.
+    void skip() noexcept;
+    /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
+    void gather(PairList& piece, PairList::Storage& all);
+
+private:
+    struct Task;
+    void find(Task& task);
+    PlantedOctants plant(Task& task, const BoxSource& own);
+    RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
+    void search(Task& task, const Engine::Request& own_octants);
+    void count(Task& task, Call& call);
+    void find_octal(Task& task, Call& call);
+    void find_ascending(Task& task, Call& call);
+
+    Communicator& comm_;
+    RankPasses passes_;
+    std::array<ObjectArrays, 2> sent_, received_;
+    PairList found_;
+};
+
+}  // namespace octopair

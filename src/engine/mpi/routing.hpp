@@ -1,0 +1,71 @@
+// Routing: objects on their way to the ranks that own their octants.
+//
+//   find     each object's home leaf -> how much work each octant makes with this rank's objects
+//   address  with the owners: the ranks that each object goes to, and how many objects go to each rank
+//   pack     boxes, paddings and positions, one rank's after another's, each rank's ascending by position
+// What arrives from all ranks, in their order, is then again ascending by position, set after set; so within a rank objects
+// have numbers of their own, in the same order as their positions.
+//
+// Each step goes over blocks of objects, which threads share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/joint_call.hpp"
+#include "engine/mpi/object_arrays.hpp"
+#include "engine/mpi/octant_owners.hpp"
+#include "octree/build_steps.hpp"
+#include "octree/executor.hpp"
+#include "octree/linear_octree.hpp"
+
+namespace octopair {
+
+class Routing {
+public:
+    /// Borrows all. `source`: this rank's objects.
+    Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, std::stop_token stop);
+
+    /// Adds to `work`, which has an element for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
+    void find(Executor& executor, std::span<std::uint64_t> work);
+    void address(Executor& executor, const OctantOwners& owners);
+    /// After address(): how many of a set go to each rank, and how many of all have several owners.
+    RankCounts counts(unsigned set) const;
+    std::uint64_t shared_objects() const;
+    /// Those of a set.
+    void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
+
+private:
+    struct Block {
+        unsigned set = 0;
+        ObjectBlock objects = {};                // of the source
+        std::optional<std::size_t> bad = {};     // the first that is not a box
+        RankCounts counts = {};                  // of each rank
+        std::vector<std::uint32_t> owners = {};  // of objects with several: how many, and these
+        std::uint64_t shared = 0;
+    };
+    void find(Block& block, std::span<std::uint64_t> work);
+    void address(Block& block, const OctantOwners& owners);
+    template <typename Place>
+    void for_each_copy(const Block& block, Place&& place) const;
+    [[noreturn]] void refuse(std::size_t object) const;
+
+    static constexpr std::uint32_t several = ~std::uint32_t(0);
+
+    const JointCall& call_;
+    const BoxSource& source_;
+    const PlantedOctants& octants_;
+    std::stop_token stop_;
+    std::vector<Block> blocks_;
+    unsigned ranks_ = 0;
+    Buffer<Home> homes_;            // of each object: the leaf that it begins in
+    Buffer<std::uint32_t> owners_;  // of each object: its owner, or `several`
+};
+
+}  // namespace octopair

@@ -1,0 +1,40 @@
+// Receiver: pairs in their final order, on their way to the caller's list or sink, up to a limit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/request.hpp"
+
+namespace octopair {
+
+class Receiver {
+public:
+    Receiver(const Engine::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
+
+    struct LimitReached {};
+
+    /// Throws LimitReached at the first pair beyond the limit.
+    void take(std::span<const Pair> pairs);
+    void flush();
+
+    std::uint64_t pairs() const { return pairs_; }
+    bool truncated() const { return truncated_; }
+    double sink_seconds() const { return sink_seconds_; }
+
+private:
+    void deliver(std::span<const Pair> pairs);
+    void give(std::span<const Pair> pairs);
+    void keep(std::span<const Pair> pairs);
+
+    const Engine::Output& output_;
+    std::optional<std::uint64_t> limit_;
+    std::uint64_t pairs_ = 0;
+    bool truncated_ = false;
+    double sink_seconds_ = 0;
+    std::vector<Pair> held_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,100 @@
+// The same bytes from ranks as from threads: every kind of scene, however its objects lie with the ranks.
+#include <gtest/gtest.h>
+
+#include "mpi/ranks.hpp"
+#include "samples/scenes.hpp"
+#include "support/compare.hpp"
+#include "support/hash.hpp"
+#include "support/kinds.hpp"
+#include "support/pinned.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::Spread;
+
+class RankHashes : public ::testing::TestWithParam<std::string> {
+protected:
+    static Objects view(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes), {}}; }
+    static Options options_of(Order order) {
+        Options options;
+        options.order = order;
+        return options;
+    }
+    static std::vector<Pair> listed(Engine& engine, const Objects& objects, Order order) {
+        PairList list;
+        (void)engine.find_pairs(objects, list, options_of(order));
+        return list.to_vector();
+    }
+    static std::vector<Pair> streamed(Engine& engine, const Objects& objects, Order order) {
+        std::vector<Pair> all;
+        (void)engine.stream_pairs(
+            objects, [&](std::span<const Pair> batch) { all.insert(all.end(), batch.begin(), batch.end()); },
+            options_of(order));
+        return all;
+    }
+
+    const testing::Pinned& pinned_ = testing::pinned_scene(GetParam());
+    const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
+};
+
+std::vector<std::string> sample_kinds() {
+    const auto kinds = samples::scene_kinds();
+    return {kinds.begin(), kinds.end()};
+}
+
+TEST_P(RankHashes, AreThoseOfThreads) {
+    const bool many = pinned_.pairs > 300'000;
+    if (many && testing::sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
+    const std::vector<Pair> octal = listed(*make_local_engine(1), view(boxes_), Order::octal);
+    for (const unsigned threads : {1u, 2u}) {
+        const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
+        for (const Spread spread : testing::spreads) {
+            if (many && spread != Spread::even) continue;
+            SCOPED_TRACE(std::to_string(threads) + " threads, " + testing::name_of(spread));
+            const std::vector<Box3f> own = testing::slice(boxes_, spread);
+            EXPECT_EQ(testing::hash_of(testing::all_pieces(listed(*engine, view(own), Order::ascending))),
+                      pinned_.pair_hash);
+            EXPECT_EQ(testing::hash_of(testing::all_pieces(streamed(*engine, view(own), Order::ascending))),
+                      pinned_.pair_hash);
+            EXPECT_TRUE(testing::same_bytes(testing::all_pieces(listed(*engine, view(own), Order::octal)), octal));
+            EXPECT_TRUE(testing::same_bytes(testing::all_pieces(streamed(*engine, view(own), Order::octal)), octal));
+            EXPECT_EQ(engine->count_pairs(view(own)), pinned_.pairs);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+
+TEST(Ranks, ShareTheWork) {
+    const std::vector<Box3f> boxes = samples::make_scene("uniform", 100'000, 1);
+    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const auto engine = make_mpi_engine(MPI_COMM_WORLD);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        PairList piece;
+        Options options;
+        options.order = order;
+        const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, piece, options);
+        EXPECT_GT(piece.size(), summary.pairs / testing::rank_count() / 2);
+        EXPECT_LT(piece.size(), 2 * summary.pairs / testing::rank_count() + 1);
+    }
+}
+
+TEST(Ranks, GatherTheirPieces) {
+    const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
+    const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);
+    const auto engine = make_mpi_engine(MPI_COMM_WORLD);
+    PairList pairs;
+    const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, pairs);
+    gather_pairs(*engine, pairs);
+    if (testing::own_rank() == 0) {
+        EXPECT_EQ(pairs.size(), summary.pairs);
+        EXPECT_TRUE(testing::same_bytes(pairs.to_vector(), find_pairs(boxes)));
+    } else {
+        EXPECT_EQ(pairs.size(), 0u);
+    }
+}
+
+}  // namespace
+}  // namespace octopair

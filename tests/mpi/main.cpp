@@ -1,0 +1,39 @@
+// The tests of the MPI engine: every rank runs all of them; the first one prints, the others what fails.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "mpi/ranks.hpp"
+
+namespace octopair::testing {
+namespace {
+
+class Failures final : public ::testing::EmptyTestEventListener {
+    void OnTestPartResult(const ::testing::TestPartResult& result) override {
+        if (!result.failed()) return;
+        std::printf("rank %u: %s:%d: %s\n", own_rank(), result.file_name(), result.line_number(), result.summary());
+        std::fflush(stdout);
+    }
+};
+
+int run(int argc, char** argv) {
+    ::testing::InitGoogleTest(&argc, argv);
+    if (own_rank() != 0) {
+        ::testing::TestEventListeners& listeners = ::testing::UnitTest::GetInstance()->listeners();
+        delete listeners.Release(listeners.default_result_printer());
+        listeners.Append(std::make_unique<Failures>().release());
+    }
+    return on_all(RUN_ALL_TESTS() == 0) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace octopair::testing
+
+int main(int argc, char** argv) {
+    int level = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &level);
+    const int status = octopair::testing::run(argc, argv);
+    MPI_Finalize();
+    return status;
+}

@@ -1,0 +1,61 @@
+#include "mpi/ranks.hpp"
+
+#include <algorithm>
+
+namespace octopair::testing {
+
+SliceBounds own_slice(std::size_t objects, Spread spread) {
+    const std::size_t ranks = rank_count(), rank = own_rank();
+    if (spread == Spread::even) return {objects * rank / ranks, objects * (rank + 1) / ranks};
+    if (spread == Spread::all_on_last) return {rank + 1 == ranks ? 0 : objects, objects};
+    // Half on the first, none on the second, and so on with what is left.
+    std::size_t begin = 0, end = 0;
+    for (std::size_t r = 0; r <= rank; ++r) {
+        begin = end;
+        if (r % 2 == 0) end += (objects - end + 1) / 2;
+    }
+    return {begin, rank + 1 == ranks ? objects : end};
+}
+
+namespace {
+
+OwnedObjects slice_of(const OwnedObjects& whole, Spread spread) {
+    return {std::visit([&](const auto& boxes) -> decltype(whole.boxes) { return slice(boxes, spread); }, whole.boxes),
+            slice(whole.padding, spread)};
+}
+
+}  // namespace
+
+Case slice(const Case& whole, Spread spread) {
+    Case own = whole;
+    own.first = slice_of(whole.first, spread);
+    if (whole.second) own.second = slice_of(*whole.second, spread);
+    return own;
+}
+
+std::vector<Pair> all_pieces(const std::vector<Pair>& own) {
+    const int bytes = int(own.size() * sizeof(Pair));
+    std::vector<int> sizes(rank_count()), places;
+    MPI_Allgather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD);
+    int all_bytes = 0;
+    for (const int size : sizes) {
+        places.push_back(all_bytes);
+        all_bytes += size;
+    }
+    std::vector<Pair> all(std::size_t(all_bytes) / sizeof(Pair));
+    MPI_Allgatherv(own.data(), bytes, MPI_BYTE, all.data(), sizes.data(), places.data(), MPI_BYTE, MPI_COMM_WORLD);
+    return all;
+}
+
+bool on_all(bool own) {
+    int good = own ? 1 : 0;
+    MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
+    return good != 0;
+}
+
+std::uint64_t largest(std::uint64_t own) {
+    MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    return own;
+}
+
+}  // namespace octopair::testing

@@ -1,0 +1,56 @@
+// What the tests of the MPI engine share: they run on all ranks alike, each with its slice of the same scene.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "octopair/mpi.hpp"
+#include "support/cases.hpp"
+
+namespace octopair::testing {
+
+inline unsigned own_rank() {
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return unsigned(rank);
+}
+inline unsigned rank_count() {
+    int size = 0;
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    return unsigned(size);
+}
+
+/// How objects lie with the ranks.
+enum class Spread : std::uint8_t { even, all_on_last, lopsided };
+inline constexpr Spread spreads[] = {Spread::even, Spread::all_on_last, Spread::lopsided};
+inline std::string name_of(Spread spread) {
+    return spread == Spread::even ? "even" : spread == Spread::lopsided ? "lopsided" : "all on the last rank";
+}
+
+/// The objects [begin, end) are this rank's.
+struct SliceBounds {
+    std::size_t begin, end;
+};
+SliceBounds own_slice(std::size_t objects, Spread spread);
+
+template <typename Element>
+std::vector<Element> slice(const std::vector<Element>& all, Spread spread) {
+    if (all.empty()) return {};
+    const SliceBounds own = own_slice(all.size(), spread);
+    return {all.begin() + std::ptrdiff_t(own.begin), all.begin() + std::ptrdiff_t(own.end)};
+}
+/// This rank's part of a case.
+Case slice(const Case& whole, Spread spread);
+
+/// What all ranks found, one after another, on every rank.
+std::vector<Pair> all_pieces(const std::vector<Pair>& own);
+/// True on all ranks if on all.
+bool on_all(bool own);
+/// The largest of all ranks'.
+std::uint64_t largest(std::uint64_t own);
+
+}  // namespace octopair::testing
