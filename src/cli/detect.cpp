@@ -5,12 +5,17 @@
 #include <memory>
 #include <optional>
 
+#include "base/error_codes.hpp"
 #include "cli/detect_options.hpp"
 #include "cli/detection.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/event_detection.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/report.hpp"
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/cluster.hpp"
+#include "cli/rank_detection.hpp"
+#endif
 #include "cli/subcommands.hpp"
 #include "cli/words.hpp"
 #include "io/atomic_file.hpp"
@@ -20,24 +25,69 @@ namespace octopair::cli {
 
 namespace {
 
-int run_detect(const DetectRequest& request) {
+/// What is said of a run beside its pairs.
+class Outcome {
+public:
+    /// The file is opened at once, so that a place that cannot be written is known before the work.
+    Outcome(const DetectRequest& request, std::stop_token stop) : request_(request), stop_(std::move(stop)) {
+        if (!request.stats.empty()) stats_.emplace(request.stats);
+    }
+
+    void tell(const DetectReport& report) {
+        if (request_.count_only) {
+            io::StandardOutput out(stop_);
+            out.write(std::to_string(report.pairs) + '\n');
+            out.commit();
+        }
+        if (stats_) {
+            stats_->write(stats_json(report));
+            stats_->commit();
+        }
+        if (!request_.quiet) fmt::print(stderr, "{}", summary_text(report));
+    }
+
+private:
+    const DetectRequest& request_;
+    std::stop_token stop_;
+    std::optional<io::AtomicFile> stats_;
+};
+
+int exit_status_of(const DetectRequest& request, const DetectReport& report) {
+    return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
+}
+
+#ifdef OCTOPAIR_WITH_MPI
+/// The first rank speaks for all.
+int run_on_ranks(const DetectRequest& request) {
     const Interrupt interrupt;
-    // Opened at once, so that a place that cannot be written is known before the work.
-    std::optional<io::AtomicFile> stats;
-    if (!request.stats.empty()) stats.emplace(request.stats);
+    Cluster cluster;
+    try {
+        std::optional<Outcome> outcome;
+        cluster.together([&] {
+            if (cluster.first()) outcome.emplace(request, interrupt.token());
+        });
+        const DetectReport report = detect_on_ranks(request, cluster, interrupt.token());
+        cluster.together([&] {
+            if (cluster.first()) outcome->tell(report);
+        });
+        return exit_status_of(request, report);
+    } catch (const Error& error) {
+        if (cluster.first()) throw;
+        return exit_status(error.code());
+    }
+}
+#endif
+
+int run_detect(const DetectRequest& request) {
+#ifdef OCTOPAIR_WITH_MPI
+    if (request.engine.kind == EngineKind::mpi && !request.events) return run_on_ranks(request);
+#endif
+    const Interrupt interrupt;
+    Outcome outcome(request, interrupt.token());
     const DetectReport report =
         request.events ? detect_events(request, interrupt.token()) : detect(request, interrupt.token());
-    if (request.count_only) {
-        io::StandardOutput out(interrupt.token());
-        out.write(std::to_string(report.pairs) + '\n');
-        out.commit();
-    }
-    if (stats) {
-        stats->write(stats_json(report));
-        stats->commit();
-    }
-    if (!request.quiet) fmt::print(stderr, "{}", summary_text(report));
-    return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
+    outcome.tell(report);
+    return exit_status_of(request, report);
 }
 
 void add_what(CLI::App& command, DetectRequest& request) {

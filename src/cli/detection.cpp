@@ -57,7 +57,7 @@ private:
     }
 
     void count(Engine& engine) {
-        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) add(search(engine, frame, {}), 0);
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) report_.add(search(engine, frame, {}), 0);
         progress_.clear();
     }
 
@@ -75,7 +75,7 @@ private:
             timed_write([&] { writer->begin_frame(frame); });
             const double written_before = report_.seconds.write;
             const Summary summary = search(engine, frame, sink);
-            add(summary, report_.seconds.write - written_before);
+            report_.add(summary, report_.seconds.write - written_before);
             progress_.clear();
             timed_write([&] { writer->end_frame(); });
         }
@@ -87,17 +87,6 @@ private:
         const auto start = Clock::now();
         write();
         report_.seconds.write += seconds_since(start);
-    }
-
-    void add(const Summary& summary, double written) {
-        report_.pairs += summary.pairs;
-        report_.truncated |= summary.truncated;
-        report_.entries += summary.entries;
-        report_.steps.encode += summary.steps.encode;
-        report_.steps.sort += summary.steps.sort;
-        report_.steps.merge += summary.steps.merge;
-        report_.steps.scan += summary.steps.scan;
-        report_.seconds.detect += std::max(0.0, summary.seconds - written);
     }
 
     std::unique_ptr<io::PairWriter> make_writer() const {
@@ -136,6 +125,17 @@ private:
 };
 
 }  // namespace
+
+void DetectReport::add(const Summary& summary, double written) {
+    pairs += summary.pairs;
+    truncated |= summary.truncated;
+    entries += summary.entries;
+    steps.encode += summary.steps.encode;
+    steps.sort += summary.steps.sort;
+    steps.merge += summary.steps.merge;
+    steps.scan += summary.steps.scan;
+    seconds.detect += std::max(0.0, summary.seconds - written);
+}
 
 DetectReport detect(const DetectRequest& request, const std::stop_token& stop) {
     return Detection(request, stop).run();

@@ -51,6 +51,9 @@ struct DetectReport {
     StepSeconds steps;
     DetectSeconds seconds;
     EngineCrew crew;
+
+    /// What a frame's call did, beside `written` seconds that went by in writing.
+    void add(const Summary& summary, double written);
 };
 
 /// Does it all but the stats. Throws Error.

@@ -31,9 +31,16 @@ constexpr bool with_service = true;
 constexpr bool with_service = false;
 #endif
 
+#ifdef OCTOPAIR_WITH_MPI
+constexpr bool with_mpi = true;
+#else
+constexpr bool with_mpi = false;
+#endif
+
 std::string engine_help() {
     std::string help = "where to look for pairs: local (default, threads)";
     if (with_processes) help += ", processes (workers)";
+    if (with_mpi) help += ", mpi (ranks, under mpirun)";
     if (with_service) help += ", or the address of a server (unix:PATH or HOST:PORT)";
     return help;
 }
@@ -49,11 +56,12 @@ void parse_engine(const std::string& word, EngineChoice& choice) {
         choice.server.address = word;
         return;
     }
-    if (word == "processes" && !with_processes) {
-        throw Error(ErrorCode::usage, "--engine: this octopair was built without 'processes'; it has: local");
+    if ((word == "processes" && !with_processes) || (word == "mpi" && !with_mpi)) {
+        throw Error(ErrorCode::usage, fmt::format("--engine: this octopair was built without '{}'; it has: {}", word,
+                                                  fmt::join(engine_names(), ", ")));
     }
-    check_word({"--engine", engine_names(), {"mpi"}}, word);
-    choice.kind = word == "processes" ? EngineKind::processes : EngineKind::local;
+    check_word({"--engine", engine_names(), {}}, word);
+    choice.kind = word == "processes" ? EngineKind::processes : word == "mpi" ? EngineKind::mpi : EngineKind::local;
 }
 
 unsigned one_a_core_unless(const std::optional<unsigned>& asked, unsigned most) {
@@ -84,6 +92,7 @@ void add_count(CLI::App& command, const CountOption& option, std::optional<unsig
 std::vector<std::string_view> engine_names() {
     std::vector<std::string_view> names = {"local"};
     if (with_processes) names.emplace_back("processes");
+    if (with_mpi) names.emplace_back("mpi");
     return names;
 }
 
@@ -92,8 +101,10 @@ void add_engine_options(CLI::App& command, EngineChoice& choice) {
         .add_option_function<std::string>(
             "--engine", [&choice](const std::string& word) { parse_engine(word, choice); }, engine_help())
         ->type_name("ENGINE");
-    add_count(command, {"--threads", "threads of the local engine (default 0: one a core)", most_threads},
-              choice.threads);
+    add_count(
+        command,
+        {"--threads", "threads of the local engine (default 0: one a core), or of each rank (default 1)", most_threads},
+        choice.threads);
     add_count(command, {"--workers", "worker processes, with --engine processes (default 0: one a core)", most_workers},
               choice.workers);
 }
@@ -109,12 +120,17 @@ void check_engine_choice(const EngineChoice& choice) {
     if (choice.kind == EngineKind::local && choice.workers) {
         throw Error(ErrorCode::usage, "--workers: the local engine has threads; workers need --engine processes");
     }
+    if (choice.kind == EngineKind::mpi && choice.workers) {
+        throw Error(ErrorCode::usage, "--workers: --engine mpi has ranks; mpirun -n says how many");
+    }
     if (choice.kind == EngineKind::processes && choice.threads) {
         throw Error(ErrorCode::usage, "--threads: --engine processes has a thread a worker; --workers says how many");
     }
 }
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
+    if (choice.kind == EngineKind::mpi)
+        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` works on ranks, without --events");
 #ifdef OCTOPAIR_WITH_PROCESSES
     if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
 #endif
@@ -128,7 +144,8 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
 
 EngineCrew crew_of(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
-    if (choice.kind == EngineKind::server) return {"server", 0, 0, choice.server.address};
+    if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};
+    if (choice.kind == EngineKind::mpi) return {"mpi", choice.threads.value_or(1), 0};
     return {"local", one_a_core_unless(choice.threads, ~0u), 0};
 }
 

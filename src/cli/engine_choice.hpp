@@ -17,7 +17,7 @@ class App;
 
 namespace octopair::cli {
 
-enum class EngineKind : std::uint8_t { local, processes, server };
+enum class EngineKind : std::uint8_t { local, processes, mpi, server };
 
 /// As it was asked for; 0 threads or workers are one a core.
 struct EngineChoice {
@@ -26,11 +26,12 @@ struct EngineChoice {
     ServerChoice server;
 };
 
-/// Who looked for the pairs: threads of this process, workers, or a server.
+/// Who looked for the pairs: threads of this process, workers, ranks, or a server.
 struct EngineCrew {
     std::string_view engine = "local";
     unsigned threads = 0;
     unsigned workers = 0;
+    unsigned ranks = 0;
     std::string_view server = {};  ///< its address, of the choice
 };
 
@@ -43,7 +44,7 @@ void add_engine_options(CLI::App& command, EngineChoice& choice);
 /// Throws Error{usage} for threads, workers or a server's options of an engine that has none.
 void check_engine_choice(const EngineChoice& choice);
 
-/// Throws what the makers of engines throw.
+/// Throws what the makers of engines throw; Error{usage} for ranks, which only `detect` has.
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice);
 
 EngineCrew crew_of(const EngineChoice& choice);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/isolated_read.hpp"
+#include "io/npy.hpp"
 
 namespace octopair::cli {
 
@@ -16,7 +19,7 @@ std::optional<std::string> InputSet::find_fault() const {
     const auto fault = io::find_fault(scene);
     if (!fault) return std::nullopt;
     const std::string frame = scene.moving ? fmt::format("frame {}: ", fault->frame) : "";
-    std::uint64_t object = fault->object;
+    std::uint64_t object = begin + fault->object;
     for (const Part& part : parts) {
         if (object < part.objects) return fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what);
         object -= part.objects;
@@ -24,16 +27,99 @@ std::optional<std::string> InputSet::find_fault() const {
     return std::nullopt;
 }
 
+std::optional<std::uint64_t> InputSet::fault_position() const {
+    const auto fault = io::find_fault(scene);
+    if (!fault) return std::nullopt;
+    return fault->frame * total + begin + fault->object;
+}
+
+namespace {
+
+io::LoadedScene read_part(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
+    return io::is_mesh_file(path) ? read_isolated(path, mesh_objects, stop) : io::read_scene(path, mesh_objects, stop);
+}
+
+/// A file whose objects can be had in parts.
+class PartFile {
+public:
+    PartFile(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
+        if (io::is_npy_file(path)) {
+            npy_.emplace(path);
+        } else {
+            whole_ = read_part(path, mesh_objects, stop);
+        }
+    }
+
+    std::uint64_t objects() const { return npy_ ? npy_->shape().objects : whole_.objects; }
+    bool wide() const { return npy_ ? npy_->wide() : std::holds_alternative<Buffer<Box3d>>(whole_.boxes); }
+    std::vector<std::string> take_names() { return std::move(whole_.names); }
+
+    io::LoadedScene read(const io::ObjectRows& rows, const std::stop_token& stop) {
+        if (npy_) return npy_->read(rows, stop);
+        io::LoadedScene part = std::move(whole_);
+        const std::uint64_t objects = std::exchange(part.objects, rows.end - rows.begin);
+        std::visit(
+            [&](auto& boxes) {
+                std::remove_reference_t<decltype(boxes)> some(std::size_t(part.frames * part.objects));
+                for (std::uint64_t frame = 0; frame < part.frames; ++frame) {
+                    std::copy_n(boxes.data() + frame * objects + rows.begin, part.objects,
+                                some.data() + frame * part.objects);
+                }
+                boxes = std::move(some);
+            },
+            part.boxes);
+        return part;
+    }
+
+private:
+    std::optional<io::NpyScene> npy_;
+    io::LoadedScene whole_;
+};
+
+}  // namespace
+
 InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
                         const std::stop_token& stop) {
     InputSet set;
     std::vector<io::LoadedScene> scenes;
     for (const std::string& path : paths) {
-        scenes.push_back(io::is_mesh_file(path) ? read_isolated(path, mesh_objects, stop)
-                                                : io::read_scene(path, mesh_objects, stop));
+        scenes.push_back(read_part(path, mesh_objects, stop));
         set.parts.push_back({path, scenes.back().objects});
     }
     set.scene = io::join_scenes(scenes, paths);
+    set.total = set.scene.objects;
+    return set;
+}
+
+InputSet read_input_slice(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+                          const SliceRequest& wanted, const std::stop_token& stop) {
+    InputSet set;
+    std::vector<PartFile> files;
+    bool wide = false;
+    std::vector<std::string> names;
+    for (const std::string& path : paths) {
+        files.emplace_back(path, mesh_objects, stop);
+        set.parts.push_back({path, files.back().objects()});
+        wide |= files.back().wide();
+        const std::vector<std::string> part_names = files.back().take_names();
+        if (!part_names.empty()) names.resize(std::size_t(set.total));
+        names.insert(names.end(), part_names.begin(), part_names.end());
+        set.total += files.back().objects();
+    }
+    set.begin = wanted.number.begin(set.total);
+    const std::uint64_t end = wanted.number.end(set.total);
+    std::vector<io::LoadedScene> scenes;
+    std::uint64_t before = 0;
+    for (PartFile& file : files) {
+        const std::uint64_t objects = file.objects();
+        const auto row = [&](std::uint64_t object) { return std::clamp(object, before, before + objects) - before; };
+        const io::ObjectRows rows{row(set.begin), row(end)};
+        scenes.push_back(file.read(rows, stop));
+        before += objects;
+    }
+    set.scene = io::join_scenes(scenes, paths, wide);
+    if (wanted.names && !names.empty()) names.resize(std::size_t(set.total));
+    set.scene.names = wanted.names ? std::move(names) : std::vector<std::string>();
     return set;
 }
 

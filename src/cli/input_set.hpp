@@ -20,16 +20,43 @@ struct Part {
 struct InputSet {
     io::LoadedScene scene;
     std::vector<Part> parts;
+    std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
+    std::uint64_t total = 0;               ///< objects of all parts
     std::span<const double> padding = {};  ///< borrowed; empty, or one an object
 
     /// The objects of a frame; a set that does not move is the same in every frame.
     Objects frame(std::uint64_t f) const;
     /// Names the file and the object of it that is not a box, if there is one.
     std::optional<std::string> find_fault() const;
+    /// Where it stands: an object, counted on from frame to frame.
+    std::optional<std::uint64_t> fault_position() const;
+};
+
+/// One of so many even parts of a set.
+struct SliceNumber {
+    std::uint64_t slice = 0, slices = 1;
+
+    std::uint64_t begin(std::uint64_t objects) const { return part(objects, slice); }
+    std::uint64_t end(std::uint64_t objects) const { return part(objects, slice + 1); }
+
+private:
+    /// objects * number / slices, without the product.
+    std::uint64_t part(std::uint64_t objects, std::uint64_t number) const {
+        return objects / slices * number + objects % slices * number / slices;
+    }
 };
 
 /// Throws what io::read_scene and io::join_scenes throw.
 InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
                         const std::stop_token& stop);
+
+/// The objects of a slice of the set; of .npy files no others are read. `names`: whether the scene gets the names of all
+/// objects of the set, or of none.
+struct SliceRequest {
+    SliceNumber number;
+    bool names = false;
+};
+InputSet read_input_slice(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+                          const SliceRequest& wanted, const std::stop_token& stop);
 
 }  // namespace octopair::cli

@@ -74,6 +74,9 @@ std::string summary_text(const DetectReport& report) {
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
     const EngineCrew& crew = report.crew;
     if (!crew.server.empty()) return text + fmt::format(" on server {}\n", crew.server);
+    if (crew.ranks > 0) {
+        return text + fmt::format(" on {} with {} each\n", plural(crew.ranks, "rank"), plural(crew.threads, "thread"));
+    }
     return text + " on " + (crew.workers > 0 ? plural(crew.workers, "worker") : plural(crew.threads, "thread")) + '\n';
 }
 
@@ -83,6 +86,7 @@ std::string stats_json(const DetectReport& report) {
         {"truncated", report.truncated},  {"engine", report.crew.engine}, {"threads", report.crew.threads},
         {"workers", report.crew.workers}, {"entries", report.entries},    {"peak_rss_bytes", peak_rss_bytes()},
         {"seconds", seconds_json(report)}};
+    if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
     if (!report.crew.server.empty()) stats["server"] = report.crew.server;
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';

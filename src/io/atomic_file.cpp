@@ -36,11 +36,33 @@ std::string random_name(const std::string& directory) {
     return fmt::format("{}/.octopair-{:08x}{:08x}.tmp", directory, random(), random());
 }
 
+void write_whole(const Descriptor& file, const std::string& path, std::span<const std::byte> bytes,
+                 std::uint64_t offset) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::pwrite(file.number(), bytes.data(), bytes.size(), off_t(offset));
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail_io(path, "cannot write", errno);
+        offset += std::uint64_t(written);
+        bytes = bytes.subspan(std::size_t(written));
+    }
+}
+
 std::string own_link(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
 
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path) {
+    choose_place(path);
+    open_unnamed();
+    if (!descriptor_.open()) open_named();
+}
+
+AtomicFile::AtomicFile(const std::string& path, Shared) {
+    choose_place(path);
+    open_named();
+}
+
+void AtomicFile::choose_place(const std::string& path) {
     const fs::path target = resolved(path);
     path_ = target.string();
     directory_ = target.parent_path().empty() ? "." : target.parent_path().string();
@@ -49,8 +71,6 @@ AtomicFile::AtomicFile(const std::string& path) {
         fail_io(path, "cannot be replaced, it is not a regular file", S_ISDIR(status.st_mode) ? EISDIR : EEXIST);
     }
     if (target.filename().empty()) fail_io(path, "cannot create", EISDIR);
-    open_unnamed();
-    if (!descriptor_.open()) open_named();
 }
 
 AtomicFile::~AtomicFile() { remove_temporary(); }
@@ -103,13 +123,7 @@ void AtomicFile::write_at(std::uint64_t offset, std::string_view text) {
 }
 
 void AtomicFile::write_all(std::span<const std::byte> bytes, std::uint64_t offset) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::pwrite(descriptor_.number(), bytes.data(), bytes.size(), off_t(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail_io(path_, "cannot write", errno);
-        offset += std::uint64_t(written);
-        bytes = bytes.subspan(std::size_t(written));
-    }
+    write_whole(descriptor_, path_, bytes, offset);
 }
 
 void AtomicFile::finish() {
@@ -121,6 +135,19 @@ void AtomicFile::finish() {
     const Descriptor directory(::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // The result stands; some file systems cannot sync a directory.
     if (directory.open()) (void)::fsync(directory.number());
+}
+
+FilePart::FilePart(const std::string& temporary, const std::string& path)
+    : path_(path), descriptor_(::open(temporary.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
+}
+
+void FilePart::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    write_whole(descriptor_, path_, bytes, offset);
+}
+
+void FilePart::sync() {
+    if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
 }
 
 }  // namespace octopair::io

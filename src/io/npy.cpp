@@ -20,33 +20,10 @@ namespace {
 /// As many as a file name NAME.000000.npy can number.
 constexpr std::uint64_t most_frames = 1'000'000;
 
-struct OpenArray {
-    InputFile file;
-    NpyHeader header;
-};
-
-OpenArray open_array(const std::string& path) {
-    InputFile file(path);
+NpyHeader read_header(const InputFile& file) {
     Buffer<std::byte> start(std::size_t(std::min<std::uint64_t>(npy_header_max_bytes, file.size())));
     file.read(0, start.span());
-    NpyHeader header = parse_npy_header(start.span(), file.size(), path);
-    return {std::move(file), std::move(header)};
-}
-
-template <typename T>
-Buffer<T> read_rows(const OpenArray& array, std::uint64_t rows, const std::stop_token& stop) {
-    Buffer<T> buffer{std::size_t(rows)};
-    array.file.read(array.header.data_offset, std::as_writable_bytes(buffer.span()), stop);
-    return buffer;
-}
-
-template <typename Real>
-Buffer<Box<Real>> read_boxes(const OpenArray& array, const SceneShape& shape, const std::stop_token& stop) {
-    if (!shape.spheres) return read_rows<Box<Real>>(array, shape.frames * shape.objects, stop);
-    const auto spheres = read_rows<Sphere<Real>>(array, shape.objects, stop);
-    Buffer<Box<Real>> boxes{spheres.size()};
-    boxes_of_spheres<Real>(spheres.span(), boxes.span(), array.file.path());
-    return boxes;
+    return parse_npy_header(start.span(), file.size(), file.path());
 }
 
 void refuse_integers(const NpyHeader& header, std::string_view file) {
@@ -68,26 +45,57 @@ SceneShape scene_shape(const NpyHeader& header, std::string_view file) {
     return {.objects = shape[1], .frames = shape[0], .moving = true};
 }
 
-LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop) {
-    const OpenArray array = open_array(path);
-    const SceneShape shape = scene_shape(array.header, path);
+NpyScene::NpyScene(const std::string& path)
+    : file_(path), header_(read_header(file_)), shape_(scene_shape(header_, path)) {}
+
+LoadedScene NpyScene::read(const ObjectRows& rows, const std::stop_token& stop) const {
     LoadedScene scene;
-    scene.objects = shape.objects;
-    scene.frames = shape.frames;
-    scene.moving = shape.moving;
-    if (array.header.type == NpyType::float32) {
-        scene.boxes = read_boxes<float>(array, shape, stop);
+    scene.objects = rows.end - rows.begin;
+    scene.frames = shape_.frames;
+    scene.moving = shape_.moving;
+    if (wide()) {
+        scene.boxes = read_boxes<double>(rows, stop);
     } else {
-        scene.boxes = read_boxes<double>(array, shape, stop);
+        scene.boxes = read_boxes<float>(rows, stop);
     }
     return scene;
 }
 
+template <typename Real>
+Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_token& stop) const {
+    const std::size_t objects = std::size_t(rows.end - rows.begin);
+    Buffer<Box<Real>> boxes{std::size_t(shape_.frames) * objects};
+    if (shape_.spheres) {
+        Buffer<Sphere<Real>> spheres{objects};
+        read_rows(rows.begin, spheres.span(), stop);
+        boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin});
+        return boxes;
+    }
+    // Whole frames lie in the file as they will lie in memory.
+    const bool whole = objects == shape_.objects;
+    const std::size_t runs = whole ? 1 : std::size_t(shape_.frames), length = whole ? boxes.size() : objects;
+    for (std::size_t run = 0; run < runs; ++run) {
+        read_rows(run * shape_.objects + rows.begin, boxes.span().subspan(run * length, length), stop);
+    }
+    return boxes;
+}
+
+template <typename T>
+void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
+    file_.read(header_.data_offset + first * sizeof(T), std::as_writable_bytes(rows), stop);
+}
+
+LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop) {
+    const NpyScene scene(path);
+    return scene.read({0, scene.shape().objects}, stop);
+}
+
 std::optional<NpyFrames> NpyFrames::open(const std::string& path) {
-    OpenArray array = open_array(path);
-    const SceneShape shape = scene_shape(array.header, path);
+    InputFile file(path);
+    NpyHeader header = read_header(file);
+    const SceneShape shape = scene_shape(header, path);
     if (!shape.moving) return std::nullopt;
-    return NpyFrames(std::move(array.file), std::move(array.header), shape);
+    return NpyFrames(std::move(file), std::move(header), shape);
 }
 
 void NpyFrames::read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const {
@@ -107,16 +115,17 @@ void NpyFrames::read(std::uint64_t frame, std::span<Box3d> boxes, const std::sto
 }
 
 Buffer<double> read_padding(const std::string& path, const std::stop_token& stop) {
-    const OpenArray array = open_array(path);
-    refuse_integers(array.header, path);
-    const auto& shape = array.header.shape;
+    const InputFile file(path);
+    const NpyHeader header = read_header(file);
+    refuse_integers(header, path);
+    const auto& shape = header.shape;
     if (shape.size() != 1) refuse(path, fmt::format("its shape is {}; paddings are (n,)", shape_text(shape)));
-    Buffer<double> padding;
-    if (array.header.type == NpyType::float64) {
-        padding = read_rows<double>(array, shape[0], stop);
+    Buffer<double> padding{std::size_t(shape[0])};
+    if (header.type == NpyType::float64) {
+        file.read(header.data_offset, std::as_writable_bytes(padding.span()), stop);
     } else {
-        const auto narrow = read_rows<float>(array, shape[0], stop);
-        padding.resize_discard(narrow.size());
+        Buffer<float> narrow{padding.size()};
+        file.read(header.data_offset, std::as_writable_bytes(narrow.span()), stop);
         std::copy_n(narrow.data(), narrow.size(), padding.data());
     }
     for (std::size_t i = 0; i < padding.size(); ++i) {

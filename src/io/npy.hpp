@@ -27,7 +27,36 @@ struct SceneShape {
 /// `file`.
 SceneShape scene_shape(const NpyHeader& header, std::string_view file);
 
-/// Boxes are read where they will lie, without a second copy. Throws Error{bad_input, io_failed, cancelled}.
+/// Objects [begin, end) of a file.
+struct ObjectRows {
+    std::uint64_t begin = 0, end = 0;
+};
+
+/// A scene of which some objects are read.
+class NpyScene {
+public:
+    /// Throws Error{bad_input, io_failed}.
+    explicit NpyScene(const std::string& path);
+
+    const SceneShape& shape() const { return shape_; }
+    bool wide() const { return header_.type == NpyType::float64; }
+
+    /// These objects, in each frame. Boxes are read where they will lie, without a second copy. Throws
+    /// Error{bad_input, io_failed, cancelled}.
+    LoadedScene read(const ObjectRows& rows, const std::stop_token& stop) const;
+
+private:
+    template <typename Real>
+    Buffer<Box<Real>> read_boxes(const ObjectRows& rows, const std::stop_token& stop) const;
+    template <typename T>
+    void read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const;
+
+    InputFile file_;
+    NpyHeader header_;
+    SceneShape shape_;
+};
+
+/// All of its objects. Throws Error{bad_input, io_failed, cancelled}.
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop = {});
 
 /// A moving scene, of which one frame at a time is read.

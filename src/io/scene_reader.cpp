@@ -77,9 +77,11 @@ bool is_mesh_file(const std::string& path) {
 #endif
 }
 
+bool is_npy_file(const std::string& path) { return lower_case_ending(path) == ".npy"; }
+
 LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop) {
     const std::string ending = lower_case_ending(path);
-    if (ending == ".npy") return read_npy_scene(path, stop);
+    if (is_npy_file(path)) return read_npy_scene(path, stop);
     if (ending == ".csv") return read_csv_scene(path, stop);
 #ifdef OCTOPAIR_WITH_MESHES
     if (is_mesh_ending(ending)) return read_mesh_scene(path, mesh_objects);
@@ -98,17 +100,18 @@ void check_frame_counts(std::span<const FrameCount> counts, std::span<const std:
     }
 }
 
-LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths) {
-    if (scenes.size() == 1) return std::move(scenes.front());
+LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths, bool wide) {
+    const auto is_wide = [](const LoadedScene& scene) { return std::holds_alternative<Buffer<Box3d>>(scene.boxes); };
+    if (scenes.size() == 1 && is_wide(scenes.front()) >= wide) return std::move(scenes.front());
     LoadedScene joined;
     joined.moving = scenes.front().moving;
     joined.frames = scenes.front().frames;
-    bool wide = false, named = false;
+    bool named = false;
     std::vector<FrameCount> counts;
     for (const LoadedScene& scene : scenes) {
         counts.push_back({scene.frames, scene.moving});
         joined.objects += scene.objects;
-        wide |= std::holds_alternative<Buffer<Box3d>>(scene.boxes);
+        wide |= is_wide(scene);
         named |= !scene.names.empty();
     }
     check_frame_counts(counts, paths);
@@ -127,7 +130,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
 }
 
 std::optional<NpyFrames> open_frames(const std::string& path) {
-    if (lower_case_ending(path) != ".npy") return std::nullopt;
+    if (!is_npy_file(path)) return std::nullopt;
     return NpyFrames::open(path);
 }
 

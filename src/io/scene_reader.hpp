@@ -17,12 +17,15 @@ enum class MeshObjects : std::uint8_t { node, triangle };
 /// True if read_scene would give the file to Assimp.
 bool is_mesh_file(const std::string& path);
 
+/// True if read_scene would read it as .npy.
+bool is_npy_file(const std::string& path);
+
 /// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
 LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop = {});
 
-/// Several scenes as one set: objects are numbered on, in each frame. Float32 beside float64 becomes float64. Throws
-/// Error{bad_input} where their frames do not agree.
-LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths);
+/// Several scenes as one set: objects are numbered on, in each frame. Float32 beside float64 becomes float64, as all does
+/// if `wide`. Throws Error{bad_input} where their frames do not agree.
+LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths, bool wide = false);
 
 /// How many frames a set has; one that stands still has the same one for ever.
 struct FrameCount {

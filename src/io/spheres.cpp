@@ -41,7 +41,7 @@ bool is_finite_box(const auto& box) {
 }
 
 template <typename Real>
-[[noreturn]] void refuse_sphere(const Sphere<Real>& sphere, std::size_t object, std::string_view file) {
+[[noreturn]] void refuse_sphere(const Sphere<Real>& sphere, std::uint64_t object, std::string_view file) {
     for (int axis = 0; axis < 3; ++axis) {
         if (std::isfinite(sphere.centre[axis])) continue;
         refuse(file, fmt::format("object {}: centre {} is {}, not a finite number", object, "xyz"[axis],
@@ -66,17 +66,17 @@ Box<Real> box_of_sphere(const Sphere<Real>& sphere) {
 }
 
 template <typename Real>
-void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, std::string_view file) {
+void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place) {
     for (std::size_t i = 0; i < spheres.size(); ++i) {
-        if (!is_finite(spheres[i]) || !(spheres[i].radius >= 0)) refuse_sphere(spheres[i], i, file);
+        if (!is_finite(spheres[i]) || !(spheres[i].radius >= 0)) refuse_sphere(spheres[i], place.begin + i, place.file);
         boxes[i] = box_of_sphere(spheres[i]);
-        if (!is_finite_box(boxes[i])) refuse_sphere(spheres[i], i, file);
+        if (!is_finite_box(boxes[i])) refuse_sphere(spheres[i], place.begin + i, place.file);
     }
 }
 
 template Box3f box_of_sphere(const Sphere<float>&);
 template Box3d box_of_sphere(const Sphere<double>&);
-template void boxes_of_spheres(std::span<const Sphere<float>>, std::span<Box3f>, std::string_view);
-template void boxes_of_spheres(std::span<const Sphere<double>>, std::span<Box3d>, std::string_view);
+template void boxes_of_spheres(std::span<const Sphere<float>>, std::span<Box3f>, const SpherePlace&);
+template void boxes_of_spheres(std::span<const Sphere<double>>, std::span<Box3d>, const SpherePlace&);
 
 }  // namespace octopair::io

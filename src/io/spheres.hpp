@@ -5,6 +5,7 @@
 // them. float64: the box is the smallest of float64 that holds the exact sums.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -24,9 +25,15 @@ struct Sphere {
 template <typename Real>
 Box<Real> box_of_sphere(const Sphere<Real>& sphere);
 
-/// The boxes of all. Throws Error{bad_input} that names `file` and the object for a number that is not finite, a
+/// Where spheres stand.
+struct SpherePlace {
+    std::string_view file;
+    std::uint64_t begin = 0;  ///< the number of the first
+};
+
+/// The boxes of all. Throws Error{bad_input} that names the file and the object for a number that is not finite, a
 /// negative radius, or an end beyond the range of Real.
 template <typename Real>
-void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, std::string_view file);
+void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place);
 
 }  // namespace octopair::io

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # Compiles each header of include/ and src/ alone.
 #
-#     headers_alone.sh COMPILER ROOT BUILD     BUILD holds include/octopair/version.hpp, and what protoc wrote
+#     headers_alone.sh COMPILER ROOT BUILD [DIRECTORY...]
+#
+# BUILD holds include/octopair/version.hpp, and what protoc wrote; the directories are those of other libraries' headers.
 set -uo pipefail
 compiler=$1 root=$2 build=$3
+libraries=$(printf -- "-isystem %s " "${@:4}")
 
 alone() {
     local header=$1
@@ -11,11 +14,11 @@ alone() {
     grep -q '^#pragma once' "$header" || return 0
     printf '#include "%s"\n#include "%s"\n' "$header" "$header" |
         "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -x c++ \
-            -I "$root/include" -I "$root/src" -I "$build/include" -isystem "$build/src/service/generated" - ||
+            -I "$root/include" -I "$root/src" -I "$build/include" -isystem "$build/src/service/generated" $libraries - ||
         { echo "$header does not compile alone" && return 1; }
 }
 export -f alone
-export compiler root build
+export compiler root build libraries
 
 headers=$(find "$root/include" "$root/src" -name '*.hpp' | sort)
 xargs -P "$(nproc)" -I{} bash -c 'alone {}' <<< "$headers" || exit 1

@@ -30,7 +30,7 @@ void check_spheres(std::span<const std::byte> data, std::uint64_t objects) {
     std::vector<io::Sphere<Real>> spheres(objects);
     if (objects > 0) std::memcpy(spheres.data(), data.data(), data.size());
     std::vector<Box<Real>> boxes(objects);
-    io::boxes_of_spheres<Real>(spheres, boxes, "f.npy");
+    io::boxes_of_spheres<Real>(spheres, boxes, {"f.npy"});
     for (std::size_t i = 0; i < objects; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             require(boxes[i].min[axis] <= spheres[i].centre[axis] && spheres[i].centre[axis] <= boxes[i].max[axis]);

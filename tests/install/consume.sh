@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE
+#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI
 #
 # installed: `cmake --install BUILD` to a fresh prefix, which is then moved, and found there by find_package; the program
 # too, if PROGRAM is ON. With PROCESSES also what uses octopair::processes: it must run the workers' program of that tree,
-# told by no environment. With SERVICE what uses octopair::client, of a server of that tree.
+# told by no environment. With SERVICE what uses octopair::client, of a server of that tree. With MPI what uses
+# octopair::mpi, on two ranks.
 set -euo pipefail
-how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7
+how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8
 work=$(mktemp -d)
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
@@ -94,5 +95,9 @@ if [ "$with_service" = ON ] && [ "$how" = installed ]; then
         check_unit
         with_server "$work/client/client_consumer"
     fi
+fi
+if [ "$with_mpi" = ON ]; then
+    build_consumer mpi mpi_consumer "${options[@]}" -DCONSUMER_WITH_MPI=ON
+    mpirun -n 2 "$work/mpi/mpi_consumer"
 fi
 echo "a consumer of octopair ($how) finds its pairs"

@@ -8,15 +8,18 @@
 namespace octopair {
 
 void StopRelay::pass_on() {
+    if (known_) return;
     if (stop_.stop_requested()) {
-        if (!sent_) comm_.send_stop();
-        sent_ = true;
+        known_ = sent_ = true;
+        comm_.send_stop();
     } else if (comm_.stop_has_come()) {
+        known_ = true;
         stop_.request_stop();
     }
 }
 
 void StopRelay::end() {
+    known_ = true;  // what is sent from here on would find nobody
     const std::vector<char> sent = comm_.all_gather(char(sent_));
     for (unsigned r = 0; r < comm_.size(); ++r) {
         if (sent[r] != 0 && r != comm_.rank()) comm_.receive_stop(r);

@@ -26,11 +26,14 @@ struct BadObject {
 class StopRelay {
 public:
     /// `stop`: of this rank's call.
-    StopRelay(Communicator& comm, std::stop_source& stop) : comm_(comm), stop_(stop) {}
+    StopRelay(Communicator& comm, std::stop_source& stop) : comm_(comm), stop_(stop) {
+        comm_.set_meanwhile([this] { pass_on(); });
+    }
     StopRelay(const StopRelay&) = delete;
     StopRelay& operator=(const StopRelay&) = delete;
+    ~StopRelay() { comm_.set_meanwhile({}); }
 
-    /// To be called every few milliseconds, on the thread of the call.
+    /// To be called every few milliseconds of work, on the thread of the call; the communicator does while it waits.
     void pass_on();
     /// Collective: afterwards nothing is under way.
     void end();
@@ -38,7 +41,8 @@ public:
 private:
     Communicator& comm_;
     std::stop_source& stop_;
-    bool sent_ = false;
+    bool sent_ = false;   // by this rank
+    bool known_ = false;  // to all, or too late
 };
 
 class Agreement {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include "base/timed.hpp"
 #include "octopair/error.hpp"
@@ -54,9 +55,21 @@ void Communicator::count(std::uint64_t bytes, std::uint64_t messages) {
     traffic_.messages += messages;
 }
 
+/// MPI's own waits would look after nothing else.
+void Communicator::wait(std::span<MPI_Request> requests) {
+    int done = 0;
+    while (check(MPI_Testall(int(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE)), done == 0) {
+        if (meanwhile_) meanwhile_();
+        std::this_thread::yield();
+    }
+}
+
 void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
     const Timed timed(traffic_.seconds);
-    check(MPI_Allgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(
+        MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_, &request));
+    wait({&request, 1});
     count(own.size() * (size_ - 1), size_ - 1);
 }
 
@@ -69,17 +82,21 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
     MPI_Datatype item = MPI_DATATYPE_NULL;
     check(MPI_Type_contiguous(int(own.item_bytes), MPI_BYTE, &item));
     check(MPI_Type_commit(&item));
-    const int result = MPI_Allgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_);
-    MPI_Type_free(&item);
-    check(result);
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Iallgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_, &request));
+    check(MPI_Type_free(&item));  // which the request outlives
+    wait({&request, 1});
     count(std::uint64_t(counts[rank_]) * own.item_bytes * (size_ - 1), size_ - 1);
 }
 
 void Communicator::add_up(std::span<std::uint64_t> values) {
     const Timed timed(traffic_.seconds);
     for (std::span<std::uint64_t> left = values; !left.empty();) {
-        const auto some = left.first(std::min(left.size(), message_bytes_ / sizeof(std::uint64_t)));
-        check(MPI_Allreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_));
+        const auto some =
+            left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(std::uint64_t))));
+        MPI_Request request = MPI_REQUEST_NULL;
+        check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_, &request));
+        wait({&request, 1});
         count(some.size_bytes() * (size_ - 1), size_ - 1);
         left = left.subspan(some.size());
     }
@@ -89,7 +106,9 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
     const Timed timed(traffic_.seconds);
     for (std::span<std::byte> left = bytes; !left.empty();) {
         const auto some = left.first(std::min(left.size(), message_bytes_));
-        check(MPI_Bcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_));
+        MPI_Request request = MPI_REQUEST_NULL;
+        check(MPI_Ibcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_, &request));
+        wait({&request, 1});
         if (rank_ == from) count(some.size() * (size_ - 1), size_ - 1);
         left = left.subspan(some.size());
     }
@@ -98,7 +117,9 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
 RankCounts Communicator::exchange_counts(const RankCounts& counts) {
     const Timed timed(traffic_.seconds);
     RankCounts received(size_);
-    check(MPI_Alltoall(counts.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, comm_));
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Ialltoall(counts.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, comm_, &request));
+    wait({&request, 1});
     count(sizeof(std::uint64_t) * (size_ - 1), size_ - 1);
     return received;
 }
@@ -143,7 +164,7 @@ void Communicator::exchange_parts(const Values& out, const RankCounts& sent, voi
     if (sent[rank_] > 0) {
         std::memcpy(to + to_begins[rank_], from + from_begins[rank_], std::size_t(sent[rank_]) * out.item_bytes);
     }
-    check(MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE));
+    wait(requests);
 }
 
 void Communicator::send_stop() {
@@ -154,9 +175,9 @@ void Communicator::send_stop() {
     }
 }
 
-bool Communicator::stop_has_come(int from) {
+bool Communicator::stop_has_come() {
     int there = 0;
-    check(MPI_Iprobe(from < 0 ? MPI_ANY_SOURCE : from, stop_tag, comm_, &there, MPI_STATUS_IGNORE));
+    check(MPI_Iprobe(MPI_ANY_SOURCE, stop_tag, comm_, &there, MPI_STATUS_IGNORE));
     return there != 0;
 }
 
@@ -165,7 +186,7 @@ void Communicator::receive_stop(unsigned from) {
 }
 
 void Communicator::finish_stop() {
-    check(MPI_Waitall(int(stops_.size()), stops_.data(), MPI_STATUSES_IGNORE));
+    wait(stops_);
     stops_.clear();
 }
 

@@ -9,8 +9,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace octopair {
@@ -47,6 +49,9 @@ public:
     /// Whether any thread may call, beside others of the program.
     bool any_thread() const { return any_thread_; }
     const Traffic& traffic() const { return traffic_; }
+
+    /// What is done again and again while a function waits for other ranks; may be empty.
+    void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
 
     /// One value of each rank.
     template <typename T>
@@ -87,13 +92,13 @@ public:
         exchange_parts({out, sizeof(T)}, sent, in, received);
     }
 
-    /// Not collective: a message without content that says "stop" goes to all others, once a call; true where one of
-    /// rank `from` has come, or of any where from < 0.
+    /// Not collective: a message without content goes to all others. finish_stop() waits until it has gone.
     void send_stop();
-    bool stop_has_come(int from = -1);
-    /// Waits for those of rank `from`.
-    void receive_stop(unsigned from);
     void finish_stop();
+    /// Whether one has come and was not received yet.
+    bool stop_has_come();
+    /// Waits for that of a rank.
+    void receive_stop(unsigned from);
 
 private:
     struct Values {
@@ -105,12 +110,14 @@ private:
     void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
     void exchange_parts(const Values& out, const RankCounts& sent, void* in, const RankCounts& received);
     void count(std::uint64_t bytes, std::uint64_t messages);
+    void wait(std::span<MPI_Request> requests);
 
     MPI_Comm comm_ = MPI_COMM_NULL;
     unsigned rank_ = 0, size_ = 1;
     bool any_thread_ = false;
     std::size_t message_bytes_;
     Traffic traffic_;
+    std::function<void()> meanwhile_;
     std::vector<MPI_Request> stops_;
 };
 

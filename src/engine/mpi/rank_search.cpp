@@ -143,7 +143,8 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     task.agreement.together([&] {
         try {
             passes_.build(call, built);
-        } catch (const LinearOctree::Invalid&) {
+        } catch (const LinearOctree::Invalid& invalid) {
+            if (comm_.size() == 1) source.refuse(invalid.begin);
             throw Error(ErrorCode::bad_input, "an object changed while it was read");
         }
     });
@@ -237,14 +238,17 @@ void RankSearch::find_octal(Task& task, Call& call) {
 }
 
 void RankSearch::find_ascending(Task& task, Call& call) {
-    const std::stop_token stop = task.stop.get_token();
-    task.agreement.together([&] { passes_.list_octal(call, found_.storage(), 0.8); });
-    const JointCall& joint = task.joint;
-    AscendingPieces pieces(comm_, passes_.threads(), joint.totals[0], joint.totals[joint.join ? 1 : 0]);
     const bool whole = task.output.list != nullptr && !task.request.options.limit;
     PairList sorted;
     PairList& piece = whole ? *task.output.list : sorted;
-    pieces.bring_together(found_, piece.storage(), stop);
+    const std::uint64_t rows = task.joint.totals[0], columns = task.joint.totals[task.joint.join ? 1 : 0];
+    if (comm_.size() == 1) {
+        passes_.list_ascending(call, piece.storage(), {{0, rows}, columns}, 1);
+    } else {
+        task.agreement.together([&] { passes_.list_octal(call, found_.storage(), 0.8); });
+        AscendingPieces pieces(comm_, passes_.threads(), rows, columns);
+        pieces.bring_together(found_, piece.storage(), task.stop.get_token());
+    }
     const std::uint64_t allowance =
         allowed(comm_.all_gather(piece.size()), comm_.rank(), task.request.options, task.summary);
     if (whole) return;

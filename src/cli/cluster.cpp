@@ -1,0 +1,109 @@
+#include "cli/cluster.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <span>
+
+#include "base/error_codes.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+Cluster::Run::Run() {
+    int level = 0;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &level) != MPI_SUCCESS || level < MPI_THREAD_FUNNELED)
+        throw Error(ErrorCode::engine_failed, "MPI cannot be started for a program with threads");
+}
+
+Cluster::Run::~Run() {
+    if (std::uncaught_exceptions() > 0 && !ends_alike) {
+        int rank = 0;
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        std::fprintf(stderr, "octopair: rank %d failed alone\n", rank);
+        MPI_Abort(MPI_COMM_WORLD, exit_status(ErrorCode::engine_failed));
+    }
+    MPI_Finalize();
+}
+
+void Cluster::together(const std::function<void()>& part) {
+    joint([&] { Agreement(comm_).together(part); });
+}
+
+void Cluster::joint(const std::function<void()>& part) {
+    try {
+        part();
+    } catch (...) {
+        run_.ends_alike = true;
+        throw;
+    }
+}
+
+std::string Cluster::told_by_first(const std::string& text) {
+    std::string told(comm_.all_gather(std::uint64_t(text.size())).front(), ' ');
+    if (first()) told = text;
+    comm_.broadcast(std::span(told), 0);
+    return told;
+}
+
+namespace {
+
+/// Copies pairs out of a list, some at a time.
+class ListReader {
+public:
+    explicit ListReader(const PairList& list) : chunks_(list.chunks()) {}
+
+    void read(std::span<Pair> out) {
+        while (!out.empty()) {
+            if (taken_ == chunks_.front().size()) {
+                chunks_ = chunks_.subspan(1);
+                taken_ = 0;
+                continue;
+            }
+            const auto part =
+                chunks_.front().subspan(taken_).first(std::min(out.size(), chunks_.front().size() - taken_));
+            std::copy(part.begin(), part.end(), out.begin());
+            out = out.subspan(part.size());
+            taken_ += part.size();
+        }
+    }
+
+private:
+    std::span<const std::span<const Pair>> chunks_;
+    std::size_t taken_ = 0;  // of the first one
+};
+
+}  // namespace
+
+void Cluster::relay(const PairList& piece, const std::function<void(std::span<const Pair>)>& take) {
+    constexpr std::uint64_t most = 1 << 20;  // pairs at a time
+    together([&] {
+        for (const auto chunk : piece.chunks()) {
+            if (first()) take(chunk);
+        }
+    });
+    const std::vector<std::uint64_t> sizes = comm_.all_gather(piece.size());
+    ListReader reader(piece);
+    std::vector<Pair> some;
+    for (unsigned from = 1; from < ranks(); ++from) {
+        for (std::uint64_t left = sizes[from]; left > 0;) {
+            const std::uint64_t count = std::min(left, most);
+            RankCounts sent(ranks(), 0), received(ranks(), 0);
+            if (rank() == from) sent[0] = count;
+            if (first()) received[from] = count;
+            together([&] {
+                if (first() || rank() == from) some.resize(std::size_t(count));
+                if (rank() == from) reader.read(some);
+            });
+            comm_.exchange(some.data(), sent, some.data(), received);
+            together([&] {
+                if (first()) take(some);
+            });
+            left -= count;
+        }
+    }
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,143 @@
+#include "cli/rank_detection.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "base/timed.hpp"
+#include "cli/input_set.hpp"
+#include "cli/join.hpp"
+#include "cli/piece_output.hpp"
+#include "cli/progress_line.hpp"
+#include "octopair/error.hpp"
+#include "octopair/mpi.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+class RankDetection {
+public:
+    RankDetection(const DetectRequest& request, Cluster& cluster, std::stop_token stop)
+        : request_(request), cluster_(cluster), stop_(std::move(stop)), progress_(!request.quiet && cluster.first()) {}
+
+    DetectReport run() {
+        {
+            const Timed timed(report_.seconds.total);
+            read_and_find();
+        }
+        progress_.clear();
+        return report_;
+    }
+
+private:
+    void read_and_find() {
+        cluster_.together([&] { read(); });
+        cluster_.joint([&] { engine_ = make_mpi_engine(MPI_COMM_WORLD, {.threads = report_.crew.threads}); });
+        if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
+        try {
+            request_.count_only ? count() : find();
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::bad_input) refuse_faults();
+            throw;
+        }
+    }
+
+    bool join() const { return !request_.against.empty(); }
+
+    void read() {
+        const Timed timed(report_.seconds.read);
+        progress_.show("reading", 0);
+        const SliceRequest slice{{cluster_.rank(), cluster_.ranks()}, cluster_.first()};
+        first_ = read_input_slice(request_.inputs, request_.mesh_objects, slice, stop_);
+        if (join()) second_ = read_input_slice({request_.against}, request_.mesh_objects, slice, stop_);
+        const io::FrameCount frames = joint_frames({first_.scene.frames, first_.scene.moving},
+                                                   {second_.scene.frames, second_.scene.moving}, request_);
+        report_.frames = frames.frames;
+        report_.moving = frames.moving;
+        padding_.emplace(request_, SetSizes{first_.total, second_.total}, stop_);
+        const auto own = [](std::span<const double> all, const InputSet& set) {
+            return all.empty() ? all : all.subspan(set.begin, set.scene.objects);
+        };
+        first_.padding = own(padding_->inputs(), first_);
+        second_.padding = own(padding_->against(), second_);
+        report_.objects = first_.total + second_.total;
+        report_.crew = crew_of(request_.engine);
+        report_.crew.ranks = cluster_.ranks();
+    }
+
+    void count() {
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search(frame, nullptr);
+    }
+
+    void find() {
+        const io::PairNames names{&first_.scene.names, join() ? &second_.scene.names : &first_.scene.names};
+        const auto output = make_piece_output(request_, cluster_, names, stop_, report_.moving);
+        PairList piece;
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
+            search(frame, &piece);
+            progress_.clear();
+            const Timed timed(report_.seconds.write);
+            output->write(frame, piece);
+        }
+        const Timed timed(report_.seconds.write);
+        output->finish();
+    }
+
+    /// Without a list: counts.
+    void search(std::uint64_t frame, PairList* piece) {
+        const Objects first = first_.frame(frame), second = second_.frame(frame);
+        const Options options = options_for(frame);
+        Summary summary;
+        cluster_.joint([&] {
+            if (piece == nullptr) {
+                summary = join() ? engine_->stream_pairs_between(first, second, {}, options, stop_)
+                                 : engine_->stream_pairs(first, {}, options, stop_);
+            } else {
+                summary = join() ? engine_->find_pairs_between(first, second, *piece, options, stop_)
+                                 : engine_->find_pairs(first, *piece, options, stop_);
+            }
+        });
+        report_.add(summary, 0);
+    }
+
+    Options options_for(std::uint64_t frame) {
+        Options options;
+        options.order = request_.order;
+        options.margin = request_.margin;
+        if (request_.limit) options.limit = *request_.limit - report_.pairs;
+        options.progress = [this, frame](double done) {
+            progress_.show("detecting", (double(frame) + done) / double(report_.frames));
+        };
+        return options;
+    }
+
+    /// Says again what the engine found wrong with a box, with the file; of several ranks', the first one.
+    void refuse_faults() {
+        cluster_.together([&] {
+            std::uint64_t before = 0;
+            for (const InputSet* set : {&first_, &second_}) {
+                if (const auto fault = set->find_fault()) throw BadObject{before + *set->fault_position(), *fault};
+                before += set->total * set->scene.frames;
+            }
+        });
+    }
+
+    const DetectRequest& request_;
+    Cluster& cluster_;
+    std::stop_token stop_;
+    ProgressLine progress_;
+    InputSet first_, second_;
+    std::optional<Paddings> padding_;
+    std::unique_ptr<Engine> engine_;
+    DetectReport report_;
+};
+
+}  // namespace
+
+DetectReport detect_on_ranks(const DetectRequest& request, Cluster& cluster, const std::stop_token& stop) {
+    return RankDetection(request, cluster, stop).run();
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,89 @@
+// Exchanges in as many messages as it takes, and failures that all ranks learn of.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "engine/mpi/agreement.hpp"
+#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/even_cuts.hpp"
+#include "mpi/ranks.hpp"
+
+namespace octopair {
+namespace {
+
+/// Rank `from` sends rank `to` so many values.
+std::uint64_t count_between(unsigned from, unsigned to) {
+    return (from * 7 + to * 13) % 5 == 0 ? 0 : 100 * from + 37 * to;
+}
+
+std::uint32_t value(unsigned from, unsigned to, std::uint64_t i) {
+    return std::uint32_t(from * 1'000'000 + to * 10'000 + i);
+}
+
+TEST(RankCommunicator, ExchangesInMessagesOfAnyLength) {
+    for (const std::size_t message_bytes : {std::size_t(4), std::size_t(60), std::size_t(1000), std::size_t(1) << 30}) {
+        Communicator comm(MPI_COMM_WORLD, message_bytes);
+        const unsigned ranks = comm.size(), rank = comm.rank();
+        RankCounts sent(ranks);
+        std::vector<std::uint32_t> out;
+        std::uint64_t bytes = 0, messages = 0;
+        for (unsigned to = 0; to < ranks; ++to) {
+            sent[to] = count_between(rank, to);
+            for (std::uint64_t i = 0; i < sent[to]; ++i) out.push_back(value(rank, to, i));
+            if (to == rank) continue;
+            bytes += 4 * sent[to];
+            messages += (4 * sent[to] + message_bytes - 1) / message_bytes;
+        }
+        const RankCounts received = comm.exchange_counts(sent);
+        std::vector<std::uint32_t> in(std::accumulate(received.begin(), received.end(), std::size_t(0)));
+        const Traffic before = comm.traffic();
+        comm.exchange(out.data(), sent, in.data(), received);
+        EXPECT_EQ(comm.traffic().bytes - before.bytes, bytes);
+        EXPECT_EQ(comm.traffic().messages - before.messages, messages);
+        auto at = in.begin();
+        for (unsigned from = 0; from < ranks; ++from) {
+            ASSERT_EQ(received[from], count_between(from, rank));
+            for (std::uint64_t i = 0; i < received[from]; ++i) ASSERT_EQ(*at++, value(from, rank, i));
+        }
+        std::vector<std::uint64_t> sums(100, rank);
+        comm.add_up(sums);
+        EXPECT_EQ(sums, std::vector<std::uint64_t>(100, ranks * (ranks - 1) / 2));
+        std::vector<int> told(333, rank + 1 == ranks ? 5 : 0);
+        comm.broadcast(std::span(told), ranks - 1);
+        EXPECT_EQ(told, std::vector<int>(333, 5));
+    }
+}
+
+TEST(RankCommunicator, TellsTheFirstBadObjectBeforeOtherFailures) {
+    Communicator comm(MPI_COMM_WORLD);
+    Agreement agreement(comm);
+    agreement.together([] {});
+    try {
+        agreement.together([&] {
+            if (comm.rank() % 3 == 0)
+                throw BadObject{1000 - comm.rank(), "object " + std::to_string(1000 - comm.rank())};
+            if (comm.rank() % 3 == 1) throw Error(ErrorCode::io_failed, "disk");
+        });
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+        const unsigned lowest = 1000 - (comm.size() - 1) / 3 * 3;
+        EXPECT_EQ(error.what(), "object " + std::to_string(lowest));
+        EXPECT_EQ(int(error.code()), int(ErrorCode::bad_input));
+    }
+}
+
+TEST(RankCuts, AreEven) {
+    const std::vector<std::uint64_t> even(1000, 3);
+    EXPECT_EQ(even_cuts(even, 4), (std::vector<std::size_t>{0, 250, 500, 750, 1000}));
+    const std::vector<std::uint64_t> lumped = {0, 0, 100, 0, 1, 1};
+    const std::vector<std::size_t> cuts = even_cuts(lumped, 3);
+    EXPECT_EQ(cuts.size(), 4u);
+    EXPECT_TRUE(std::is_sorted(cuts.begin(), cuts.end()));
+    EXPECT_EQ(cuts.front(), 0u);
+    EXPECT_EQ(cuts.back(), lumped.size());
+    EXPECT_EQ(even_cuts({}, 3), (std::vector<std::size_t>{0, 0, 0, 0}));
+    EXPECT_EQ(even_cuts(std::vector<std::uint64_t>(5, 0), 2), (std::vector<std::size_t>{0, 5, 5}));
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,202 @@
+// What goes wrong on one rank ends the call on all, with the same Error, and leaves the engine usable.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "mpi/ranks.hpp"
+#include "octopair/error.hpp"
+#include "samples/scenes.hpp"
+#include "support/compare.hpp"
+
+namespace octopair {
+namespace {
+
+using testing::own_rank;
+using testing::rank_count;
+
+class RankErrors : public ::testing::Test {
+protected:
+    Objects own() const { return {std::span<const Box3f>(own_), {}}; }
+    /// What a call throws on this rank; none if nothing.
+    template <typename Call>
+    static std::optional<Error> error_of(const Call& call) {
+        try {
+            call();
+        } catch (const Error& error) {
+            return error;
+        }
+        return std::nullopt;
+    }
+    template <typename Call>
+    void expect_on_all(ErrorCode code, const std::string& message, const Call& call) {
+        const auto error = error_of(call);
+        ASSERT_TRUE(testing::on_all(error.has_value()));
+        EXPECT_EQ(int(error->code()), int(code)) << error->what();
+        EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
+        expect_usable();
+    }
+    void expect_usable() {
+        PairList list;
+        (void)engine_->find_pairs(own(), list);
+        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(list.to_vector()), expected_));
+    }
+    bool last() const { return own_rank() + 1 == rank_count(); }
+
+    const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
+    const std::vector<Pair> expected_ = find_pairs(boxes_);
+    std::vector<Box3f> own_ = testing::slice(boxes_, testing::Spread::even);
+    const std::unique_ptr<Engine> engine_ = make_mpi_engine(MPI_COMM_WORLD);
+};
+
+TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
+    const std::size_t begin = testing::own_slice(boxes_.size(), testing::Spread::even).begin;
+    std::vector<Box3f> bad = own_;
+    // Two on each rank; the first of all stands on the first.
+    bad[17].max[1] = std::numeric_limits<float>::quiet_NaN();
+    bad[12].min[0] = bad[12].max[0] + 1;
+    PairList list;
+    expect_on_all(ErrorCode::bad_input, "object 12: min x", [&] {
+        (void)engine_->find_pairs({std::span<const Box3f>(bad), {}}, list);
+    });
+    EXPECT_EQ(list.size(), 0u);
+    // On the last rank alone: its number is that among all.
+    const std::vector<Box3f>& some = last() ? bad : own_;
+    const std::size_t of_last = std::size_t(testing::largest(last() ? begin + 12 : 0));
+    expect_on_all(ErrorCode::bad_input, "object " + std::to_string(of_last) + ": min x", [&] {
+        (void)engine_->count_pairs({std::span<const Box3f>(some), {}});
+    });
+    expect_on_all(ErrorCode::bad_input, "of the second set object " + std::to_string(of_last) + ": min x", [&] {
+        (void)engine_->count_pairs_between(own(), {std::span<const Box3f>(some), {}});
+    });
+}
+
+TEST_F(RankErrors, TellOfPaddingsThatOneRankGaveWrongly) {
+    const std::vector<double> padding(last() ? 3 : own_.size(), 0.1);
+    expect_on_all(ErrorCode::bad_input, "3 paddings", [&] {
+        (void)engine_->count_pairs({std::span<const Box3f>(own_), padding});
+    });
+}
+
+TEST_F(RankErrors, RefuseCallsThatDiffer) {
+    if (rank_count() == 1) GTEST_SKIP() << "one rank cannot differ";
+    Options options;
+    if (last()) options.margin = 0.5;
+    expect_on_all(ErrorCode::usage, "the margin", [&] { (void)engine_->count_pairs(own(), options); });
+    options = {};
+    if (last()) options.order = Order::octal;
+    expect_on_all(ErrorCode::usage, "the order", [&] { (void)engine_->count_pairs(own(), options); });
+    options = {};
+    if (last()) options.limit = 7;
+    expect_on_all(ErrorCode::usage, "the limit", [&] { (void)engine_->count_pairs(own(), options); });
+    expect_on_all(ErrorCode::usage, "a second set", [&] {
+        last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs_between(own(), own());
+    });
+    expect_on_all(ErrorCode::usage, "counted, listed or streamed", [&] {
+        PairList list;
+        last() ? (void)engine_->count_pairs(own()) : (void)engine_->find_pairs(own(), list);
+    });
+    const std::vector<Box3d> wide(3);
+    expect_on_all(ErrorCode::usage, "the precision", [&] {
+        (void)engine_->count_pairs(last() ? Objects{std::span<const Box3d>(wide), {}} : own());
+    });
+    const std::vector<double> padding(own_.size(), 0.1);
+    expect_on_all(ErrorCode::usage, "a padding", [&] {
+        (void)engine_->count_pairs(last() ? Objects{std::span<const Box3f>(own_), padding} : own());
+    });
+}
+
+TEST_F(RankErrors, AreThoseOfAReceiverOnTheOtherRanks) {
+    const auto call = [&] {
+        (void)engine_->stream_pairs(own(), [&](std::span<const Pair>) {
+            if (last()) throw std::runtime_error("full");
+        });
+    };
+    if (last()) {
+        EXPECT_THROW(call(), std::runtime_error);
+    } else {
+        const auto error = error_of(call);
+        ASSERT_TRUE(error);
+        EXPECT_EQ(error->what(), "rank " + std::to_string(rank_count() - 1) + ": the receiver of the pairs failed");
+    }
+    expect_usable();
+}
+
+TEST_F(RankErrors, CancelAllWhereOneIsStopped) {
+    std::stop_source stop;
+    if (last()) stop.request_stop();
+    expect_on_all(ErrorCode::cancelled, "cancelled", [&] { (void)engine_->count_pairs(own(), {}, stop.get_token()); });
+}
+
+/// While they search what would take many seconds.
+TEST_F(RankErrors, CancelAllWhereOneIsStoppedMeanwhile) {
+    const std::vector<Box3f> many(60'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    for (const Order order : {Order::octal, Order::ascending}) {
+        std::stop_source stop;
+        std::jthread stopper;
+        if (last()) {
+            stopper = std::jthread([&] {
+                std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                stop.request_stop();
+            });
+        }
+        Options options;
+        options.order = order;
+        PairList list;
+        expect_on_all(ErrorCode::cancelled, "cancelled", [&] {
+            (void)engine_->find_pairs({std::span<const Box3f>(many), {}}, list, options, stop.get_token());
+        });
+    }
+}
+
+TEST_F(RankErrors, AreNoneWhereThereAreFewObjectsOrNone) {
+    const Box3f box{{0, 0, 0}, {1, 1, 1}};
+    const std::vector<Box3f> one(own_rank() == 0 ? 1 : 0, box);
+    PairList list;
+    EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(), {}}, list).pairs, 0u);
+    EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(one), {}}, list).pairs, 0u);
+    const std::vector<Box3f> one_each(1, box);
+    const std::uint64_t ranks = rank_count();
+    EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(one_each), {}}, list).pairs, ranks * (ranks - 1) / 2);
+    EXPECT_EQ(testing::all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
+    const std::vector<Box3d> none;
+    EXPECT_EQ(
+        engine_->find_pairs_between({std::span<const Box3f>(one), {}}, {std::span<const Box3d>(none), {}}, list).pairs,
+        0u);
+}
+
+TEST(RankEngine, RefusesNoCommunicator) {
+    EXPECT_THROW((void)make_mpi_engine(MPI_COMM_NULL), Error);
+    EXPECT_THROW(
+        {
+            PairList list;
+            gather_pairs(*make_local_engine(), list);
+        },
+        Error);
+}
+
+/// Each half of the ranks has a scene of its own.
+TEST(RankEngine, WorksOnPartOfTheRanks) {
+    MPI_Comm half = MPI_COMM_NULL;
+    const int colour = int(own_rank() % 2);
+    MPI_Comm_split(MPI_COMM_WORLD, colour, int(own_rank()), &half);
+    {
+        const std::vector<Box3f> boxes = samples::make_scene("dense", 3'000, std::uint64_t(colour));
+        int rank = 0, ranks = 0;
+        MPI_Comm_rank(half, &rank);
+        MPI_Comm_size(half, &ranks);
+        const std::vector<Box3f> own(boxes.begin() + std::ptrdiff_t(boxes.size()) * rank / ranks,
+                                     boxes.begin() + std::ptrdiff_t(boxes.size()) * (rank + 1) / ranks);
+        const auto engine = make_mpi_engine(half);
+        PairList list;
+        (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
+        gather_pairs(*engine, list);
+        const std::vector<Pair> expected = rank == 0 ? find_pairs(boxes) : std::vector<Pair>();
+        EXPECT_TRUE(testing::same_bytes(list.to_vector(), expected));
+    }
+    MPI_Comm_free(&half);
+}
+
+}  // namespace
+}  // namespace octopair
