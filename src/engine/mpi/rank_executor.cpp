@@ -5,21 +5,25 @@
 
 namespace octopair {
 
-namespace {
-
-/// Numbers pairs on their way to another writer.
-class NumberingWriter final : public PairWriter {
+/// On the way to another writer. A share may write for minutes: it looks out as well.
+class RankExecutor::Writer final : public PairWriter {
 public:
-    NumberingWriter(PairWriter& writer, const PairNumbers& numbers) : writer_(writer), numbers_(numbers) {}
+    Writer(PairWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
     bool counting() const override { return writer_.counting(); }
-    void write_count(std::uint64_t pairs) override { writer_.write_count(pairs); }
+    void write_count(std::uint64_t pairs) override {
+        look_out();
+        writer_.write_count(pairs);
+    }
     void write(std::span<const Pair> pairs) override {
+        look_out();
+        const PairNumbers& numbers = executor_.numbers_;
+        if (numbers.a.empty()) return writer_.write(pairs);
         std::array<Pair, 1024> numbered;
         while (!pairs.empty()) {
             const auto some = pairs.first(std::min(pairs.size(), numbered.size()));
             for (std::size_t i = 0; i < some.size(); ++i) {
-                numbered[i] = {numbers_.a[some[i].a], numbers_.b[some[i].b]};
+                numbered[i] = {numbers.a[some[i].a], numbers.b[some[i].b]};
             }
             writer_.write(std::span(numbered).first(some.size()));
             pairs = pairs.subspan(some.size());
@@ -27,11 +31,14 @@ public:
     }
 
 private:
-    PairWriter& writer_;
-    const PairNumbers& numbers_;
-};
+    void look_out() {
+        if (++writes_ % 64 == 0) executor_.look_out();
+    }
 
-}  // namespace
+    PairWriter& writer_;
+    RankExecutor& executor_;
+    unsigned writes_ = 0;
+};
 
 /// MPI may have been started for one thread alone.
 void RankExecutor::look_out() {
@@ -48,9 +55,8 @@ void RankExecutor::for_each(std::size_t count, const std::function<void(std::siz
 void RankExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
     executor_.for_each_writing(count, [&](std::size_t i, PairWriter& writer) {
         look_out();
-        if (numbers_.a.empty()) return body(i, writer);
-        NumberingWriter numbering(writer, numbers_);
-        body(i, numbering);
+        Writer own(writer, *this);
+        body(i, own);
     });
 }
 

@@ -29,6 +29,7 @@ public:
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
 
 private:
+    class Writer;
     void look_out();
 
     Executor& executor_;

@@ -138,7 +138,9 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
 
 void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     const BoxSource source(own_octants.first, own_octants.second, task.joint.form);
-    Call call{own_octants, task.output, source, task.stop, task.progress, {}};
+    // Its own stop: where this rank's part of a pass is abandoned, as at a limit, the others' are not.
+    Call call{own_octants, task.output, source, {}, task.progress, {}};
+    const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
     constexpr double built = 0.3;  // of the progress
     task.agreement.together([&] {
         try {

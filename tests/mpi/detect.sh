@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# `octopair detect --engine mpi` gives the files of the local engine, and ends alike on all ranks.
+#
+#     detect.sh PROGRAM MPIRUN
+set -euo pipefail
+program=$1 mpirun=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() { echo "$*" && exit 1; }
+on_ranks() { "$mpirun" -n "$1" "$program" "${@:2}"; }
+
+"$program" generate clustered --objects 20000 --seed 3 --output a.npy --quiet
+"$program" generate micro20 --objects 3000 --seed 3 --output b.npy --quiet
+"$program" generate brownian --objects 2000 --frames 3 --seed 1 --output moving.npy --quiet
+printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,1\n' > few.csv
+python3 - << 'END'
+# Paddings of 20,000 + 3,000 objects, and 1,000 spheres; written by hand, as NumPy may not be there.
+import array, struct
+def write(name, code, shape, values):
+    text = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (code, shape)
+    text += " " * (63 - (10 + len(text)) % 64) + "\n"
+    with open(name, "wb") as f:
+        f.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text.encode() + values.tobytes())
+write("padding.npy", "<f8", "(23000,)", array.array("d", [0.001 * (i % 7) for i in range(23000)]))
+write("spheres.npy", "<f4", "(1000, 4)", array.array("f", [(i * 37 % 101) * 0.01 for i in range(4000)]))
+END
+
+# RANKS NAME ARGUMENTS...: the same file from ranks as from threads.
+same() {
+    local ranks=$1 name=$2
+    shift 2
+    "$program" detect "$@" --output "local.$name" --quiet
+    on_ranks "$ranks" detect "$@" --engine mpi --output "ranks.$name" --quiet
+    cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
+}
+for order in ascending octal; do
+    same 3 pairs.npy a.npy b.npy --order $order --padding padding.npy
+    same 4 pairs.csv a.npy --against b.npy --order $order --margin 0.002
+    same 2 pairs.jsonl a.npy few.csv spheres.npy --order $order --limit 5000
+done
+same 5 few.npy few.csv
+same 3 pairs.csv moving.npy
+same 3 frames.npy few.csv
+for frame in 0 1 2; do rm -f "local.$frame.npy" "ranks.$frame.npy"; done
+"$program" detect moving.npy --output local.moving.npy --quiet
+on_ranks 2 detect moving.npy --engine mpi --threads 2 --output ranks.moving.npy --quiet
+for frame in 000000 000001 000002; do cmp "local.moving.$frame.npy" "ranks.moving.$frame.npy"; done
+[ "$("$program" detect a.npy --count-only --quiet)" = "$(on_ranks 3 detect a.npy --engine mpi --count-only --quiet)" ] ||
+    fail "another count"
+[ "$("$program" detect few.csv --quiet)" = "$(on_ranks 2 detect few.csv --engine mpi --quiet)" ] || fail "another output"
+on_ranks 2 detect a.npy --engine mpi --stats stats.json --count-only 2> summary.txt > count.txt
+grep -q '"ranks": 2' stats.json || fail "the stats do not tell the ranks"
+grep -q 'on 2 ranks with 1 thread each' summary.txt || fail "the summary does not tell the ranks"
+
+# STATUS WORDS ARGUMENTS...: fails with them, said once, and leaves no file.
+refuses() {
+    local status=$1 words=$2 got=0
+    shift 2
+    on_ranks 3 detect "$@" --engine mpi --output no.npy --quiet 2> errors.txt || got=$?
+    [ "$got" = "$status" ] || fail "exit status $got, not $status, for: $*"
+    [ "$(grep -c "octopair: .*$words" errors.txt)" = 1 ] || fail "not said once: $words: $(cat errors.txt)"
+    [ ! -e no.npy ] || fail "a file is left by: $*"
+    [ -z "$(find . -name '*.tmp')" ] || fail "a temporary file is left by: $*"
+}
+printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,nan\n' > bad.csv
+refuses 3 'bad.csv: .*' bad.csv
+refuses 4 'missing.npy' missing.npy
+refuses 3 'a.npy: 20000 paddings\|padding.npy: 23000 paddings' a.npy --padding padding.npy
+status=0
+on_ranks 2 detect a.npy --engine mpi --fail-on-collision --count-only --quiet > /dev/null 2>&1 || status=$?
+[ "$status" = 1 ] || fail "exit status $status under --fail-on-collision"
+status=0
+on_ranks 2 detect a.npy --engine mpi --output /nowhere/pairs.npy --quiet 2> errors.txt || status=$?
+[ "$status" = 4 ] || fail "exit status $status where no file can be made"
+
+# A rank that is killed ends all, soon.
+"$program" generate coincident --objects 400000 --seed 1 --output much.npy --quiet
+on_ranks 3 detect much.npy --engine mpi --count-only --quiet > /dev/null 2>&1 &
+job=$!
+ranks_at_work() { pgrep -f "^$program detect much.npy" || true; }
+for _ in $(seq 200); do [ "$(ranks_at_work | wc -l)" -ge 3 ] && break || sleep 0.05; done
+sleep 0.3
+kill -9 "$(ranks_at_work | sed -n 2p)"
+status=0
+wait $job || status=$?
+[ "$status" != 0 ] || fail "a killed rank goes unnoticed"
+for _ in $(seq 100); do [ -n "$(ranks_at_work)" ] || break; sleep 0.1; done
+[ -z "$(ranks_at_work)" ] || fail "a killed rank leaves others"
+echo "ranks give what threads give"
