@@ -10,8 +10,8 @@
 // Threads   MPI must have been started with MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread,
 //           MPI_THREAD_SERIALIZED from others, MPI_THREAD_MULTIPLE for jobs. Jobs run in the order in which they were
 //           submitted, which must be the same on all ranks, and before calls that come after them.
-// Memory    about 130 bytes an object of float32 boxes that a rank has, beside input and output. Pairs in ascending order are held whole,
-//           on all ranks together, also while they are streamed.
+// Memory    about 130 bytes an object of a rank's float32 boxes, beside input and output. In ascending order a rank holds
+//           its pairs twice for a while, also where they are streamed: Options::buffer_bytes does not bound them.
 // CMake     link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
 #pragma once
 
