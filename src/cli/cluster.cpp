@@ -90,14 +90,14 @@ void Cluster::relay(const PairList& piece, const std::function<void(std::span<co
     for (unsigned from = 1; from < ranks(); ++from) {
         for (std::uint64_t left = sizes[from]; left > 0;) {
             const std::uint64_t count = std::min(left, most);
-            RankCounts sent(ranks(), 0), received(ranks(), 0);
-            if (rank() == from) sent[0] = count;
-            if (first()) received[from] = count;
+            Exchange counts{RankCounts(ranks(), 0), RankCounts(ranks(), 0)};
+            if (rank() == from) counts.sent[0] = count;
+            if (first()) counts.received[from] = count;
             together([&] {
                 if (first() || rank() == from) some.resize(std::size_t(count));
                 if (rank() == from) reader.read(some);
             });
-            comm_.exchange(some.data(), sent, some.data(), received);
+            comm_.exchange(some.data(), some.data(), counts);
             together([&] {
                 if (first()) take(some);
             });

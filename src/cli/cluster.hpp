@@ -28,6 +28,9 @@ public:
     unsigned ranks() const { return comm_.size(); }
     bool first() const { return rank() == 0; }
 
+    /// Whether what was thrown last was thrown on all ranks.
+    bool ends_alike() const { return run_.ends_alike; }
+
     /// Collective. Throws on all ranks, the same Error, if `part` throws on any.
     void together(const std::function<void()>& part);
     /// Collective: for a part that ends alike on all ranks by itself, as an engine's calls do.

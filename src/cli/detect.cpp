@@ -5,21 +5,21 @@
 #include <memory>
 #include <optional>
 
-#include "base/error_codes.hpp"
 #include "cli/detect_options.hpp"
 #include "cli/detection.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/event_detection.hpp"
+#include "cli/failure.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/report.hpp"
-#ifdef OCTOPAIR_WITH_MPI
-#include "cli/cluster.hpp"
-#include "cli/rank_detection.hpp"
-#endif
 #include "cli/subcommands.hpp"
 #include "cli/words.hpp"
 #include "io/atomic_file.hpp"
 #include "io/pair_writer.hpp"
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/cluster.hpp"
+#include "cli/rank_detection.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -72,7 +72,10 @@ int run_on_ranks(const DetectRequest& request) {
         });
         return exit_status_of(request, report);
     } catch (const Error& error) {
-        if (cluster.first()) throw;
+        if (!cluster.ends_alike()) throw;
+        if (cluster.first()) (void)fail(error);
+        // Once one has ended with a failure, mpirun may kill the others in the middle of a word.
+        cluster.together([] {});
         return exit_status(error.code());
     }
 }

@@ -1,11 +1,10 @@
 // The program: parses, runs the chosen subcommand, and turns what it throws into a line and an exit status.
 #include <csignal>
-#include <cstdio>
 #include <new>
 #include <string>
 #include <system_error>
 
-#include "base/error_codes.hpp"
+#include "cli/failure.hpp"
 #include "cli/subcommands.hpp"
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
@@ -13,11 +12,6 @@
 namespace octopair::cli {
 
 namespace {
-
-int fail(ErrorCode code, const char* message) {
-    std::fprintf(stderr, "octopair: %s\n", message);
-    return exit_status(code);
-}
 
 int run(int argc, char** argv) {
     CLI::App app("Every colliding pair among millions of moving 3D objects.", "octopair");
@@ -51,7 +45,7 @@ int guarded_run(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const Error& error) {
-        return fail(error.code(), error.code() == ErrorCode::cancelled ? "interrupted" : error.what());
+        return fail(error);
     } catch (const std::bad_alloc&) {
         return fail(ErrorCode::resource_limit, "out of memory");
     } catch (const std::system_error& error) {

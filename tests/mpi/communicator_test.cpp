@@ -34,16 +34,16 @@ TEST(RankCommunicator, ExchangesInMessagesOfAnyLength) {
             bytes += 4 * sent[to];
             messages += (4 * sent[to] + message_bytes - 1) / message_bytes;
         }
-        const RankCounts received = comm.exchange_counts(sent);
-        std::vector<std::uint32_t> in(std::accumulate(received.begin(), received.end(), std::size_t(0)));
+        const Exchange counts = comm.plan_exchange(sent);
+        std::vector<std::uint32_t> in(counts.incoming());
         const Traffic before = comm.traffic();
-        comm.exchange(out.data(), sent, in.data(), received);
+        comm.exchange(out.data(), in.data(), counts);
         EXPECT_EQ(comm.traffic().bytes - before.bytes, bytes);
         EXPECT_EQ(comm.traffic().messages - before.messages, messages);
         auto at = in.begin();
         for (unsigned from = 0; from < ranks; ++from) {
-            ASSERT_EQ(received[from], count_between(from, rank));
-            for (std::uint64_t i = 0; i < received[from]; ++i) ASSERT_EQ(*at++, value(from, rank, i));
+            ASSERT_EQ(counts.received[from], count_between(from, rank));
+            for (std::uint64_t i = 0; i < counts.received[from]; ++i) ASSERT_EQ(*at++, value(from, rank, i));
         }
         std::vector<std::uint64_t> sums(100, rank);
         comm.add_up(sums);

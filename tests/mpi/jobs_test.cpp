@@ -58,6 +58,7 @@ TEST_F(RankJobs, EndOnAllWhereOneRankCancels) {
 TEST_F(RankJobs, AreCancelledByTheEndOfTheEngine) {
     Job running = engine_->submit(slow());
     std::vector<Job> waiting;
+    waiting.reserve(3);
     for (int i = 0; i < 3; ++i) waiting.push_back(engine_->submit(own()));
     engine_.reset();
     EXPECT_EQ(int(running.state()), int(JobState::cancelled));

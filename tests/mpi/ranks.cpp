@@ -20,8 +20,11 @@ SliceBounds own_slice(std::size_t objects, Spread spread) {
 namespace {
 
 OwnedObjects slice_of(const OwnedObjects& whole, Spread spread) {
-    return {std::visit([&](const auto& boxes) -> decltype(whole.boxes) { return slice(boxes, spread); }, whole.boxes),
-            slice(whole.padding, spread)};
+    OwnedObjects own;
+    if (const auto* const narrow = std::get_if<std::vector<Box3f>>(&whole.boxes)) own.boxes = slice(*narrow, spread);
+    if (const auto* const wide = std::get_if<std::vector<Box3d>>(&whole.boxes)) own.boxes = slice(*wide, spread);
+    own.padding = slice(whole.padding, spread);
+    return own;
 }
 
 }  // namespace

@@ -26,14 +26,12 @@ void AscendingPieces::bring_together(PairList& found, PairList::Storage& piece, 
     count_rows(found, bins);
     comm_.add_up(bins);
     const std::vector<std::size_t> cuts = even_cuts(bins, comm_.size());
-    RankCounts counts;
-    agreement.together([&] { pack(found, cuts, counts); });
+    RankCounts to_each;
+    agreement.together([&] { to_each = pack(found, cuts); });
     found.storage().reset();
-    const RankCounts received = comm_.exchange_counts(counts);
-    agreement.together([&] {
-        received_.resize_discard(std::size_t(std::accumulate(received.begin(), received.end(), std::uint64_t(0))));
-    });
-    comm_.exchange(sent_.data(), counts, received_.data(), received);
+    const Exchange counts = comm_.plan_exchange(std::move(to_each));
+    agreement.together([&] { received_.resize_discard(counts.incoming()); });
+    comm_.exchange(sent_.data(), received_.data(), counts);
     const auto row = [&](std::size_t cut) { return std::min<std::uint64_t>(rows_, std::uint64_t(cut) << bin_shift_); };
     const ObjectRange own{row(cuts[comm_.rank()]), row(cuts[comm_.rank() + 1])};
     agreement.together([&] { sort_received(piece, own, stop); });
@@ -45,12 +43,12 @@ void AscendingPieces::count_rows(const PairList& found, std::span<std::uint64_t>
     }
 }
 
-void AscendingPieces::pack(const PairList& found, std::span<const std::size_t> cuts, RankCounts& counts) {
+RankCounts AscendingPieces::pack(const PairList& found, std::span<const std::size_t> cuts) {
     std::vector<std::uint32_t> owners(cuts.back());
     for (unsigned rank = 0; rank < comm_.size(); ++rank) {
         std::fill(owners.begin() + std::ptrdiff_t(cuts[rank]), owners.begin() + std::ptrdiff_t(cuts[rank + 1]), rank);
     }
-    counts.assign(comm_.size(), 0);
+    RankCounts counts(comm_.size(), 0);
     for (const auto chunk : found.chunks()) {
         for (const Pair& pair : chunk) ++counts[owners[bin(pair.a)]];
     }
@@ -60,6 +58,7 @@ void AscendingPieces::pack(const PairList& found, std::span<const std::size_t> c
     for (const auto chunk : found.chunks()) {
         for (const Pair& pair : chunk) sent_[std::size_t(places[owners[bin(pair.a)]]++)] = pair;
     }
+    return counts;
 }
 
 void AscendingPieces::sort_received(PairList::Storage& piece, const ObjectRange& rows, const std::stop_token& stop) {

@@ -28,7 +28,7 @@ public:
 
 private:
     void count_rows(const PairList& found, std::span<std::uint64_t> counts) const;
-    void pack(const PairList& found, std::span<const std::size_t> cuts, RankCounts& counts);
+    RankCounts pack(const PairList& found, std::span<const std::size_t> cuts);
     void sort_received(PairList::Storage& piece, const ObjectRange& rows, const std::stop_token& stop);
     std::uint64_t bin(std::uint32_t a) const { return a >> bin_shift_; }
 

@@ -114,14 +114,15 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
     }
 }
 
-RankCounts Communicator::exchange_counts(const RankCounts& counts) {
+Exchange Communicator::plan_exchange(RankCounts sent) {
     const Timed timed(traffic_.seconds);
-    RankCounts received(size_);
+    Exchange exchange{std::move(sent), RankCounts(size_)};
     MPI_Request request = MPI_REQUEST_NULL;
-    check(MPI_Ialltoall(counts.data(), 1, MPI_UINT64_T, received.data(), 1, MPI_UINT64_T, comm_, &request));
+    check(MPI_Ialltoall(exchange.sent.data(), 1, MPI_UINT64_T, exchange.received.data(), 1, MPI_UINT64_T, comm_,
+                        &request));
     wait({&request, 1});
     count(sizeof(std::uint64_t) * (size_ - 1), size_ - 1);
-    return received;
+    return exchange;
 }
 
 namespace {
@@ -135,11 +136,12 @@ std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_
 
 }  // namespace
 
-void Communicator::exchange_parts(const Values& out, const RankCounts& sent, void* in, const RankCounts& received) {
+void Communicator::exchange_parts(const Values& out, void* in, const Exchange& counts) {
     const Timed timed(traffic_.seconds);
     const auto* const from = static_cast<const std::byte*>(out.data);
     auto* const to = static_cast<std::byte*>(in);
-    const auto from_begins = begins_of(sent, out.item_bytes), to_begins = begins_of(received, out.item_bytes);
+    const auto from_begins = begins_of(counts.sent, out.item_bytes),
+               to_begins = begins_of(counts.received, out.item_bytes);
     std::vector<MPI_Request> requests;
     const auto length = [&](std::uint64_t at, std::uint64_t end) {
         return int(std::min<std::uint64_t>(message_bytes_, end - at));
@@ -161,8 +163,8 @@ void Communicator::exchange_parts(const Values& out, const RankCounts& sent, voi
             count(std::uint64_t(bytes), 1);
         }
     }
-    if (sent[rank_] > 0) {
-        std::memcpy(to + to_begins[rank_], from + from_begins[rank_], std::size_t(sent[rank_]) * out.item_bytes);
+    if (counts.sent[rank_] > 0) {
+        std::memcpy(to + to_begins[rank_], from + from_begins[rank_], std::size_t(counts.sent[rank_]) * out.item_bytes);
     }
     wait(requests);
 }

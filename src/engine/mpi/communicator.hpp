@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -25,6 +26,15 @@ struct Traffic {
 
 /// How many values go to each rank, or come from each, one rank's after another's.
 using RankCounts = std::vector<std::uint64_t>;
+
+/// How many values a rank sends to each, and receives from each.
+struct Exchange {
+    RankCounts sent, received;
+
+    std::size_t incoming() const {
+        return std::size_t(std::accumulate(received.begin(), received.end(), std::uint64_t(0)));
+    }
+};
 
 /// What all ranks told, rank after rank; `begins` has one more than there are ranks.
 template <typename T>
@@ -83,13 +93,13 @@ public:
     void broadcast(std::span<T> values, unsigned from) {
         broadcast_bytes(std::as_writable_bytes(values), from);
     }
-    /// counts[r] goes to rank r; what each rank has for this one comes back.
-    RankCounts exchange_counts(const RankCounts& counts);
-    /// The first sent[0] values go to rank 0, and so on; `in` is as large as what `received` says.
+    /// With sent[r] values for each rank r, learns how many come from each.
+    Exchange plan_exchange(RankCounts sent);
+    /// The first counts.sent[0] values of `out` go to rank 0, and so on; `in` has room for what comes.
     template <typename T>
-    void exchange(const T* out, const RankCounts& sent, T* in, const RankCounts& received) {
+    void exchange(const T* out, T* in, const Exchange& counts) {
         static_assert(std::is_trivially_copyable_v<T>);
-        exchange_parts({out, sizeof(T)}, sent, in, received);
+        exchange_parts({out, sizeof(T)}, in, counts);
     }
 
     /// Not collective: a message without content goes to all others. finish_stop() waits until it has gone.
@@ -108,7 +118,7 @@ private:
     void gather_equal(std::span<const std::byte> own, std::span<std::byte> all);
     void gather_parts(const Values& own, std::span<const std::size_t> begins, void* all);
     void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
-    void exchange_parts(const Values& out, const RankCounts& sent, void* in, const RankCounts& received);
+    void exchange_parts(const Values& out, void* in, const Exchange& counts);
     void count(std::uint64_t bytes, std::uint64_t messages);
     void wait(std::span<MPI_Request> requests);
 

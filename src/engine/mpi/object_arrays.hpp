@@ -39,13 +39,12 @@ struct ObjectArrays {
     }
 };
 
-/// Collective: sent[r] of the objects in `out` go to rank r; `in`, of the same form and large enough, gets what comes.
-inline void exchange(Communicator& comm, const ObjectArrays& out, const RankCounts& sent, ObjectArrays& in,
-                     const RankCounts& received) {
-    if (out.wide) comm.exchange(out.wide_boxes.data(), sent, in.wide_boxes.data(), received);
-    if (!out.wide) comm.exchange(out.boxes.data(), sent, in.boxes.data(), received);
-    if (out.padded) comm.exchange(out.padding.data(), sent, in.padding.data(), received);
-    comm.exchange(out.positions.data(), sent, in.positions.data(), received);
+/// Collective: `out` holds what is to be sent; `in`, of the same form and large enough, gets what comes.
+inline void exchange(Communicator& comm, const ObjectArrays& out, ObjectArrays& in, const Exchange& counts) {
+    if (out.wide) comm.exchange(out.wide_boxes.data(), in.wide_boxes.data(), counts);
+    if (!out.wide) comm.exchange(out.boxes.data(), in.boxes.data(), counts);
+    if (out.padded) comm.exchange(out.padding.data(), in.padding.data(), counts);
+    comm.exchange(out.positions.data(), in.positions.data(), counts);
 }
 
 }  // namespace octopair

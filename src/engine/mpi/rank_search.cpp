@@ -124,13 +124,12 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
             arrays->wide = task.joint.wide[set];
             arrays->padded = task.joint.padded[set];
         }
-        const RankCounts counts = routing.counts(set);
-        const RankCounts received = comm_.exchange_counts(counts);
+        const Exchange counts = comm_.plan_exchange(routing.counts(set));
         task.agreement.together([&] {
-            in.resize(std::size_t(std::accumulate(received.begin(), received.end(), std::uint64_t(0))));
+            in.resize(counts.incoming());
             routing.pack(executor, set, set == 0 ? task.request.first : *task.request.second, out);
         });
-        exchange(comm_, out, counts, in, received);
+        exchange(comm_, out, in, counts);
     }
     const PairNumbers numbers{received_[0].positions.span(), received_[task.joint.join ? 1 : 0].positions.span()};
     return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
@@ -188,9 +187,9 @@ void receive(const Engine::Output& output, std::uint64_t allowance, const Give& 
 }  // namespace
 
 void RankSearch::gather(PairList& piece, PairList::Storage& all) {
-    RankCounts counts(comm_.size(), 0);
-    counts[0] = piece.size();
-    const RankCounts received = comm_.exchange_counts(counts);
+    RankCounts to_first(comm_.size(), 0);
+    to_first[0] = piece.size();
+    const Exchange counts = comm_.plan_exchange(std::move(to_first));
     Buffer<Pair> sent;
     std::span<Pair> gathered;
     Agreement(comm_).together([&] {
@@ -200,10 +199,10 @@ void RankSearch::gather(PairList& piece, PairList::Storage& all) {
             std::copy(chunk.begin(), chunk.end(), sent.data() + at);
             at += chunk.size();
         }
-        const std::uint64_t size = std::accumulate(received.begin(), received.end(), std::uint64_t(0));
-        if (size > 0) gathered = all.take_block(std::size_t(size)).first(std::size_t(size));
+        const std::size_t size = counts.incoming();
+        if (size > 0) gathered = all.take_block(size).first(size);
     });
-    comm_.exchange(sent.data(), counts, gathered.data(), received);
+    comm_.exchange(sent.data(), gathered.data(), counts);
     if (!gathered.empty()) all.append(gathered);
 }
 
