@@ -36,4 +36,23 @@ std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options
 /// Throws Error{usage} unless make_mpi_engine made the engine.
 void gather_pairs(Engine& engine, PairList& pairs);
 
+/// What the last call cost this rank. Seconds are processor time of the calling thread, without what it spent within MPI; so
+/// they leave out waiting, and the other threads of a rank that has several.
+struct RankCosts {
+    double join = 0;   ///< to learn what all ranks ask for
+    double plant = 0;  ///< the octants
+    double route = 0;  ///< to find where objects go
+    double pack = 0;   ///< what is sent
+    double build = 0;  ///< the linear octree of what was received
+    double scan = 0;   ///< pairs
+    double order = 0;  ///< their ascending order
+    double mpi = 0;    ///< within MPI, waiting included where it looks about
+    std::uint64_t bytes_sent = 0, messages_sent = 0;
+    std::uint64_t objects = 0;         ///< that this rank gave
+    std::uint64_t shared_objects = 0;  ///< of these, how many went to several ranks
+    std::uint64_t objects_received = 0;
+};
+/// Throws Error{usage} unless make_mpi_engine made the engine.
+RankCosts last_costs(const Engine& engine);
+
 }  // namespace octopair

@@ -1,131 +1,35 @@
 #include "octree/directory.hpp"
 
 #include <algorithm>
-#include <bit>
 
-#include "base/stop.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
 
-// Found by measurement on the scenes of docs/scenes.md; they change the shape of the tree, never the set of pairs.
-constexpr double always_split = 2048;      // objects: more would not stay in the cache while they are swept
-constexpr double never_split = 512;        // objects
-constexpr double crowded_window = 40;      // objects that a sweep tests for each object
-constexpr double ghost_growth = 1.6;       // entries below a node for each object that begins in it
-constexpr double handed_growth = 1.5;      // entries and boxes handed down, after a split against before
 constexpr std::uint64_t cells_a_node = 4;  // of the table from cells to leaves
 
-/// The octant `digit` of `node`, as a leaf.
-Node child_octant(const Node& node, NodeIndex parent, unsigned digit) {
-    Node octant{node.lo, node.level + 1, parent, 0, Node::no_children};
-    const std::uint32_t side = cells_per_axis >> octant.level;
-    for (unsigned axis = 0; axis < 3; ++axis) octant.lo[axis] += (digit >> axis & 1u) * side;
-    return octant;
-}
-
 }  // namespace
 
-/// What all nodes are grown by.
-struct Directory::Growth {
-    double weight;
-    std::stop_token stop;
-
-    bool crowded(const Node& node, const Boxes& inside) const;
-};
-
-bool Directory::Growth::crowded(const Node& node, const Boxes& inside) const {
-    const double objects = double(inside.size()) * weight;
-    if (objects <= never_split) return false;
-    if (objects > always_split) return true;
-    double window = objects;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        std::uint32_t first = cells_per_axis;
-        std::uint32_t last = 0;
-        std::uint64_t extents = 0;
-        const std::uint32_t end = node.lo[axis] + ((cells_per_axis >> node.level) - 1);
-        for (const CellBox& box : inside) {
-            const std::uint32_t lo = std::max(box.lo[axis], node.lo[axis]);
-            first = std::min(first, lo);
-            last = std::max(last, lo);
-            extents += std::min(box.hi[axis], end) - lo + 1;
-        }
-        const double extent = double(extents) / double(inside.size());
-        window = std::min(window, objects * extent / (double(last - first) + extent));
-    }
-    return window > crowded_window;
-}
-
-namespace {
-
-/// The boxes, all of which touch `node`, by the children that they touch; returns how many entries that makes.
-std::size_t divide(const Node& node, const Directory::Boxes& boxes, std::array<Directory::Boxes, 8>& children) {
-    // Per axis the children, as bits, of the lower and of the upper half.
-    constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
-    const std::uint32_t half = (cells_per_axis >> node.level) / 2;
-    for (Directory::Boxes& child : children) child.reserve(boxes.size() / 6);
-    std::size_t entries = 0;
-    for (const CellBox& box : boxes) {
-        unsigned touched = 0xFF;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            const std::uint32_t middle = node.lo[axis] + half;
-            const unsigned lower = box.lo[axis] < middle ? halves[axis][0] : 0;
-            const unsigned upper = box.hi[axis] >= middle ? halves[axis][1] : 0;
-            touched &= lower | upper;
-        }
-        entries += std::size_t(std::popcount(touched));
-        for (; touched != 0; touched &= touched - 1) children[unsigned(std::countr_zero(touched))].push_back(box);
-    }
-    return entries;
-}
-
-std::size_t beginning_in(const Node& node, const Directory::Boxes& boxes) {
-    return std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const CellBox& box) {
-        return box.lo[0] >= node.lo[0] && box.lo[1] >= node.lo[1] && box.lo[2] >= node.lo[2];
-    }));
-}
-
-}  // namespace
-
-Directory::Directory(const Frame& frame, Boxes sample, double weight, std::stop_token stop) {
-    const Growth growth{weight, stop};
-    const Node root{.lo = {}, .level = 0, .parent = 0, .next = 0, .children = Node::no_children};
-    grow(growth, root, std::move(sample), {});
+Directory::Directory(const Frame& frame, const OctantShape& shape) {
+    if (shape.size() >= most_nodes) throw Error(ErrorCode::resource_limit, "more octants than can be numbered");
+    nodes_.reserve(shape.size());
+    append({}, 0, shape);
     make_table(frame);
 }
 
-/// Appends `start` and its subtree. `sample`: what touches the octant and is not too large for its level; `handed`:
-/// what touches it and is kept above.
-NodeIndex Directory::grow(const Growth& growth, const Node& start, Boxes sample, Boxes handed) {
-    throw_if_stopped(growth.stop);
+/// The octant that comes next in the shape, and its subtree.
+NodeIndex Directory::append(const Octant& octant, NodeIndex parent, const OctantShape& shape) {
     const NodeIndex index = NodeIndex(nodes_.size());
-    nodes_.push_back(start);
-    const auto kept = std::stable_partition(sample.begin(), sample.end(),
-                                            [&](const CellBox& box) { return natural_level(box) > start.level; });
-    handed.insert(handed.end(), kept, sample.end());
-    sample.erase(kept, sample.end());
-    std::array<Boxes, 8> inside_child, handed_child;
-    const bool room = nodes_.size() + 8 * (deepest + 1) < most_nodes;  // for the siblings to come, too
-    bool split = room && start.level < deepest && growth.crowded(start, sample);
-    if (split) {
-        const std::size_t entries = divide(start, sample, inside_child);
-        const std::size_t copies = divide(start, handed, handed_child);
-        split = double(entries) <= ghost_growth * double(beginning_in(start, sample)) &&
-                double(entries + copies) <= handed_growth * double(sample.size() + handed.size());
-    }
-    sample = {};
-    handed = {};
-    if (split) {
-        const std::uint32_t row = std::uint32_t(children_.size());
-        nodes_[index].children = row;
-        children_.emplace_back();
-        for (unsigned digit = 0; digit < 8; ++digit) {
-            const Node octant = child_octant(start, index, digit);
-            const NodeIndex child =
-                grow(growth, octant, std::move(inside_child[digit]), std::move(handed_child[digit]));
-            children_[row][digit] = child;
-        }
+    nodes_.push_back({octant.lo, octant.level, parent, index + 1, Node::no_children});
+    if (shape[index] == 0) return index;
+    const std::uint32_t row = std::uint32_t(children_.size());
+    nodes_[index].children = row;
+    children_.emplace_back();
+    for (unsigned digit = 0; digit < 8; ++digit) {
+        const NodeIndex child = append(octant.child(digit), index, shape);
+        children_[row][digit] = child;
     }
     nodes_[index].next = NodeIndex(nodes_.size());
     return index;

@@ -1,23 +1,18 @@
-// Directory: the octants of a linear octree in pre-order, grown from a sample of the scene.
+// Directory: the octants of a linear octree in pre-order, and the way from cells to them.
 //
 // Invariants
 //   nodes()[0] is the root; a node's subtree is nodes [i, node.next), its children (all eight or none) in digit order.
 //   The leaves tile the whole frame, so every cell lies in exactly one leaf.
-//   The tree is a function of the sample alone, which is a function of the objects' global indices: never of threads.
-//
-// A node is split while its octant is crowded: while it holds too many objects, or a sweep along its best axis would
-// test too many; but not where splitting would multiply entries (boxes as large as the octant), nor where the boxes
-// handed down from above would be copied into the children without being thinned.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "octree/frame.hpp"
+#include "octree/octant_growth.hpp"
 
 namespace octopair {
 
@@ -47,9 +42,10 @@ struct Node {
 
 class Directory {
 public:
-    using Boxes = std::vector<CellBox>;
-    /// `weight`: how many objects one box of the sample stands for. Throws Error{cancelled}.
-    Directory(const Frame& frame, Boxes sample, double weight, std::stop_token stop);
+    /// The root alone.
+    Directory() : Directory({}, {0}) {}
+    /// The shape is that of the root. Throws Error{resource_limit} for more than 2^26 octants.
+    Directory(const Frame& frame, const OctantShape& shape);
 
     std::span<const Node> nodes() const { return nodes_; }
     NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
@@ -89,8 +85,7 @@ public:
     }
 
 private:
-    struct Growth;
-    NodeIndex grow(const Growth& growth, const Node& start, Boxes sample, Boxes handed);
+    NodeIndex append(const Octant& octant, NodeIndex parent, const OctantShape& shape);
     void make_table(const Frame& frame);
     struct Table;
     void fill_table(NodeIndex from, const Table& table);

@@ -18,35 +18,41 @@ struct AxisFit {
     double extent() const { return end - begin; }
 };
 
-double quantile(std::vector<double>& values, std::size_t rank) {
-    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
-    return values[rank];
-}
-
 /// Between the 1/64 quantiles plus a quarter on each side, but no further than the sample itself reaches.
-AxisFit fit_axis(std::span<const Entry> sample, unsigned axis) {
-    std::vector<double> lows, highs, extents;
-    const std::size_t stride = sample.size() / most_samples + 1;
-    for (std::size_t i = 0; i < sample.size(); i += stride) {
-        const Entry& entry = sample[i];
-        const double low = double(entry.min[axis]);
-        const double high = double(entry.max[axis]);
-        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
-        lows.push_back(low);
-        highs.push_back(high);
-        extents.push_back(high - low);
-    }
-    if (lows.empty()) return {};
-    const std::size_t cut = lows.size() / 64;
-    const double first = quantile(lows, cut);
-    const double last = quantile(highs, highs.size() - 1 - cut);
-    const double quarter = std::max(0.0, last - first) / 4;
+AxisFit fit_axis(std::span<const FrameSample::Measured, FrameSample::measures> measured) {
+    const FrameSample::Measured &lows = measured[0], &highs = measured[1], &extents = measured[2];
+    const double quarter = std::max(0.0, highs.quantile - lows.quantile) / 4;
     AxisFit fit;
-    fit.begin = std::max(*std::min_element(lows.begin(), lows.end()), first - quarter);
-    fit.end = std::max(fit.begin, std::min(*std::max_element(highs.begin(), highs.end()), last + quarter));
-    fit.typical = std::max(0.0, quantile(extents, extents.size() / 2));
+    fit.begin = std::max(lows.extreme, lows.quantile - quarter);
+    fit.end = std::max(fit.begin, std::min(highs.extreme, highs.quantile + quarter));
+    fit.typical = std::max(0.0, extents.quantile);
     return fit;
 }
+
+}  // namespace
+
+FrameSample::FrameSample(std::size_t sampled) : stride_(sampled / most_samples + 1) {}
+
+FrameSample::Measured FrameSample::measure(std::span<const Interval> intervals, Measure what) {
+    std::vector<double> values;
+    values.reserve(intervals.size());
+    for (const Interval& interval : intervals) {
+        const double low = double(interval.low), high = double(interval.high);
+        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
+        values.push_back(what == Measure::low ? low : what == Measure::high ? high : high - low);
+    }
+    if (values.empty()) return {};
+    const std::size_t cut = values.size() / 64;
+    const std::size_t rank = what == Measure::low    ? cut
+                             : what == Measure::high ? values.size() - 1 - cut
+                                                     : values.size() / 2;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double extreme = what == Measure::low ? *least : *most;
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+    return {values[rank], extreme};
+}
+
+namespace {
 
 /// About the distance between neighbours: a power of two near the cube root of volume / objects.
 double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
@@ -65,8 +71,26 @@ double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
 }  // namespace
 
 Frame Frame::fit(std::span<const Entry> sample, std::uint64_t objects) {
+    const FrameSample chosen(sample.size());
+    FrameSample::AllMeasured measured;
+    std::vector<FrameSample::Interval> intervals;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        intervals.clear();
+        for (std::size_t i = 0; i < sample.size(); ++i) {
+            if (chosen.has(i)) intervals.push_back({sample[i].min[axis], sample[i].max[axis]});
+        }
+        for (unsigned what = 0; what < FrameSample::measures; ++what) {
+            measured[axis * FrameSample::measures + what] = FrameSample::measure(intervals, FrameSample::Measure(what));
+        }
+    }
+    return fit(measured, objects);
+}
+
+Frame Frame::fit(const FrameSample::AllMeasured& measured, std::uint64_t objects) {
     std::array<AxisFit, 3> axes;
-    for (unsigned axis = 0; axis < 3; ++axis) axes[axis] = fit_axis(sample, axis);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        axes[axis] = fit_axis(std::span(measured).subspan(axis * FrameSample::measures).first<FrameSample::measures>());
+    }
     const double neighbour = spacing(axes, objects);
 
     // An octant has the shape of one object with the free space around it.

@@ -55,11 +55,39 @@ struct FrameMap {
     }
 };
 
+/// What a frame is fitted to: some of the sampled boxes, of which three numbers are measured on each axis. The order of
+/// boxes does not matter, and each number can be measured in another place.
+class FrameSample {
+public:
+    /// Of a sample of so many.
+    explicit FrameSample(std::size_t sampled);
+    /// Whether the i-th of the sample counts.
+    bool has(std::size_t i) const { return i % stride_ == 0; }
+
+    /// A box on one axis.
+    struct Interval {
+        float low, high;
+    };
+    enum class Measure : std::uint8_t { low, high, extent };
+    static constexpr unsigned measures = 3;
+    /// Of the lows: the least, and a quantile near it; likewise the highs; of the extents the median.
+    struct Measured {
+        double quantile = 0, extreme = 0;
+    };
+    static Measured measure(std::span<const Interval> intervals, Measure what);
+    /// Of all axes, one after another.
+    using AllMeasured = std::array<Measured, 3 * measures>;
+
+private:
+    std::size_t stride_;
+};
+
 class Frame {
 public:
     Frame() = default;
     /// `objects`: how many the sample stands for. The sample may be empty.
     static Frame fit(std::span<const Entry> sample, std::uint64_t objects);
+    static Frame fit(const FrameSample::AllMeasured& measured, std::uint64_t objects);
 
     CellBox cells(const Entry& entry) const {
         CellBox box;

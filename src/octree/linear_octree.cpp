@@ -54,13 +54,20 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 
 Sample octant_sample(std::uint64_t objects) { return {std::size_t(objects), sample_stride, most_samples}; }
 
+OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop) {
+    const std::size_t sampled = octant_sample(objects).size();
+    return {double(objects) / double(std::max<std::size_t>(1, sampled)), stop};
+}
+
 PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
     PlantedOctants octants;
     octants.frame = Frame::fit(sampled, objects);
-    Directory::Boxes cells(sampled.size());
-    octants.frame.cells(sampled, cells);
-    const double weight = double(objects) / double(std::max<std::size_t>(1, cells.size()));
-    octants.directory = Directory(octants.frame, std::move(cells), weight, stop);
+    SampledOctant root;
+    root.inside.resize(sampled.size());
+    octants.frame.cells(sampled, root.inside);
+    OctantShape shape;
+    octant_growth(objects, stop).grow(std::move(root), shape);
+    octants.directory = Directory(octants.frame, shape);
     return octants;
 }
 

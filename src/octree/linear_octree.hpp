@@ -35,11 +35,13 @@ struct BuildSeconds {
 /// The octree's space and its octants: a function of a sample of the objects.
 struct PlantedOctants {
     Frame frame;
-    Directory directory{Frame{}, {}, 0, {}};
+    Directory directory;
 };
 
 /// The positions of the sample, of so many objects.
 Sample octant_sample(std::uint64_t objects);
+/// What decides on their octants.
+OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop);
 /// From the sampled entries. Throws Error{cancelled}.
 PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop);

@@ -127,7 +127,7 @@ void MutableOctree::build(const LinearOctree& octree, const std::stop_token& sto
 }
 
 void MutableOctree::clear() {
-    directory_ = Directory{Frame{}, {}, 0, {}};
+    directory_ = {};
     plots_.clear();
     units_.clear();
     inner_used_ = false;

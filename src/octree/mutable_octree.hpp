@@ -119,7 +119,7 @@ private:
     void list_node(NodeIndex node, const Work& work, Visits& out) const;
 
     Frame frame_;
-    Directory directory_{Frame{}, {}, 0, {}};
+    Directory directory_;
     std::vector<Plot> plots_;  // of the nodes
     UnitBlocks units_;
     bool inner_used_ = false;  // a plot that is inner is used

@@ -1,11 +1,13 @@
 #include "engine/mpi/communicator.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <string>
 #include <thread>
 
 #include "base/timed.hpp"
+#include "engine/mpi/cost_meter.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -22,6 +24,19 @@ void check(int code) {
     MPI_Error_string(code, text, &length);
     throw Error(ErrorCode::engine_failed, "MPI: " + std::string(text, std::size_t(length)));
 }
+
+class WithinMpi {
+public:
+    explicit WithinMpi(Traffic& traffic) : traffic_(traffic), timed_(traffic.seconds) {}
+    WithinMpi(const WithinMpi&) = delete;
+    WithinMpi& operator=(const WithinMpi&) = delete;
+    ~WithinMpi() { traffic_.cpu_seconds += thread_seconds() - begin_; }
+
+private:
+    Traffic& traffic_;
+    Timed timed_;
+    double begin_ = thread_seconds();
+};
 
 bool is_running() {
     int begun = 0, ended = 0;
@@ -64,17 +79,19 @@ void Communicator::wait(std::span<MPI_Request> requests) {
     }
 }
 
+void Communicator::count_told(std::uint64_t bytes) { count(bytes * (size_ - 1), std::bit_width(size_ - 1)); }
+
 void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     MPI_Request request = MPI_REQUEST_NULL;
     check(
         MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_, &request));
     wait({&request, 1});
-    count(own.size() * (size_ - 1), size_ - 1);
+    count_told(own.size());
 }
 
 void Communicator::gather_parts(const Values& own, std::span<const std::size_t> begins, void* all) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     if (begins.back() > std::size_t(INT32_MAX)) throw Error(ErrorCode::resource_limit, "too much to tell all ranks");
     std::vector<int> counts(size_);
     for (unsigned r = 0; r < size_; ++r) counts[r] = int(begins[r + 1] - begins[r]);
@@ -86,36 +103,36 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
     check(MPI_Iallgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_, &request));
     check(MPI_Type_free(&item));  // which the request outlives
     wait({&request, 1});
-    count(std::uint64_t(counts[rank_]) * own.item_bytes * (size_ - 1), size_ - 1);
+    count_told(std::uint64_t(counts[rank_]) * own.item_bytes);
 }
 
 void Communicator::add_up(std::span<std::uint64_t> values) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     for (std::span<std::uint64_t> left = values; !left.empty();) {
         const auto some =
             left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(std::uint64_t))));
         MPI_Request request = MPI_REQUEST_NULL;
         check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_, &request));
         wait({&request, 1});
-        count(some.size_bytes() * (size_ - 1), size_ - 1);
+        count(2 * some.size_bytes() * (size_ - 1) / size_, 2 * std::bit_width(size_ - 1));
         left = left.subspan(some.size());
     }
 }
 
 void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     for (std::span<std::byte> left = bytes; !left.empty();) {
         const auto some = left.first(std::min(left.size(), message_bytes_));
         MPI_Request request = MPI_REQUEST_NULL;
         check(MPI_Ibcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_, &request));
         wait({&request, 1});
-        if (rank_ == from) count(some.size() * (size_ - 1), size_ - 1);
+        if (rank_ == from) count_told(some.size());
         left = left.subspan(some.size());
     }
 }
 
 Exchange Communicator::plan_exchange(RankCounts sent) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     Exchange exchange{std::move(sent), RankCounts(size_)};
     MPI_Request request = MPI_REQUEST_NULL;
     check(MPI_Ialltoall(exchange.sent.data(), 1, MPI_UINT64_T, exchange.received.data(), 1, MPI_UINT64_T, comm_,
@@ -137,7 +154,7 @@ std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_
 }  // namespace
 
 void Communicator::exchange_parts(const Values& out, void* in, const Exchange& counts) {
-    const Timed timed(traffic_.seconds);
+    const WithinMpi timed(traffic_);
     const auto* const from = static_cast<const std::byte*>(out.data);
     auto* const to = static_cast<std::byte*>(in);
     const auto from_begins = begins_of(counts.sent, out.item_bytes),

@@ -18,10 +18,11 @@
 
 namespace octopair {
 
-/// What one rank has sent to others. What a rank tells all counts once for each of them, whatever way MPI sends it.
+/// What one rank has sent to others. How MPI sends what all ranks take part in is its own affair; counted is what its usual
+/// ways come to: what a rank tells all, once for each other rank, in log2 as many messages; a sum, twice.
 struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
-    double seconds = 0;  ///< wall-clock, within MPI
+    double seconds = 0, cpu_seconds = 0;  ///< within MPI: wall-clock, and of the thread
 };
 
 /// How many values go to each rank, or come from each, one rank's after another's.
@@ -120,6 +121,7 @@ private:
     void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
     void exchange_parts(const Values& out, void* in, const Exchange& counts);
     void count(std::uint64_t bytes, std::uint64_t messages);
+    void count_told(std::uint64_t bytes);
     void wait(std::span<MPI_Request> requests);
 
     MPI_Comm comm_ = MPI_COMM_NULL;

@@ -87,9 +87,12 @@ void check_likeness(const std::vector<Told>& all) {
 void choose_origin(Communicator& comm, const Engine::Request& request, JointCall& call) {
     const BoxSource own(request.first, request.second, call.form);
     const OriginSample sample{std::size_t(call.objects())};
-    const auto corners = gather_sample<OriginSample::Corner>(
-        comm, call, sample, [&](std::size_t position) { return own.low_corner(position); });
-    call.form.rounding.origin = OriginSample::median(corners);
+    std::vector<OriginSample::Corner> corners;
+    Agreement(comm).together([&] {
+        for_each_own(call, sample, [&](std::size_t, std::size_t number) { corners.push_back(own.low_corner(number)); });
+    });
+    call.form.rounding.origin =
+        OriginSample::median(comm.all_gather(std::span<const OriginSample::Corner>(corners)).values);
 }
 
 }  // namespace

@@ -27,6 +27,11 @@ struct JointCall {
     std::array<bool, 2> wide = {}, padded = {};    ///< whether boxes are float64, objects have paddings
     EntryForm form;
 
+    /// A set of this rank's as it is held on all: of none, the caller may have said another precision.
+    Objects slice(unsigned set, const Objects& given) const {
+        if (given.size() > 0) return given;
+        return wide[set] ? Objects{std::span<const Box3d>(), {}} : Objects{std::span<const Box3f>(), {}};
+    }
     std::uint64_t objects() const { return totals[0] + totals[1]; }
     /// Of an object of this rank's source.
     std::uint64_t position(std::uint64_t own) const {
@@ -38,23 +43,20 @@ struct JointCall {
 /// ask for the same.
 JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet);
 
-/// Collective: of the positions in `sample` (a size and rising elements), `value` of each, which is asked of the rank that
-/// brought the object with its number there.
-template <typename Value, typename Sampled, typename Ask>
-std::vector<Value> gather_sample(Communicator& comm, const JointCall& call, const Sampled& sample, const Ask& value) {
-    std::vector<Value> all;
-    std::size_t i = 0;
-    for (unsigned set = 0; set < (call.join ? 2u : 1u); ++set) {
+/// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank. A sample
+/// has a size and rising elements.
+template <typename Sampled, typename Visit>
+void for_each_own(const JointCall& call, const Sampled& sample, const Visit& visit) {
+    for (unsigned set = 0; set < 2; ++set) {
         const std::uint64_t own_begin = set == 0 ? 0 : call.sizes[0];
-        const std::uint64_t begin = (set == 0 ? 0 : call.totals[0]) + call.begins[set];
-        while (i < sample.size() && sample[i] < begin) ++i;
-        std::vector<Value> own;
-        for (; i < sample.size() && sample[i] < begin + call.sizes[set]; ++i)
-            own.push_back(value(std::size_t(own_begin + (sample[i] - begin))));
-        const auto gathered = comm.all_gather(std::span<const Value>(own));
-        all.insert(all.end(), gathered.values.begin(), gathered.values.end());
+        const std::uint64_t begin = (set == 0 ? 0 : call.totals[0]) + call.begins[set], end = begin + call.sizes[set];
+        std::size_t least = 0, i = sample.size();
+        while (least < i) {
+            const std::size_t middle = least + (i - least) / 2;
+            sample[middle] < begin ? least = middle + 1 : i = middle;
+        }
+        for (; i < sample.size() && sample[i] < end; ++i) visit(i, std::size_t(own_begin + (sample[i] - begin)));
     }
-    return all;
 }
 
 }  // namespace octopair

@@ -26,6 +26,8 @@ public:
         pairs = std::move(all);
     }
 
+    const RankCosts& costs() const { return search_.costs(); }
+
 private:
     /// Jobs that were submitted before come first, on all ranks.
     Summary run(const Request& request, const Output& output, const Control& control) override {
@@ -54,10 +56,18 @@ std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options
     return std::make_unique<MpiEngine>(comm, options);
 }
 
-void gather_pairs(Engine& engine, PairList& pairs) {
-    auto* const ranks = dynamic_cast<MpiEngine*>(&engine);
+namespace {
+
+template <typename AnyEngine>
+AnyEngine& as_ranks(AnyEngine* ranks) {
     if (ranks == nullptr) throw Error(ErrorCode::usage, "not an MPI engine");
-    ranks->gather(pairs);
+    return *ranks;
 }
+
+}  // namespace
+
+void gather_pairs(Engine& engine, PairList& pairs) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).gather(pairs); }
+
+RankCosts last_costs(const Engine& engine) { return as_ranks(dynamic_cast<const MpiEngine*>(&engine)).costs(); }
 
 }  // namespace octopair

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "base/timed.hpp"
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/ascending_pieces.hpp"
+#include "engine/mpi/cost_meter.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/octant_owners.hpp"
+#include "engine/mpi/planting.hpp"
 #include "engine/mpi/routing.hpp"
 #include "engine/receiver.hpp"
 #include "engine/writers.hpp"
@@ -37,6 +40,7 @@ struct RankSearch::Task {
     Agreement agreement;
     Progress progress;
     JointCall joint;
+    std::array<Objects, 2> slices;
     Summary summary;
 };
 
@@ -49,7 +53,13 @@ Summary RankSearch::run(const Engine::Request& request, const Engine::Output& ou
     };
     try {
         const Timed timed(task.summary.seconds);
+        const Traffic before = comm_.traffic();
+        costs_ = {};
         find(task);
+        const Traffic& after = comm_.traffic();
+        costs_.mpi = after.cpu_seconds - before.cpu_seconds;
+        costs_.bytes_sent = after.bytes - before.bytes;
+        costs_.messages_sent = after.messages - before.messages;
     } catch (...) {
         end();
         throw;
@@ -74,38 +84,32 @@ void RankSearch::skip() noexcept {
 
 void RankSearch::find(Task& task) {
     const Engine::Request& asked = task.request;
-    task.joint = join_call(comm_, asked, outlet_of(task.output));
-    const BoxSource own(asked.first, asked.second, task.joint.form);
+    {
+        const Metered metered(comm_, costs_.join);
+        task.joint = join_call(comm_, asked, outlet_of(task.output));
+    }
+    task.slices[0] = task.joint.slice(0, asked.first);
+    if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
+    const Objects& first = task.slices[0];
+    const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
+    costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
+    const BoxSource own(first, second, task.joint.form);
     PlantedOctants octants = plant(task, own);
     if (comm_.size() == 1) {
         const NodeIndex all = NodeIndex(octants.directory.nodes().size());
         passes_.take({std::move(octants), 0, all}, task.stops);
-        return search(task, asked);
+        return search(task, {first, second, asked.options});
     }
     passes_.take(route(task, own, std::move(octants)), task.stops);
-    const Objects first = received_[0].view(), second = received_[1].view();
-    search(task, {first, task.joint.join ? &second : nullptr, asked.options});
+    const Objects first_received = received_[0].view(), second_received = received_[1].view();
+    search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
 }
 
-/// Each rank plants the whole tree.
 PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {
-    const Sample sample = octant_sample(task.joint.objects());
-    const auto bounds = gather_sample<std::array<float, 6>>(comm_, task.joint, sample, [&](std::size_t position) {
-        Entry entry{};
-        own.pick({&position, 1}, {&entry, 1});
-        return std::array{entry.min[0], entry.min[1], entry.min[2], entry.max[0], entry.max[1], entry.max[2]};
-    });
-    std::vector<Entry> sampled(bounds.size());
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-        const std::array<float, 6>& b = bounds[i];
-        sampled[i] = {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}, 0, 0};
-    }
-    PlantedOctants octants;
-    task.agreement.together([&] {
-        task.stops.pass_on();
-        octants = plant_octants(sampled, task.joint.objects(), task.stop.get_token());
-    });
-    return octants;
+    const Metered metered(comm_, costs_.plant);
+    const std::stop_token stop = task.stop.get_token();
+    if (comm_.size() == 1) return plant_octants(own, stop);
+    return plant_together(comm_, task.joint, own, stop);
 }
 
 /// To the ranks whose octants they touch, which thus receive theirs.
@@ -114,10 +118,19 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     RankExecutor executor(threads, task.stops);
     std::vector<std::uint64_t> work(octants.directory.nodes().size(), 0);
     Routing routing(task.joint, own, octants, task.stop.get_token());
-    task.agreement.together([&] { routing.find(executor, work); });
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.route);
+        routing.find(executor, work);
+    });
     comm_.add_up(work);
-    const OctantOwners owners(octants.directory, work, comm_.size());
-    task.agreement.together([&] { routing.address(executor, owners); });
+    std::optional<OctantOwners> cut;
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.route);
+        cut.emplace(octants.directory, work, comm_.size());
+        routing.address(executor, *cut);
+    });
+    const OctantOwners& owners = *cut;
+    costs_.shared_objects = routing.shared_objects();
     for (unsigned set = 0; set < (task.joint.join ? 2u : 1u); ++set) {
         ObjectArrays &out = sent_[set], &in = received_[set];
         for (ObjectArrays* arrays : {&out, &in}) {
@@ -126,10 +139,12 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
         }
         const Exchange counts = comm_.plan_exchange(routing.counts(set));
         task.agreement.together([&] {
+            const Metered metered(comm_, costs_.pack);
             in.resize(counts.incoming());
-            routing.pack(executor, set, set == 0 ? task.request.first : *task.request.second, out);
+            routing.pack(executor, set, task.slices[set], out);
         });
         exchange(comm_, out, in, counts);
+        costs_.objects_received += in.size();
     }
     const PairNumbers numbers{received_[0].positions.span(), received_[task.joint.join ? 1 : 0].positions.span()};
     return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
@@ -142,6 +157,7 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
     constexpr double built = 0.3;  // of the progress
     task.agreement.together([&] {
+        const Metered metered(comm_, costs_.build);
         try {
             passes_.build(call, built);
         } catch (const LinearOctree::Invalid& invalid) {
@@ -208,7 +224,10 @@ void RankSearch::gather(PairList& piece, PairList::Storage& all) {
 
 void RankSearch::count(Task& task, Call& call) {
     std::uint64_t pairs = 0;
-    task.agreement.together([&] { pairs = passes_.count(call, 1); });
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.scan);
+        pairs = passes_.count(call, 1);
+    });
     (void)allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
@@ -216,10 +235,14 @@ void RankSearch::find_octal(Task& task, Call& call) {
     const std::optional<std::uint64_t> limit = task.request.options.limit;
     std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
     if (limit) {
-        task.agreement.together([&] { pairs = passes_.count(call, 0.6); });
+        task.agreement.together([&] {
+            const Metered metered(comm_, costs_.scan);
+            pairs = passes_.count(call, 0.6);
+        });
         allowance = allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
     }
     task.agreement.together([&] {
+        const Metered metered(comm_, costs_.scan);
         if (task.output.list != nullptr && !limit) {
             passes_.list_octal(call, task.output.list->storage(), 1);
             pairs = task.output.list->size();
@@ -244,9 +267,14 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     PairList& piece = whole ? *task.output.list : sorted;
     const std::uint64_t rows = task.joint.totals[0], columns = task.joint.totals[task.joint.join ? 1 : 0];
     if (comm_.size() == 1) {
+        const Metered metered(comm_, costs_.scan);
         passes_.list_ascending(call, piece.storage(), {{0, rows}, columns}, 1);
     } else {
-        task.agreement.together([&] { passes_.list_octal(call, found_.storage(), 0.8); });
+        task.agreement.together([&] {
+            const Metered metered(comm_, costs_.scan);
+            passes_.list_octal(call, found_.storage(), 0.8);
+        });
+        const Metered metered(comm_, costs_.order);
         AscendingPieces pieces(comm_, passes_.threads(), rows, columns);
         pieces.bring_together(found_, piece.storage(), task.stop.get_token());
     }

@@ -18,6 +18,7 @@
 #include "engine/mpi/rank_passes.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
+#include "octopair/mpi.hpp"
 
 namespace octopair {
 
@@ -31,6 +32,8 @@ public:
     void skip() noexcept;
     /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
     void gather(PairList& piece, PairList::Storage& all);
+    /// Of the last run().
+    const RankCosts& costs() const { return costs_; }
 
 private:
     struct Task;
@@ -46,6 +49,7 @@ private:
     RankPasses passes_;
     std::array<ObjectArrays, 2> sent_, received_;
     PairList found_;
+    RankCosts costs_;
 };
 
 }  // namespace octopair
