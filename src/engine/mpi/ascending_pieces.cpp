@@ -21,9 +21,12 @@ constexpr std::size_t share_pairs = 1 << 16;  // to sort
 void AscendingPieces::bring_together(PairList& found, PairList::Storage& piece, const std::stop_token& stop) {
     const unsigned row_bits = unsigned(std::bit_width(rows_));
     bin_shift_ = row_bits > most_bin_bits ? row_bits - most_bin_bits : 0;
-    std::vector<std::uint64_t> bins((rows_ >> bin_shift_) + 1, 0);
+    std::vector<std::uint64_t> bins;
     Agreement agreement(comm_);
-    count_rows(found, bins);
+    agreement.together([&] {
+        bins.resize((rows_ >> bin_shift_) + 1, 0);
+        count_rows(found, bins);
+    });
     comm_.add_up(bins);
     const std::vector<std::size_t> cuts = even_cuts(bins, comm_.size());
     RankCounts to_each;

@@ -25,12 +25,24 @@ struct ObjectArrays {
         if (padded) padding.resize_discard(objects);
         positions.resize_discard(objects);
     }
-    /// The object `from` of the same set becomes number `to`.
-    void put(std::size_t to, const Objects& objects, std::size_t from, std::uint32_t position) {
-        if (wide) wide_boxes[to] = std::get<std::span<const Box3d>>(objects.boxes)[from];
-        if (!wide) boxes[to] = std::get<std::span<const Box3f>>(objects.boxes)[from];
-        if (padded) padding[to] = objects.padding[from];
-        positions[to] = position;
+    /// Calls use(copy), where copy(to, from) makes object `from` of `objects`, of this form, number `to`: its box, its
+    /// padding.
+    template <typename Use>
+    void copying(const Objects& objects, Use&& use) {
+        const auto with = [&](auto* to_boxes, auto from_boxes) {
+            double* const to_padding = padding.data();
+            const double* const from_padding = objects.padding.data();
+            if (padded) {
+                use([=](std::size_t to, std::size_t from) {
+                    to_boxes[to] = from_boxes[from];
+                    to_padding[to] = from_padding[from];
+                });
+            } else {
+                use([=](std::size_t to, std::size_t from) { to_boxes[to] = from_boxes[from]; });
+            }
+        };
+        if (wide) with(wide_boxes.data(), std::get<std::span<const Box3d>>(objects.boxes));
+        if (!wide) with(boxes.data(), std::get<std::span<const Box3f>>(objects.boxes));
     }
     Objects view() const {
         const std::span<const double> paddings = padded ? padding.span() : std::span<const double>();

@@ -25,6 +25,17 @@ public:
     NodeIndex end(unsigned rank) const { return NodeIndex(begins_[rank + 1]); }
     unsigned owner(NodeIndex node) const { return owners_[node]; }
 
+    /// All octants that a box belongs in lie, in pre-order, from the first of these to the last.
+    struct Reach {
+        NodeIndex first = 0, last = 0;
+    };
+    /// `home`, `end`: the leaves that the box begins and ends in. A cell that is on no axis before another does not come
+    /// before it in pre-order.
+    static Reach reach(const CellBox& box, const Directory& directory, Directory::Leaf home, Directory::Leaf end) {
+        return {directory.at_most(home, natural_level(box)), end.node()};
+    }
+    bool is_shared(const Reach& reach) const { return owner(reach.first) != owner(reach.last); }
+
     /// Calls place(rank) for each rank that a box belongs to which reaches beyond the leaf it begins in, `home`; a rank
     /// may come more than once.
     template <typename Place>

@@ -116,37 +116,40 @@ PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {
 RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants octants) {
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
-    std::vector<std::uint64_t> work(octants.directory.nodes().size(), 0);
-    Routing routing(task.joint, own, octants, task.stop.get_token());
+    std::vector<std::uint64_t> work;
+    std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        routing.find(executor, work);
+        work.resize(octants.directory.nodes().size(), 0);
+        routing.emplace(task.joint, own, octants, task.stop.get_token());
+        routing->find(executor, work);
     });
     comm_.add_up(work);
+    const unsigned sets = task.joint.join ? 2 : 1;
     std::optional<OctantOwners> cut;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
         cut.emplace(octants.directory, work, comm_.size());
-        routing.address(executor, *cut);
-    });
-    const OctantOwners& owners = *cut;
-    costs_.shared_objects = routing.shared_objects();
-    for (unsigned set = 0; set < (task.joint.join ? 2u : 1u); ++set) {
-        ObjectArrays &out = sent_[set], &in = received_[set];
-        for (ObjectArrays* arrays : {&out, &in}) {
-            arrays->wide = task.joint.wide[set];
-            arrays->padded = task.joint.padded[set];
+        routing->address(executor, *cut);
+        const Metered packing(comm_, costs_.pack);
+        for (unsigned set = 0; set < sets; ++set) {
+            for (ObjectArrays* arrays : {&sent_[set], &received_[set]}) {
+                arrays->wide = task.joint.wide[set];
+                arrays->padded = task.joint.padded[set];
+            }
+            routing->pack(executor, set, task.slices[set], sent_[set]);
         }
-        const Exchange counts = comm_.plan_exchange(routing.counts(set));
-        task.agreement.together([&] {
-            const Metered metered(comm_, costs_.pack);
-            in.resize(counts.incoming());
-            routing.pack(executor, set, task.slices[set], out);
-        });
-        exchange(comm_, out, in, counts);
-        costs_.objects_received += in.size();
+    });
+    costs_.route -= costs_.pack;
+    const OctantOwners& owners = *cut;
+    costs_.shared_objects = routing->shared_objects();
+    for (unsigned set = 0; set < sets; ++set) {
+        const Exchange counts = comm_.plan_exchange(routing->counts(set));
+        task.agreement.together([&] { received_[set].resize(counts.incoming()); });
+        exchange(comm_, sent_[set], received_[set], counts);
+        costs_.objects_received += received_[set].size();
     }
-    const PairNumbers numbers{received_[0].positions.span(), received_[task.joint.join ? 1 : 0].positions.span()};
+    const PairNumbers numbers{received_[0].positions.span(), received_[sets - 1].positions.span()};
     return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
 }
 
@@ -155,17 +158,6 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     // Its own stop: where this rank's part of a pass is abandoned, as at a limit, the others' are not.
     Call call{own_octants, task.output, source, {}, task.progress, {}};
     const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
-    constexpr double built = 0.3;  // of the progress
-    task.agreement.together([&] {
-        const Metered metered(comm_, costs_.build);
-        try {
-            passes_.build(call, built);
-        } catch (const LinearOctree::Invalid& invalid) {
-            if (comm_.size() == 1) source.refuse(invalid.begin);
-            throw Error(ErrorCode::bad_input, "an object changed while it was read");
-        }
-    });
-    task.summary.entries = comm_.sum(call.summary.entries);
     if (outlet_of(task.output) == Outlet::count) {
         count(task, call);
     } else if (task.request.options.order == Order::octal) {
@@ -173,6 +165,7 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     } else {
         find_ascending(task, call);
     }
+    task.summary.entries = comm_.sum(call.summary.entries);
     task.summary.steps = call.summary.steps;
 }
 
@@ -222,9 +215,22 @@ void RankSearch::gather(PairList& piece, PairList::Storage& all) {
     if (!gathered.empty()) all.append(gathered);
 }
 
+/// In one part with the pass that comes first: what is built is then still in the cache.
+void RankSearch::build(Call& call) {
+    constexpr double built = 0.3;  // of the progress
+    const Metered metered(comm_, costs_.build);
+    try {
+        passes_.build(call, built);
+    } catch (const LinearOctree::Invalid& invalid) {
+        if (comm_.size() == 1) call.source.refuse(invalid.begin);
+        throw Error(ErrorCode::bad_input, "an object changed while it was read");
+    }
+}
+
 void RankSearch::count(Task& task, Call& call) {
     std::uint64_t pairs = 0;
     task.agreement.together([&] {
+        build(call);
         const Metered metered(comm_, costs_.scan);
         pairs = passes_.count(call, 1);
     });
@@ -236,12 +242,14 @@ void RankSearch::find_octal(Task& task, Call& call) {
     std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
     if (limit) {
         task.agreement.together([&] {
+            build(call);
             const Metered metered(comm_, costs_.scan);
             pairs = passes_.count(call, 0.6);
         });
         allowance = allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
     }
     task.agreement.together([&] {
+        if (!limit) build(call);
         const Metered metered(comm_, costs_.scan);
         if (task.output.list != nullptr && !limit) {
             passes_.list_octal(call, task.output.list->storage(), 1);
@@ -267,10 +275,12 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     PairList& piece = whole ? *task.output.list : sorted;
     const std::uint64_t rows = task.joint.totals[0], columns = task.joint.totals[task.joint.join ? 1 : 0];
     if (comm_.size() == 1) {
+        build(call);
         const Metered metered(comm_, costs_.scan);
         passes_.list_ascending(call, piece.storage(), {{0, rows}, columns}, 1);
     } else {
         task.agreement.together([&] {
+            build(call);
             const Metered metered(comm_, costs_.scan);
             passes_.list_octal(call, found_.storage(), 0.8);
         });

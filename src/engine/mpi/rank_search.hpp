@@ -41,6 +41,7 @@ private:
     PlantedOctants plant(Task& task, const BoxSource& own);
     RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
     void search(Task& task, const Engine::Request& own_octants);
+    void build(Call& call);
     void count(Task& task, Call& call);
     void find_octal(Task& task, Call& call);
     void find_ascending(Task& task, Call& call);

@@ -34,6 +34,7 @@ public:
 
     /// Adds to `work`, which has an element for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
     void find(Executor& executor, std::span<std::uint64_t> work);
+    /// Borrows `owners` until the end.
     void address(Executor& executor, const OctantOwners& owners);
     /// After address(): how many of a set go to each rank, and how many of all have several owners.
     RankCounts counts(unsigned set) const;
@@ -42,30 +43,32 @@ public:
     void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
 
 private:
+    using Reach = OctantOwners::Reach;
     struct Block {
         unsigned set = 0;
         ObjectBlock objects = {};                // of the source
         std::optional<std::size_t> bad = {};     // the first that is not a box
+        std::vector<Reach> reaches = {};         // of those that cross
         RankCounts counts = {};                  // of each rank
-        std::vector<std::uint32_t> owners = {};  // of objects with several: how many, and these
+        std::vector<std::uint32_t> owners = {};  // of those that may have several: how many, and these
         std::uint64_t shared = 0;
     };
     void find(Block& block, std::span<std::uint64_t> work);
-    void address(Block& block, const OctantOwners& owners);
+    void address(Block& block);
+    void share(Block& block, std::size_t object);
+    template <typename Visit, typename VisitShared>
+    void for_each_object(const Block& block, Visit&& visit, VisitShared&& visit_shared) const;
     template <typename Place>
     void for_each_copy(const Block& block, Place&& place) const;
     [[noreturn]] void refuse(std::size_t object) const;
-
-    static constexpr std::uint32_t several = ~std::uint32_t(0);
 
     const JointCall& call_;
     const BoxSource& source_;
     const PlantedOctants& octants_;
     std::stop_token stop_;
     std::vector<Block> blocks_;
-    unsigned ranks_ = 0;
-    Buffer<Home> homes_;            // of each object: the leaf that it begins in
-    Buffer<std::uint32_t> owners_;  // of each object: its owner, or `several`
+    const OctantOwners* owners_ = nullptr;
+    Buffer<Home> homes_;  // of each object: the leaf that it begins in
 };
 
 }  // namespace octopair
