@@ -83,7 +83,7 @@ int run_on_ranks(const DetectRequest& request) {
 
 int run_detect(const DetectRequest& request) {
 #ifdef OCTOPAIR_WITH_MPI
-    if (request.engine.kind == EngineKind::mpi && !request.events) return run_on_ranks(request);
+    if (request.engine.kind == EngineKind::mpi) return run_on_ranks(request);
 #endif
     const Interrupt interrupt;
     Outcome outcome(request, interrupt.token());

@@ -130,7 +130,7 @@ void check_engine_choice(const EngineChoice& choice) {
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
     if (choice.kind == EngineKind::mpi)
-        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` works on ranks, without --events");
+        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` works on ranks");
 #ifdef OCTOPAIR_WITH_PROCESSES
     if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
 #endif

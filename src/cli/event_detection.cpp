@@ -134,6 +134,7 @@ private:
 
 void check_event_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--events: " + why); };
+    if (request.engine.kind == EngineKind::mpi) refuse("not with --engine mpi");
     if (request.count_only) refuse("not with --count-only");
     if (request.order == Order::octal) refuse("not with --order octal: the pairs of a frame are ascending");
     if (!request.output.empty()) (void)io::event_format(request.output);

@@ -144,6 +144,9 @@ void complete_serve_request(CLI::App& command, ServeRequest& request) {
     if (request.engine.kind == EngineKind::server) {
         throw Error(ErrorCode::usage, "--engine: a server looks for pairs itself; it does not ask another one");
     }
+    if (request.engine.kind == EngineKind::mpi) {
+        throw Error(ErrorCode::usage, "--engine: a server has no ranks yet; it has threads or workers");
+    }
 }
 
 }  // namespace octopair::cli

@@ -180,7 +180,9 @@ TEST_F(Engines, WhatGoesTogether) {
              {"--engine local --workers 2", "--workers: the local engine has threads; workers need --engine processes"},
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
-             {"--engine threads", "--engine: 'threads' is not known; this version has: local, processes"}}) {
+             {"--engine mpi --workers 2", "--workers: --engine mpi has ranks; mpirun -n says how many"},
+             {"--engine mpi --events", "--events: not with --engine mpi"},
+             {"--engine threads", "--engine: 'threads' is not known; this version has: local, processes, mpi"}}) {
         const Outcome outcome = run("detect a.npy " + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;
         EXPECT_EQ(outcome.err, "octopair: " + message + "\n");
