@@ -1,14 +1,14 @@
 // RankSearch: what a rank does in a call, from its slice of the objects to its piece of the pairs.
 //
 //   join    what all ranks ask for                                                           (joint_call.hpp)
-//   plant   the octree's octants, from the sample that the local engine would take
+//   plant   the octree's octants, from the sample that the local engine would take            (planting.hpp)
 //   cut     the pre-order of octants into runs of about equal work, one for each rank         (octant_owners.hpp)
 //   route   objects to the ranks whose octants they touch                                     (routing.hpp)
 //   search  each rank the octants it owns, as the local engine would                          (rank_passes.hpp)
 //   order   ascending: pairs to the ranks that their `a` belongs to, where they are sorted    (ascending_pieces.hpp)
 //
-// The pieces of all ranks, one after another, are what the local engine finds. Nothing is gathered in one place but the
-// sample and a few numbers for each rank and octant.
+// The pieces of all ranks, one after another, are what the local engine finds. What every rank gets to know is the shape of
+// the tree, and a few numbers for each rank and octant; nothing else is gathered.
 #pragma once
 
 #include <array>
