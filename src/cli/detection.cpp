@@ -64,8 +64,9 @@ private:
     /// An empty sink counts.
     Summary search(Engine& engine, std::uint64_t frame, const PairSink& sink) {
         const Objects first = first_.frame(frame), second = second_.frame(frame);
-        return join() ? engine.stream_pairs_between(first, second, sink, options_for(frame), stop_)
-                      : engine.stream_pairs(first, sink, options_for(frame), stop_);
+        return join() ? engine.stream_pairs_between(first, second, sink,
+                                                    call_options(request_, report_, frame, progress_), stop_)
+                      : engine.stream_pairs(first, sink, call_options(request_, report_, frame, progress_), stop_);
     }
 
     void stream(Engine& engine) {
@@ -93,17 +94,6 @@ private:
         const io::PairNames names{&first_.scene.names, join() ? &second_.scene.names : &first_.scene.names};
         if (!request_.output.empty()) return io::make_file_writer(request_.output, report_.moving, names);
         return io::make_csv_writer(std::make_unique<io::StandardOutput>(stop_), report_.moving);
-    }
-
-    Options options_for(std::uint64_t frame) {
-        Options options;
-        options.order = request_.order;
-        options.margin = request_.margin;
-        if (request_.limit) options.limit = *request_.limit - report_.pairs;
-        options.progress = [this, frame](double done) {
-            progress_.show("detecting", (double(frame) + done) / double(report_.frames));
-        };
-        return options;
     }
 
     /// Says again what the engine found wrong with a box, with the file.
@@ -135,6 +125,18 @@ void DetectReport::add(const Summary& summary, double written) {
     steps.merge += summary.steps.merge;
     steps.scan += summary.steps.scan;
     seconds.detect += std::max(0.0, summary.seconds - written);
+}
+
+Options call_options(const DetectRequest& request, const DetectReport& report, std::uint64_t frame,
+                     ProgressLine& progress) {
+    Options options;
+    options.order = request.order;
+    options.margin = request.margin;
+    if (request.limit) options.limit = *request.limit - report.pairs;
+    options.progress = [&progress, frame, frames = report.frames](double done) {
+        progress.show("detecting", (double(frame) + done) / double(frames));
+    };
+    return options;
 }
 
 DetectReport detect(const DetectRequest& request, const std::stop_token& stop) {

@@ -56,6 +56,12 @@ struct DetectReport {
     void add(const Summary& summary, double written);
 };
 
+class ProgressLine;
+
+/// Of the call about a frame, after those that the report tells of. Borrows the progress.
+Options call_options(const DetectRequest& request, const DetectReport& report, std::uint64_t frame,
+                     ProgressLine& progress);
+
 /// Does it all but the stats. Throws Error.
 DetectReport detect(const DetectRequest& request, const std::stop_token& stop);
 

@@ -88,7 +88,7 @@ private:
     /// Without a list: counts.
     void search(std::uint64_t frame, PairList* piece) {
         const Objects first = first_.frame(frame), second = second_.frame(frame);
-        const Options options = options_for(frame);
+        const Options options = call_options(request_, report_, frame, progress_);
         Summary summary;
         cluster_.joint([&] {
             if (piece == nullptr) {
@@ -100,17 +100,6 @@ private:
             }
         });
         report_.add(summary, 0);
-    }
-
-    Options options_for(std::uint64_t frame) {
-        Options options;
-        options.order = request_.order;
-        options.margin = request_.margin;
-        if (request_.limit) options.limit = *request_.limit - report_.pairs;
-        options.progress = [this, frame](double done) {
-            progress_.show("detecting", (double(frame) + done) / double(report_.frames));
-        };
-        return options;
     }
 
     /// Says again what the engine found wrong with a box, with the file; of several ranks', the first one.
