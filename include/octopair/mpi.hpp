@@ -10,8 +10,9 @@
 // Threads   MPI must have been started with MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread,
 //           MPI_THREAD_SERIALIZED from others, MPI_THREAD_MULTIPLE for jobs. Jobs run in the order in which they were
 //           submitted, which must be the same on all ranks, and before calls that come after them.
-// Memory    about 130 bytes an object of a rank's float32 boxes, beside input and output. In ascending order a rank holds
-//           its pairs twice for a while, also where they are streamed: Options::buffer_bytes does not bound them.
+// Memory    about 130 bytes an object of a rank's float32 boxes, beside input and output. Lists in ascending order are held
+//           twice for a while. Options::buffer_bytes bounds what each rank holds while streaming, or the pairs of a 2^14th of
+//           the objects if these are more.
 // CMake     link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
 #pragma once
 
@@ -28,7 +29,7 @@ struct MpiOptions {
     unsigned threads = 1;  ///< of each rank; 0: one per core
 };
 
-/// Collective. The engine works on a duplicate of `comm` and must go on all ranks before MPI_Finalize. Throws Error{usage}
+/// Collective. The engine works on a duplicate of `comm` and must be destroyed on all ranks before MPI_Finalize. Throws Error{usage}
 /// outside MPI_Init_thread and MPI_Finalize, Error{engine_failed} if MPI fails.
 std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options = {});
 

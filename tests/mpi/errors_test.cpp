@@ -90,6 +90,9 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
     options = {};
     if (last()) options.limit = 7;
     expect_on_all(ErrorCode::usage, "the limit", [&] { (void)engine_->count_pairs(own(), options); });
+    options = {};
+    if (last()) options.buffer_bytes = 1 << 20;
+    expect_on_all(ErrorCode::usage, "the size of the buffer", [&] { (void)engine_->count_pairs(own(), options); });
     expect_on_all(ErrorCode::usage, "a second set", [&] {
         last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs_between(own(), own());
     });

@@ -81,6 +81,44 @@ TEST(Ranks, ShareTheWork) {
     }
 }
 
+/// With a buffer that the pairs of a rank do not fit into: in windows, up to any limit.
+TEST(Ranks, StreamManyPairsInBoundedMemory) {
+    const std::vector<Box3f> boxes = samples::make_scene("dense", testing::scaled(300'000, 2), 1);
+    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Pair> expected = find_pairs(boxes);
+    Options options;
+    options.buffer_bytes = 1 << 20;
+    const auto streamed = [&](Engine& engine, std::uint64_t& most) {
+        std::vector<Pair> all;
+        const Summary summary = engine.stream_pairs(
+            {std::span<const Box3f>(own), {}},
+            [&](std::span<const Pair> batch) {
+                all.insert(all.end(), batch.begin(), batch.end());
+                most = std::max<std::uint64_t>(most, batch.size());
+            },
+            options);
+        EXPECT_EQ(summary.pairs, std::min<std::uint64_t>(options.limit.value_or(~0ull), expected.size()));
+        EXPECT_EQ(summary.truncated, summary.pairs < expected.size());
+        return testing::all_pieces(all);
+    };
+    for (const unsigned threads : {1u, 2u}) {
+        const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
+        for (const std::uint64_t limit : {~std::uint64_t(0), std::uint64_t(expected.size() / 2), std::uint64_t(0)}) {
+            options.limit = limit;
+            std::uint64_t most = 0;
+            const std::vector<Pair> found = streamed(*engine, most);
+            const auto wanted = std::span(expected).first(std::min<std::uint64_t>(limit, expected.size()));
+            EXPECT_TRUE(testing::same_bytes(found, {wanted.begin(), wanted.end()}));
+            EXPECT_LE(most * sizeof(Pair), options.buffer_bytes);
+        }
+        // And afterwards all again.
+        options.limit.reset();
+        PairList list;
+        (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
+        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(list.to_vector()), expected));
+    }
+}
+
 TEST(Ranks, GatherTheirPieces) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);

@@ -1,65 +1,84 @@
 #include "engine/mpi/ascending_pieces.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <vector>
 
 #include "base/stop.hpp"
 #include "engine/ascending.hpp"
+#include "engine/mpi/agreement.hpp"
 #include "engine/mpi/even_cuts.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr unsigned most_bin_bits = 14;        // of rows, for the cuts
 constexpr std::size_t share_pairs = 1 << 16;  // to sort
 
 }  // namespace
 
-void AscendingPieces::bring_together(PairList& found, PairList::Storage& piece, const std::stop_token& stop) {
-    const unsigned row_bits = unsigned(std::bit_width(rows_));
-    bin_shift_ = row_bits > most_bin_bits ? row_bits - most_bin_bits : 0;
-    std::vector<std::uint64_t> bins;
-    Agreement agreement(comm_);
-    agreement.together([&] {
-        bins.resize((rows_ >> bin_shift_) + 1, 0);
-        count_rows(found, bins);
+PiecePlan::PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, unsigned ranks, unsigned windows)
+    : bins_(bins),
+      windows_(windows),
+      cuts_(even_cuts(counts, std::size_t(ranks) * windows)),
+      pieces_(counts.size()),
+      rank_pairs_(ranks, 0) {
+    for (std::uint32_t piece = 0; piece + 1 < cuts_.size(); ++piece) {
+        for (std::size_t bin = cuts_[piece]; bin < cuts_[piece + 1]; ++bin) {
+            pieces_[bin] = piece;
+            rank_pairs_[piece / windows] += counts[bin];
+        }
+    }
+}
+
+ObjectRange PiecePlan::rows(unsigned rank, unsigned window) const {
+    const std::size_t piece = std::size_t(rank) * windows_ + window;
+    return {bins_.begin(cuts_[piece]), bins_.begin(cuts_[piece + 1])};
+}
+
+std::uint64_t PiecePlan::pairs(unsigned rank) const { return rank_pairs_[rank]; }
+
+std::vector<std::uint8_t> PiecePlan::marks(unsigned window) const {
+    std::vector<std::uint8_t> marks(pieces_.size());
+    std::ranges::transform(pieces_, marks.begin(), [&](std::uint32_t piece) { return piece % windows_ == window; });
+    return marks;
+}
+
+PiecePlan AscendingPieces::plan(const PairList& found, const RowBins& bins) {
+    std::vector<std::uint64_t> counts;
+    Agreement(comm_).together([&] {
+        counts.resize(bins.size(), 0);
+        for (const auto chunk : found.chunks()) {
+            for (const Pair& pair : chunk) ++counts[bins.bin(pair)];
+        }
     });
-    comm_.add_up(bins);
-    const std::vector<std::size_t> cuts = even_cuts(bins, comm_.size());
+    comm_.add_up(counts);
+    return {bins, counts, comm_.size(), 1};
+}
+
+// NOLINTNEXTLINE(readability-function-size): what, by which plan, which part of it, where to, and until when.
+void AscendingPieces::bring_together(PairList& found, const PiecePlan& plan, unsigned window, PairList::Storage& piece,
+                                     const std::stop_token& stop) {
+    Agreement agreement(comm_);
     RankCounts to_each;
-    agreement.together([&] { to_each = pack(found, cuts); });
+    agreement.together([&] { to_each = pack(found, plan); });
     found.storage().reset();
     const Exchange counts = comm_.plan_exchange(std::move(to_each));
     agreement.together([&] { received_.resize_discard(counts.incoming()); });
     comm_.exchange(sent_.data(), received_.data(), counts);
-    const auto row = [&](std::size_t cut) { return std::min<std::uint64_t>(rows_, std::uint64_t(cut) << bin_shift_); };
-    const ObjectRange own{row(cuts[comm_.rank()]), row(cuts[comm_.rank() + 1])};
-    agreement.together([&] { sort_received(piece, own, stop); });
+    agreement.together([&] { sort_received(piece, plan.rows(comm_.rank(), window), stop); });
 }
 
-void AscendingPieces::count_rows(const PairList& found, std::span<std::uint64_t> counts) const {
-    for (const auto chunk : found.chunks()) {
-        for (const Pair& pair : chunk) ++counts[bin(pair.a)];
-    }
-}
-
-RankCounts AscendingPieces::pack(const PairList& found, std::span<const std::size_t> cuts) {
-    std::vector<std::uint32_t> owners(cuts.back());
-    for (unsigned rank = 0; rank < comm_.size(); ++rank) {
-        std::fill(owners.begin() + std::ptrdiff_t(cuts[rank]), owners.begin() + std::ptrdiff_t(cuts[rank + 1]), rank);
-    }
+RankCounts AscendingPieces::pack(const PairList& found, const PiecePlan& plan) {
     RankCounts counts(comm_.size(), 0);
     for (const auto chunk : found.chunks()) {
-        for (const Pair& pair : chunk) ++counts[owners[bin(pair.a)]];
+        for (const Pair& pair : chunk) ++counts[plan.owner(pair)];
     }
     sent_.resize_discard(std::size_t(found.size()));
     RankCounts places(comm_.size(), 0);
     std::exclusive_scan(counts.begin(), counts.end(), places.begin(), std::uint64_t(0));
     for (const auto chunk : found.chunks()) {
-        for (const Pair& pair : chunk) sent_[std::size_t(places[owners[bin(pair.a)]]++)] = pair;
+        for (const Pair& pair : chunk) sent_[std::size_t(places[plan.owner(pair)]++)] = pair;
     }
     return counts;
 }

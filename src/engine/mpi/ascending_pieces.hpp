@@ -1,41 +1,67 @@
 // AscendingPieces: pairs that ranks have found in any order, brought into one ascending sequence over all ranks.
 //
-// The objects of `a` are cut into runs with about equally many pairs, one for each rank; pairs go to the rank of their `a`,
-// which sorts them.
+// The objects of `a` are cut into pieces with about equally many pairs, as many pieces in a row for each rank as it takes
+// windows; pairs go to the rank of their `a`, which sorts them, window after window.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <stop_token>
+#include <vector>
 
 #include "base/memory.hpp"
 #include "engine/ascending_bounds.hpp"
-#include "engine/mpi/agreement.hpp"
 #include "engine/mpi/communicator.hpp"
+#include "engine/mpi/row_bins.hpp"
 #include "engine/pair_list.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {
 
-class AscendingPieces {
+/// Which pairs are which rank's, and in which window. The same on all ranks.
+class PiecePlan {
 public:
-    /// `rows`: above every `a`; `columns`: above every `b`.
-    AscendingPieces(Communicator& comm, Team& team, std::uint64_t rows, std::uint64_t columns)
-        : comm_(comm), team_(team), rows_(rows), columns_(columns) {}
+    /// `counts`: of all ranks' pairs, by bin.
+    PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, unsigned ranks, unsigned windows);
 
-    /// Collective: appends this rank's piece of what all ranks found to `piece`. Empties `found`. Throws as
-    /// Agreement::together.
-    void bring_together(PairList& found, PairList::Storage& piece, const std::stop_token& stop);
+    const RowBins& bins() const { return bins_; }
+    unsigned windows() const { return windows_; }
+    unsigned owner(const Pair& pair) const { return pieces_[bins_.bin(pair)] / windows_; }
+    /// The objects whose pairs are a rank's in a window.
+    ObjectRange rows(unsigned rank, unsigned window) const;
+    /// Of all its windows.
+    std::uint64_t pairs(unsigned rank) const;
+    /// The bins of a window, of all ranks.
+    std::vector<std::uint8_t> marks(unsigned window) const;
 
 private:
-    void count_rows(const PairList& found, std::span<std::uint64_t> counts) const;
-    RankCounts pack(const PairList& found, std::span<const std::size_t> cuts);
+    RowBins bins_;
+    unsigned windows_;
+    std::vector<std::size_t> cuts_;      // of the bins: where each piece begins, and the end
+    std::vector<std::uint32_t> pieces_;  // of each bin
+    std::vector<std::uint64_t> rank_pairs_;
+};
+
+class AscendingPieces {
+public:
+    /// `columns`: above every `b`.
+    AscendingPieces(Communicator& comm, Team& team, std::uint64_t columns)
+        : comm_(comm), team_(team), columns_(columns) {}
+
+    /// Collective: by what all ranks have found.
+    PiecePlan plan(const PairList& found, const RowBins& bins);
+    /// Collective: appends this rank's pairs of a window, of what all ranks found of it, to `piece`. Empties `found`. Throws
+    /// as Agreement::together.
+    void bring_together(PairList& found, const PiecePlan& plan, unsigned window, PairList::Storage& piece,
+                        const std::stop_token& stop);
+
+private:
+    RankCounts pack(const PairList& found, const PiecePlan& plan);
     void sort_received(PairList::Storage& piece, const ObjectRange& rows, const std::stop_token& stop);
-    std::uint64_t bin(std::uint32_t a) const { return a >> bin_shift_; }
 
     Communicator& comm_;
     Team& team_;
-    std::uint64_t rows_, columns_;
-    unsigned bin_shift_ = 0;
+    std::uint64_t columns_;
     Buffer<Pair> sent_, received_;
 };
 

@@ -25,7 +25,7 @@ struct Told {
     Order order;
     bool join, limited;
     double margin;
-    std::uint64_t limit;
+    std::uint64_t limit, buffer_bytes;
     std::array<ToldSlice, 2> slices;
 };
 
@@ -42,6 +42,7 @@ Told told_of(const Engine::Request& request, Outlet outlet) {
             .limited = options.limit.has_value(),
             .margin = options.margin,
             .limit = options.limit.value_or(0),
+            .buffer_bytes = options.buffer_bytes,
             .slices = {told_of(&request.first), told_of(request.second)}};
 }
 
@@ -51,6 +52,7 @@ std::string_view difference(const Told& a, const Told& b) {
     if (a.join != b.join) return "whether there is a second set";
     if (a.order != b.order) return "the order";
     if (a.margin != b.margin) return "the margin";
+    if (a.buffer_bytes != b.buffer_bytes) return "the size of the buffer";
     if (a.limited != b.limited || a.limit != b.limit) return "the limit";
     return {};
 }

@@ -33,6 +33,8 @@ struct JointCall {
         return wide[set] ? Objects{std::span<const Box3d>(), {}} : Objects{std::span<const Box3f>(), {}};
     }
     std::uint64_t objects() const { return totals[0] + totals[1]; }
+    /// Above every `b` of a pair.
+    std::uint64_t columns() const { return totals[join ? 1 : 0]; }
     /// Of an object of this rank's source.
     std::uint64_t position(std::uint64_t own) const {
         return own < sizes[0] ? begins[0] + own : totals[0] + begins[1] + (own - sizes[0]);

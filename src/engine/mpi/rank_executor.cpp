@@ -17,20 +17,37 @@ public:
     }
     void write(std::span<const Pair> pairs) override {
         look_out();
-        const PairNumbers& numbers = executor_.numbers_;
-        if (numbers.a.empty()) return writer_.write(pairs);
+        if (executor_.numbers_.a.empty() && executor_.wanted_.marks.empty()) return writer_.write(pairs);
         std::array<Pair, 1024> numbered;
         while (!pairs.empty()) {
             const auto some = pairs.first(std::min(pairs.size(), numbered.size()));
-            for (std::size_t i = 0; i < some.size(); ++i) {
-                numbered[i] = {numbers.a[some[i].a], numbers.b[some[i].b]};
-            }
-            writer_.write(std::span(numbered).first(some.size()));
+            number(some, numbered);
+            const std::size_t wanted = drop_unwanted(std::span(numbered).first(some.size()));
+            if (wanted > 0) writer_.write(std::span(numbered).first(wanted));
             pairs = pairs.subspan(some.size());
         }
     }
 
 private:
+    void number(std::span<const Pair> pairs, std::span<Pair> out) const {
+        const PairNumbers& numbers = executor_.numbers_;
+        if (numbers.a.empty()) {
+            std::copy(pairs.begin(), pairs.end(), out.begin());
+            return;
+        }
+        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = {numbers.a[pairs[i].a], numbers.b[pairs[i].b]};
+    }
+    /// Returns how many are left, at the front.
+    std::size_t drop_unwanted(std::span<Pair> pairs) const {
+        const WantedRows& wanted = executor_.wanted_;
+        if (wanted.marks.empty()) return pairs.size();
+        std::size_t left = 0;
+        for (const Pair& pair : pairs) {
+            pairs[left] = pair;
+            left += wanted.marks[wanted.bins.bin(pair)] != 0 ? 1 : 0;
+        }
+        return left;
+    }
     void look_out() {
         if (++writes_ % 64 == 0) executor_.look_out();
     }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "engine/mpi/agreement.hpp"
+#include "engine/mpi/row_bins.hpp"
 #include "octree/executor.hpp"
 
 namespace octopair {
@@ -21,8 +22,8 @@ struct PairNumbers {
 class RankExecutor final : public Executor {
 public:
     /// Borrows all.
-    RankExecutor(Executor& executor, StopRelay& stops, const PairNumbers& numbers = {})
-        : executor_(executor), stops_(stops), numbers_(numbers) {}
+    RankExecutor(Executor& executor, StopRelay& stops, const PairNumbers& numbers = {}, const WantedRows& wanted = {})
+        : executor_(executor), stops_(stops), numbers_(numbers), wanted_(wanted) {}
 
     unsigned width() const override { return executor_.width(); }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
@@ -35,6 +36,7 @@ private:
     Executor& executor_;
     StopRelay& stops_;
     PairNumbers numbers_;
+    WantedRows wanted_;
     std::thread::id thread_ = std::this_thread::get_id();
 };
 

@@ -1,5 +1,7 @@
 #include "engine/mpi/rank_passes.hpp"
 
+#include <atomic>
+
 #include "engine/writers.hpp"
 
 namespace octopair {
@@ -15,8 +17,48 @@ void RankPasses::build(Call& call, double progress) {
     call.summary.steps.sort = octree().seconds().sort;
 }
 
+namespace {
+
+class RowCountWriter final : public FullWriter {
+public:
+    RowCountWriter(const RowBins& bins, std::span<std::uint64_t> counts) : bins_(bins), counts_(counts) {}
+    void write(std::span<const Pair> pairs) override {
+        for (const Pair& pair : pairs) {
+            std::atomic_ref(counts_[bins_.bin(pair)]).fetch_add(1, std::memory_order_relaxed);
+        }
+    }
+
+private:
+    const RowBins& bins_;
+    std::span<std::uint64_t> counts_;
+};
+
+/// Counts the pairs of each bin.
+class RowCountExecutor final : public TeamExecutor {
+public:
+    RowCountExecutor(Team& team, const RowBins& bins, std::span<std::uint64_t> counts)
+        : TeamExecutor(team), bins_(bins), counts_(counts) {}
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
+        team().for_each(count, [&](std::size_t i, unsigned) {
+            RowCountWriter writer(bins_, counts_);
+            body(i, writer);
+        });
+    }
+
+private:
+    const RowBins& bins_;
+    std::span<std::uint64_t> counts_;
+};
+
+}  // namespace
+
+void RankPasses::count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress) {
+    RowCountExecutor executor(team(), bins, counts);
+    scan_into(call, executor, progress);
+}
+
 void RankPasses::scan_into(Call& call, Executor& executor, double progress) {
-    RankExecutor numbering(executor, *stops_, share_.numbers);
+    RankExecutor numbering(executor, *stops_, share_.numbers, wanted_);
     ThreadPasses::scan_into(call, {octree(), share_.begin, share_.end}, numbering, progress);
 }
 

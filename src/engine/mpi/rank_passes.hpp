@@ -25,8 +25,13 @@ public:
     void take(RankShare share, StopRelay& stops) {
         share_ = std::move(share);
         stops_ = &stops;
+        wanted_ = {};
     }
     Team& threads() { return team(); }
+    /// Of the passes from here to the next take(): which pairs they write. Borrowed.
+    void want(const WantedRows& wanted) { wanted_ = wanted; }
+    /// Adds the pairs of each bin to `counts`.
+    void count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress);
 
     /// Throws LinearOctree::Invalid.
     void build(Call& call, double progress) override;
@@ -36,6 +41,7 @@ private:
 
     RankShare share_;
     StopRelay* stops_ = nullptr;
+    WantedRows wanted_;
 };
 
 }  // namespace octopair

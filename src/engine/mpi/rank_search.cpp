@@ -195,6 +195,12 @@ void receive(const Engine::Output& output, std::uint64_t allowance, const Give& 
 
 }  // namespace
 
+std::uint64_t RankSearch::allowed(Task& task, const PiecePlan& plan) const {
+    std::vector<std::uint64_t> pieces(comm_.size());
+    for (unsigned rank = 0; rank < comm_.size(); ++rank) pieces[rank] = plan.pairs(rank);
+    return octopair::allowed(pieces, comm_.rank(), task.request.options, task.summary);
+}
+
 void RankSearch::gather(PairList& piece, PairList::Storage& all) {
     RankCounts to_first(comm_.size(), 0);
     to_first[0] = piece.size();
@@ -234,7 +240,7 @@ void RankSearch::count(Task& task, Call& call) {
         const Metered metered(comm_, costs_.scan);
         pairs = passes_.count(call, 1);
     });
-    (void)allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
 void RankSearch::find_octal(Task& task, Call& call) {
@@ -246,7 +252,7 @@ void RankSearch::find_octal(Task& task, Call& call) {
             const Metered metered(comm_, costs_.scan);
             pairs = passes_.count(call, 0.6);
         });
-        allowance = allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+        allowance = octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
     }
     task.agreement.together([&] {
         if (!limit) build(call);
@@ -266,36 +272,100 @@ void RankSearch::find_octal(Task& task, Call& call) {
             });
         }
     });
-    if (!limit) (void)allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    if (!limit) (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
 void RankSearch::find_ascending(Task& task, Call& call) {
     const bool whole = task.output.list != nullptr && !task.request.options.limit;
-    PairList sorted;
-    PairList& piece = whole ? *task.output.list : sorted;
-    const std::uint64_t rows = task.joint.totals[0], columns = task.joint.totals[task.joint.join ? 1 : 0];
-    if (comm_.size() == 1) {
+    if (comm_.size() == 1 && whole) {
         build(call);
         const Metered metered(comm_, costs_.scan);
-        passes_.list_ascending(call, piece.storage(), {{0, rows}, columns}, 1);
-    } else {
-        task.agreement.together([&] {
-            build(call);
-            const Metered metered(comm_, costs_.scan);
-            passes_.list_octal(call, found_.storage(), 0.8);
-        });
-        const Metered metered(comm_, costs_.order);
-        AscendingPieces pieces(comm_, passes_.threads(), rows, columns);
-        pieces.bring_together(found_, piece.storage(), task.stop.get_token());
+        PairList::Storage& list = task.output.list->storage();
+        const std::uint64_t rows = task.joint.totals[0];
+        passes_.list_ascending(call, list, {{0, rows}, task.joint.columns()}, 1);
+        (void)octopair::allowed({list.size}, 0, task.request.options, task.summary);
+        return;
     }
-    const std::uint64_t allowance =
-        allowed(comm_.all_gather(piece.size()), comm_.rank(), task.request.options, task.summary);
+    // What is not to be a list anyway must fit into the caller's buffer.
+    std::uint64_t over = 0;
+    task.agreement.together([&] {
+        build(call);
+        const Metered metered(comm_, costs_.scan);
+        over = list_octal(call, whole ? ~std::uint64_t(0) : call.buffer_pairs() / 2) ? 0 : 1;
+    });
+    if (comm_.sum(over) > 0) return find_windows(task, call);
+    const Metered metered(comm_, costs_.order);
+    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
+    const PiecePlan plan = pieces.plan(found_, RowBins(task.joint.totals[0]));
+    const std::uint64_t allowance = allowed(task, plan);
+    PairList sorted;
+    PairList& piece = whole ? *task.output.list : sorted;
+    pieces.bring_together(found_, plan, 0, piece.storage(), task.stop.get_token());
     if (whole) return;
     task.agreement.together([&] {
         receive(task.output, allowance, [&](Receiver& receiver) {
             for (const auto chunk : piece.chunks()) receiver.take(chunk);
         });
     });
+}
+
+/// To found_; false, with nothing found, where there are more.
+bool RankSearch::list_octal(Call& call, std::uint64_t most) {
+    PairList::Storage& list = found_.storage();
+    std::uint64_t bytes = 0;
+    list.ask([&](std::uint64_t more) {
+        bytes += more;
+        if (bytes / sizeof(Pair) > most) throw OverBudget{};
+    });
+    bool all = true;
+    try {
+        passes_.list_octal(call, list, 0.8);
+    } catch (const OverBudget&) {
+        list.reset();
+        all = false;
+    }
+    list.ask({});
+    return all;
+}
+
+/// Where the pairs do not fit into the buffer: counts those of neighbouring objects, then finds as many at a time as fit.
+void RankSearch::find_windows(Task& task, Call& call) {
+    const RowBins bins(task.joint.totals[0]);
+    std::vector<std::uint64_t> counts;
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.scan);
+        counts.resize(bins.size(), 0);
+        passes_.count_rows(call, bins, counts, 0.5);
+    });
+    comm_.add_up(counts);
+    const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
+    // A rank holds a window three times for a while: found, sent and received.
+    const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
+    const PiecePlan plan(bins, counts, comm_.size(), unsigned(all / (fit * comm_.size()) + 1));
+    Receiver receiver(task.output, allowed(task, plan));
+    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
+    bool enough = false;
+    for (unsigned window = 0; window < plan.windows(); ++window) {
+        std::vector<std::uint8_t> marks;
+        PairList sorted;
+        task.agreement.together([&] {
+            const Metered metered(comm_, costs_.scan);
+            marks = plan.marks(window);
+            passes_.want({bins, marks});
+            passes_.list_octal(call, found_.storage(), 0.5 + 0.5 * double(window + 1) / double(plan.windows()));
+        });
+        pieces.bring_together(found_, plan, window, sorted.storage(), task.stop.get_token());
+        task.agreement.together([&] {
+            try {
+                for (const auto chunk : sorted.chunks()) {
+                    if (!enough) receiver.take(chunk);
+                }
+            } catch (const Receiver::LimitReached&) {
+                enough = true;
+            }
+            if (window + 1 == plan.windows()) receiver.flush();
+        });
+    }
 }
 
 }  // namespace octopair

@@ -22,6 +22,8 @@
 
 namespace octopair {
 
+class PiecePlan;
+
 class RankSearch {
 public:
     RankSearch(Communicator& comm, unsigned threads) : comm_(comm), passes_(threads) {}
@@ -45,6 +47,9 @@ private:
     void count(Task& task, Call& call);
     void find_octal(Task& task, Call& call);
     void find_ascending(Task& task, Call& call);
+    bool list_octal(Call& call, std::uint64_t most);
+    void find_windows(Task& task, Call& call);
+    std::uint64_t allowed(Task& task, const PiecePlan& plan) const;
 
     Communicator& comm_;
     RankPasses passes_;

@@ -62,8 +62,9 @@ bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, 
 
 void Routing::find(Block& block, std::span<std::uint64_t> work) {
     const Directory& directory = octants_.directory;
-    std::array<CellBox, batch_size> cells, crossers, ends;
-    std::array<Directory::Leaf, batch_size> homes, crossing_homes, end_leaves;
+    std::array<CellBox, batch_size> cells, ends;
+    std::array<Directory::Leaf, batch_size> homes, end_leaves;
+    std::array<std::uint32_t, batch_size> crossers;
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval == 0) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);
@@ -77,14 +78,14 @@ void Routing::find(Block& block, std::span<std::uint64_t> work) {
             const bool crosses = !within(cells[i], homes[i].level());
             homes_[begin + i] = Home(homes[i].node(), crosses);
             ++work[homes[i].node()];
-            crossers[crossing] = cells[i];
-            crossing_homes[crossing] = homes[i];
-            ends[crossing].lo = cells[i].hi;
+            crossers[crossing] = std::uint32_t(i);
             crossing += crosses ? 1 : 0;
         }
+        for (std::size_t i = 0; i < crossing; ++i) ends[i].lo = cells[crossers[i]].hi;
         directory.leaves(std::span(ends).first(crossing), end_leaves);
         for (std::size_t i = 0; i < crossing; ++i) {
-            block.reaches.push_back(OctantOwners::reach(crossers[i], directory, crossing_homes[i], end_leaves[i]));
+            const std::uint32_t object = crossers[i];
+            block.reaches.push_back(OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i]));
         }
     }
 }
