@@ -17,11 +17,12 @@ CORE = ["base", "parallel", "geometry", "octree", "pipeline", "engine", "scene",
 USES = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
 USES["samples"] = {"base", "geometry"}
 USES["io"] = {"base", "geometry"}
-BENCH = ["baselines", "machine", "paper"]
+BENCH = ["baselines", "machine", "paper", "cluster"]
 USES["baselines"] = {"base", "octree"}
 USES["machine"] = set()
 USES["paper"] = {"base", "baselines", "machine", "samples"}
-USES["cli"] = set(CORE) | {"samples", "io", "paper"}
+USES["cluster"] = {"base", "machine", "samples"}
+USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster"}
 
 PURPOSE = {
     "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
@@ -29,7 +30,7 @@ PURPOSE = {
     "pipeline": "filters and their composition", "engine": "where and how pairs are found",
     "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
     "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
-    "paper": "the paper's section 5 again", "cli": "the program",
+    "paper": "the paper's section 5 again", "cluster": "what ranks cost", "cli": "the program",
 }
 
 # First part of a third-party include: the folders that may use it.
@@ -37,7 +38,8 @@ THIRD_PARTY = {
     "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "scene"}, "assimp": {"io"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
-    "CLI": {"cli"}, "fmt": {"io", "paper", "service", "cli"}, "nlohmann": {"io", "machine", "paper", "service", "cli"},
+    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "service", "cli"},
+    "nlohmann": {"io", "machine", "paper", "cluster", "service", "cli"},
 }
 # What a public header of a component cannot do without: its users have it.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}

@@ -1,4 +1,4 @@
-// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper).
+// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper); bench_cluster.cpp has `cluster`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,6 +119,9 @@ void add_bench(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bench", "measure");
     command->require_subcommand(1);
     add_paper(*command, action);
+#ifdef OCTOPAIR_WITH_MPI
+    add_bench_cluster(*command, action);
+#endif
 }
 
 }  // namespace octopair::cli

@@ -51,7 +51,7 @@ _octopair() {
     case $subcommand in
         bench)
             if ((COMP_CWORD == 2)); then
-                mapfile -t COMPREPLY < <(compgen -W "paper" -- "$current")
+                mapfile -t COMPREPLY < <(compgen -W "paper cluster" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --json --quiet --help" -- "$current")
             fi ;;

@@ -1,0 +1,109 @@
+#include "cluster/study.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/descriptor.hpp"
+#include "cluster/mpirun.hpp"
+#include "machine/machine.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cluster {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file of this process's, gone at its end.
+class TemporaryFile {
+public:
+    TemporaryFile() : path_((fs::temp_directory_path() / "octopair-cluster-XXXXXX").string()) {
+        const Descriptor file(::mkstemp(path_.data()));
+        if (!file.open()) throw Error(ErrorCode::io_failed, path_ + ": cannot create");
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    ~TemporaryFile() { ::unlink(path_.c_str()); }
+
+    const std::string& path() const { return path_; }
+    std::string content() const {
+        std::ifstream in(path_);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+
+private:
+    std::string path_;
+};
+
+const Measured* alone(const std::vector<Measured>& all, const Measured& measured) {
+    const auto found = std::ranges::find_if(all, [&](const Measured& other) {
+        return other.setup.ranks == 1 && other.setup.scene == measured.setup.scene &&
+               other.setup.objects == measured.setup.objects;
+    });
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::string row_text(const Measured& measured, const Measured* one) {
+    std::string text = fmt::format("{:>6}{:>12.3f}{:>12.3f}{:>11.3f}", measured.setup.ranks, measured.slowest() * 1e3,
+                                   measured.mean() * 1e3, measured.imbalance());
+    text += one != nullptr ? fmt::format("{:>11.1f}%", 100 * measured.efficiency(*one)) : fmt::format("{:>12}", "-");
+    return text + fmt::format("{:>9.2f}%{:>10.1f}{:>11.0f}\n", 100 * measured.shared(), measured.bytes_per_object(),
+                              measured.messages_per_rank());
+}
+
+}  // namespace
+
+std::vector<Measured> measure(const StudyPlan& plan, const Show& show, const std::stop_token& stop) {
+    const std::string program = fs::read_symlink("/proc/self/exe").string();
+    std::vector<Measured> all;
+    for (std::size_t i = 0; i < plan.ranks.size(); ++i) {
+        const unsigned ranks = plan.ranks[i];
+        show(fmt::format("on {} rank{}", ranks, ranks == 1 ? "" : "s"), double(i) / double(plan.ranks.size()));
+        const TemporaryFile file;
+        std::vector<std::string> command = {
+            program, "bench", "cluster", "--on-ranks", file.path(), "--rounds", std::to_string(plan.rounds), "--scene"};
+        command.insert(command.end(), plan.scenes.begin(), plan.scenes.end());
+        command.emplace_back("--objects");
+        for (const std::uint64_t objects : plan.objects) command.push_back(std::to_string(objects));
+        run_under_mpirun({plan.mpirun, ranks, command}, stop);
+        const std::vector<Measured> measured = measured_of(file.content());
+        all.insert(all.end(), measured.begin(), measured.end());
+    }
+    return all;
+}
+
+std::string study_text(const std::vector<Measured>& all) {
+    std::string text;
+    std::vector<const Measured*> rows;
+    for (const Measured& measured : all) rows.push_back(&measured);
+    std::ranges::stable_sort(rows, {},
+                             [](const Measured* row) { return std::pair(row->setup.scene, row->setup.objects); });
+    const Setup* last = nullptr;
+    for (const Measured* row : rows) {
+        if (last == nullptr || last->scene != row->setup.scene || last->objects != row->setup.objects) {
+            text += fmt::format("{}{} objects, {}: {} pairs\n\n{:>6}{:>12}{:>12}{:>11}{:>12}{:>10}{:>10}{:>11}\n",
+                                last == nullptr ? "" : "\n", row->setup.objects, row->setup.scene, row->pairs, "ranks",
+                                "slowest ms", "mean ms", "imbalance", "efficiency", "shared", "bytes/n", "messages");
+        }
+        text += row_text(*row, alone(all, *row));
+        last = &row->setup;
+    }
+    return text;
+}
+
+std::string study_json(const std::vector<Measured>& all) {
+    nlohmann::ordered_json json = {{"machine", bench::machine_json()}};
+    json["runs"] = nlohmann::ordered_json::parse(measured_json(all));
+    return json.dump(2) + '\n';
+}
+
+}  // namespace octopair::cluster

@@ -1,0 +1,134 @@
+// octopair bench cluster: what a call costs each of so many ranks (bench/cluster).
+//
+// The program has itself measured: it runs under mpirun, once for each number of ranks, and reads what the first rank wrote.
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "cli/cluster.hpp"
+#include "cli/failure.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/subcommands.hpp"
+#include "cluster/on_ranks.hpp"
+#include "cluster/study.hpp"
+#include "io/atomic_file.hpp"
+#include "octopair/error.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+struct ClusterRequest {
+    cluster::StudyPlan plan;
+    std::string json;      // a file, or empty
+    std::string on_ranks;  // where the first rank writes; empty: to run mpirun
+    bool quiet = false;
+};
+
+void write_file(const std::string& path, const std::string& text) {
+    io::AtomicFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+/// Under mpirun.
+int measure_on_ranks(const ClusterRequest& request) {
+    const Interrupt interrupt;
+    Cluster ranks;
+    std::vector<cluster::Measured> all;
+    try {
+        for (const std::string& scene : request.plan.scenes) {
+            for (const std::uint64_t objects : request.plan.objects) {
+                ranks.joint([&] {
+                    all.push_back(cluster::measure_on_ranks(MPI_COMM_WORLD, {scene, objects}, request.plan.rounds,
+                                                            interrupt.token()));
+                });
+            }
+        }
+        ranks.together([&] {
+            if (ranks.first()) write_file(request.on_ranks, cluster::measured_json(all));
+        });
+        return 0;
+    } catch (const Error& error) {
+        if (!ranks.ends_alike()) throw;
+        if (ranks.first()) (void)fail(error);
+        ranks.together([] {});
+        return exit_status(error.code());
+    }
+}
+
+int run_cluster(const ClusterRequest& request) {
+    if (!request.on_ranks.empty()) return measure_on_ranks(request);
+    const Interrupt interrupt;
+    std::optional<io::AtomicFile> json;
+    if (!request.json.empty()) json.emplace(request.json);
+    ProgressLine progress(!request.quiet);
+    const auto show = [&](std::string_view activity, double done) { progress.show(activity, done); };
+    const auto all = cluster::measure(request.plan, show, interrupt.token());
+    progress.clear();
+    io::StandardOutput out(interrupt.token());
+    out.write(cluster::study_text(all));
+    out.commit();
+    if (json) {
+        json->write(cluster::study_json(all));
+        json->commit();
+    }
+    return 0;
+}
+
+/// From 1 on. Throws Error{usage} that names the option.
+std::uint64_t parse_some(const std::string& name, const std::string& text) {
+    const std::uint64_t number = parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
+    if (number == 0) throw Error(ErrorCode::usage, name + ": 0 is less than 1");
+    return number;
+}
+
+template <typename Number>
+void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [&numbers, name](const std::vector<std::string>& texts) {
+                numbers.clear();
+                for (const std::string& text : texts) numbers.push_back(Number(parse_some(name, text)));
+                std::ranges::sort(numbers);
+            },
+            what)
+        ->type_name("N");
+}
+
+}  // namespace
+
+void add_bench_cluster(CLI::App& bench, Action& action) {
+    CLI::App* command = bench.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
+    const auto request = std::make_shared<ClusterRequest>();
+    command
+        ->add_option_function<std::vector<std::string>>(
+            "--scene",
+            [request](const std::vector<std::string>& kinds) {
+                for (const std::string& kind : kinds) (void)samples::scene_description(kind);
+                request->plan.scenes = kinds;
+            },
+            "kinds of octopair generate (default uniform)")
+        ->type_name("KIND");
+    add_numbers(*command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
+    add_numbers(*command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
+    command
+        ->add_option_function<std::string>(
+            "--rounds",
+            [request](const std::string& text) { request->plan.rounds = unsigned(parse_some("--rounds", text)); },
+            "calls of each, of which the median counts (default 9)")
+        ->type_name("R");
+    command->add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
+        ->type_name("COMMAND");
+    command->add_option("--json", request->json, "write every rank's costs as JSON")->type_name("FILE");
+    command->add_option("--on-ranks", request->on_ranks)->group("");
+    command->add_flag("--quiet", request->quiet, "no progress on standard error");
+    command->callback([request, &action] { action = [request] { return run_cluster(*request); }; });
+}
+
+}  // namespace octopair::cli
