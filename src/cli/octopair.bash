@@ -52,6 +52,8 @@ _octopair() {
         bench)
             if ((COMP_CWORD == 2)); then
                 mapfile -t COMPREPLY < <(compgen -W "paper cluster" -- "$current")
+            elif [ "${COMP_WORDS[2]}" = cluster ]; then
+                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --ranks --rounds --mpirun --json --quiet --help" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --json --quiet --help" -- "$current")
             fi ;;
