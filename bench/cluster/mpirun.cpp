@@ -56,6 +56,7 @@ void run_under_mpirun(const MpirunCommand& command, const std::stop_token& stop)
     texts.insert(texts.end(), {"-n", std::to_string(command.ranks)});
     texts.insert(texts.end(), command.command.begin(), command.command.end());
     std::vector<char*> arguments;
+    arguments.reserve(texts.size() + 1);
     for (std::string& text : texts) arguments.push_back(text.data());
     arguments.push_back(nullptr);
     const pid_t process = start(arguments);

@@ -26,6 +26,7 @@ std::vector<Box3f> make_slice(const Setup& setup, std::uint64_t begin, std::uint
 template <typename Number, typename Of>
 Number median(const std::vector<Of>& runs, Number Of::*member) {
     std::vector<Number> numbers;
+    numbers.reserve(runs.size());
     for (const Of& run : runs) numbers.push_back(run.*member);
     const auto middle = numbers.begin() + std::ptrdiff_t(numbers.size() / 2);
     std::nth_element(numbers.begin(), middle, numbers.end());

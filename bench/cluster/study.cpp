@@ -1,10 +1,10 @@
 #include "cluster/study.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -84,6 +84,7 @@ std::vector<Measured> measure(const StudyPlan& plan, const Show& show, const std
 std::string study_text(const std::vector<Measured>& all) {
     std::string text;
     std::vector<const Measured*> rows;
+    rows.reserve(all.size());
     for (const Measured& measured : all) rows.push_back(&measured);
     std::ranges::stable_sort(rows, {},
                              [](const Measured* row) { return std::pair(row->setup.scene, row->setup.objects); });
