@@ -119,6 +119,21 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
     }
 }
 
+/// The pairs of one rank alone do not fit: all go through windows.
+TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
+    std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
+    boxes.insert(boxes.end(), 500, boxes.front());
+    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const auto engine = make_mpi_engine(MPI_COMM_WORLD);
+    Options options;
+    options.buffer_bytes = 1 << 20;
+    std::vector<Pair> found;
+    (void)engine->stream_pairs(
+        {std::span<const Box3f>(own), {}},
+        [&](std::span<const Pair> batch) { found.insert(found.end(), batch.begin(), batch.end()); }, options);
+    EXPECT_TRUE(testing::same_bytes(testing::all_pieces(found), find_pairs(boxes)));
+}
+
 TEST(Ranks, GatherTheirPieces) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);

@@ -332,6 +332,7 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
 void RankSearch::find_windows(Task& task, Call& call) {
     const RowBins bins(task.joint.totals[0]);
     std::vector<std::uint64_t> counts;
+    found_.storage().reset();  // on this rank they may have fitted
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.scan);
         counts.resize(bins.size(), 0);
