@@ -2,7 +2,7 @@
 //
 // Calls     every call is collective: all ranks of the communicator make the same calls in the same order, with the same
 //           options. Each gives its own slice of the objects (of each set, in a join); the slices in the order of the ranks
-//           are the objects of the call, numbered on from rank to rank. A slice may be empty.
+//           are the objects of the call, numbered on from rank to rank; at most 2^32 - 1 in all. A slice may be empty.
 // Result    each rank receives a piece of the pairs, or streams it; the pieces in the order of the ranks are the same bytes
 //           as from every engine. A Summary counts the pairs of all ranks; PairList::size() those of the piece.
 // Errors    what is wrong on one rank ends the call on all, with the same Error; a stop request on one, too. A rank that

@@ -6,7 +6,6 @@
 #include <string>
 #include <thread>
 
-#include "base/timed.hpp"
 #include "engine/mpi/cost_meter.hpp"
 #include "octopair/error.hpp"
 
@@ -27,14 +26,13 @@ void check(int code) {
 
 class WithinMpi {
 public:
-    explicit WithinMpi(Traffic& traffic) : traffic_(traffic), timed_(traffic.seconds) {}
+    explicit WithinMpi(Traffic& traffic) : traffic_(traffic) {}
     WithinMpi(const WithinMpi&) = delete;
     WithinMpi& operator=(const WithinMpi&) = delete;
     ~WithinMpi() { traffic_.cpu_seconds += thread_seconds() - begin_; }
 
 private:
     Traffic& traffic_;
-    Timed timed_;
     double begin_ = thread_seconds();
 };
 
@@ -82,7 +80,7 @@ void Communicator::wait(std::span<MPI_Request> requests) {
 void Communicator::count_told(std::uint64_t bytes) { count(bytes * (size_ - 1), std::bit_width(size_ - 1)); }
 
 void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     MPI_Request request = MPI_REQUEST_NULL;
     check(
         MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_, &request));
@@ -91,7 +89,7 @@ void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::b
 }
 
 void Communicator::gather_parts(const Values& own, std::span<const std::size_t> begins, void* all) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     if (begins.back() > std::size_t(INT32_MAX)) throw Error(ErrorCode::resource_limit, "too much to tell all ranks");
     std::vector<int> counts(size_);
     for (unsigned r = 0; r < size_; ++r) counts[r] = int(begins[r + 1] - begins[r]);
@@ -107,7 +105,7 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
 }
 
 void Communicator::add_up(std::span<std::uint64_t> values) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     for (std::span<std::uint64_t> left = values; !left.empty();) {
         const auto some =
             left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(std::uint64_t))));
@@ -120,7 +118,7 @@ void Communicator::add_up(std::span<std::uint64_t> values) {
 }
 
 void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     for (std::span<std::byte> left = bytes; !left.empty();) {
         const auto some = left.first(std::min(left.size(), message_bytes_));
         MPI_Request request = MPI_REQUEST_NULL;
@@ -132,7 +130,7 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
 }
 
 Exchange Communicator::plan_exchange(RankCounts sent) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     Exchange exchange{std::move(sent), RankCounts(size_)};
     MPI_Request request = MPI_REQUEST_NULL;
     check(MPI_Ialltoall(exchange.sent.data(), 1, MPI_UINT64_T, exchange.received.data(), 1, MPI_UINT64_T, comm_,
@@ -154,7 +152,7 @@ std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_
 }  // namespace
 
 void Communicator::exchange_parts(const Values& out, void* in, const Exchange& counts) {
-    const WithinMpi timed(traffic_);
+    const WithinMpi counted(traffic_);
     const auto* const from = static_cast<const std::byte*>(out.data);
     auto* const to = static_cast<std::byte*>(in);
     const auto from_begins = begins_of(counts.sent, out.item_bytes),

@@ -22,7 +22,7 @@ namespace octopair {
 /// ways come to: what a rank tells all, once for each other rank, in log2 as many messages; a sum, twice.
 struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
-    double seconds = 0, cpu_seconds = 0;  ///< within MPI: wall-clock, and of the thread
+    double cpu_seconds = 0;  ///< of the thread, within MPI
 };
 
 /// How many values go to each rank, or come from each, one rank's after another's.
