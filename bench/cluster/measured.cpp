@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double sum_of(const std::vector<RankCosts>& ranks, std::uint64_t RankCosts::*count) {
+double sum_of(const EachRank& ranks, std::uint64_t RankCosts::*count) {
     return std::accumulate(ranks.begin(), ranks.end(), 0.0,
                            [&](double sum, const RankCosts& costs) { return sum + double(costs.*count); });
 }
@@ -38,6 +38,12 @@ Json rank_json(const RankCosts& costs) {
     return json;
 }
 
+Json ranks_json(const EachRank& ranks) {
+    Json json = Json::array();
+    for (const RankCosts& costs : ranks) json.push_back(rank_json(costs));
+    return json;
+}
+
 RankCosts rank_of(const Json& json) {
     RankCosts costs;
     for (const Step& step : computing_steps) json.at("cpu_seconds").at(step.name).get_to(costs.*step.seconds);
@@ -46,42 +52,47 @@ RankCosts rank_of(const Json& json) {
     return costs;
 }
 
+EachRank ranks_of(const Json& json) {
+    EachRank ranks;
+    for (const Json& costs : json) ranks.push_back(rank_of(costs));
+    return ranks;
+}
+
 }  // namespace
 
-double Measured::computing(const RankCosts& costs) {
+double computing(const RankCosts& costs) {
     double seconds = 0;
     for (const Step& step : computing_steps) seconds += costs.*step.seconds;
     return seconds;
 }
 
-double Measured::slowest() const {
+double slowest(const EachRank& ranks) {
     double most = 0;
     for (const RankCosts& costs : ranks) most = std::max(most, computing(costs));
     return most;
 }
 
-double Measured::mean() const {
+double mean(const EachRank& ranks) {
     double all = 0;
     for (const RankCosts& costs : ranks) all += computing(costs);
     return all / double(ranks.size());
 }
 
-double Measured::bytes_per_object() const { return sum_of(ranks, &RankCosts::bytes_sent) / double(setup.objects); }
-double Measured::messages_per_rank() const { return sum_of(ranks, &RankCosts::messages_sent) / double(setup.ranks); }
-double Measured::shared() const { return sum_of(ranks, &RankCosts::shared_objects) / double(setup.objects); }
+double Measured::bytes_per_object() const { return sum_of(together, &RankCosts::bytes_sent) / double(setup.objects); }
+double Measured::messages_per_rank() const { return sum_of(together, &RankCosts::messages_sent) / double(setup.ranks); }
+double Measured::shared() const { return sum_of(together, &RankCosts::shared_objects) / double(setup.objects); }
 
 std::string measured_json(const std::vector<Measured>& all) {
     Json runs = Json::array();
     for (const Measured& measured : all) {
-        Json ranks = Json::array();
-        for (const RankCosts& costs : measured.ranks) ranks.push_back(rank_json(costs));
         runs.push_back({{"scene", measured.setup.scene},
                         {"objects", measured.setup.objects},
                         {"ranks", measured.setup.ranks},
                         {"pairs", measured.pairs},
                         {"entries", measured.entries},
                         {"wall_seconds", measured.wall_seconds},
-                        {"costs", ranks}});
+                        {"together", ranks_json(measured.together)},
+                        {"alone", ranks_json(measured.alone)}});
     }
     return runs.dump(2) + '\n';
 }
@@ -97,7 +108,8 @@ std::vector<Measured> measured_of(const std::string& json) {
             run.at("pairs").get_to(measured.pairs);
             run.at("entries").get_to(measured.entries);
             run.at("wall_seconds").get_to(measured.wall_seconds);
-            for (const Json& costs : run.at("costs")) measured.ranks.push_back(rank_of(costs));
+            measured.together = ranks_of(run.at("together"));
+            measured.alone = ranks_of(run.at("alone"));
         }
         return all;
     } catch (const Json::exception& error) {

@@ -16,24 +16,32 @@ struct Setup {
     unsigned ranks = 1;
 };
 
+/// Of each rank the median of each step.
+using EachRank = std::vector<RankCosts>;
+
 struct Measured {
     Setup setup;
     std::uint64_t pairs = 0, entries = 0;
-    double wall_seconds = 0;       ///< the median of the first rank's calls
-    std::vector<RankCosts> ranks;  ///< of each rank the median of each step
+    double wall_seconds = 0;  ///< the median of the first rank's calls
+    /// While all ranks share the cores and caches of this machine; and of the same call with one rank at a time, the
+    /// others asleep and what they sent at hand, as on a machine of its own.
+    EachRank together, alone;
 
-    /// Processor seconds of computing: of one rank, of the slowest, on average.
-    static double computing(const RankCosts& costs);
-    double slowest() const;
-    double mean() const;
-    double imbalance() const { return slowest() / mean(); }
     double bytes_per_object() const;
     double messages_per_rank() const;
     /// The part of all objects that went to several ranks.
     double shared() const;
-    /// The seconds of one rank alone, over what so many slowest ranks take.
-    double efficiency(const Measured& alone) const { return alone.slowest() / (double(setup.ranks) * slowest()); }
 };
+
+/// Processor seconds of computing: of one rank, of the slowest, on average.
+double computing(const RankCosts& costs);
+double slowest(const EachRank& ranks);
+double mean(const EachRank& ranks);
+inline double imbalance(const EachRank& ranks) { return slowest(ranks) / mean(ranks); }
+/// The seconds of one rank, over what so many slowest ranks take.
+inline double efficiency(const EachRank& one, const EachRank& ranks) {
+    return slowest(one) / (double(ranks.size()) * slowest(ranks));
+}
 
 /// One step of a rank's costs.
 struct Step {

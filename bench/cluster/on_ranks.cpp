@@ -1,8 +1,10 @@
 #include "cluster/on_ranks.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <chrono>
+#include <thread>
 
+#include "engine/mpi/message_tape.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::cluster {
@@ -42,33 +44,96 @@ RankCosts median(const std::vector<RankCosts>& runs) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): where, what, how often, until when.
-Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop) {
-    int rank = 0, ranks = 0;
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &ranks);
-    const auto part = [&](int number) { return setup.objects * std::uint64_t(number) / std::uint64_t(ranks); };
-    const std::vector<Box3f> own = make_slice(setup, part(rank), part(rank + 1));
-    const auto engine = make_mpi_engine(comm);
-    Options options;
-    options.order = Order::octal;
-    PairList pairs;
-    std::vector<RankCosts> costs;
-    std::vector<Summary> summaries;
-    for (unsigned round = 0; round <= rounds; ++round) {
-        MPI_Barrier(comm);
-        const Summary summary = engine->find_pairs({std::span(own), {}}, pairs, options, stop);
-        if (round == 0) continue;
-        summaries.push_back(summary);
-        costs.push_back(last_costs(*engine));
+namespace {
+
+/// One rank and its slice of a scene.
+class Measuring {
+public:
+    Measuring(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop)
+        : comm_(comm), rounds_(rounds), stop_(stop), engine_(make_mpi_engine(comm)) {
+        MPI_Comm_rank(comm, &rank_);
+        MPI_Comm_size(comm, &ranks_);
+        const auto part = [&](int number) { return setup.objects * std::uint64_t(number) / std::uint64_t(ranks_); };
+        own_ = make_slice(setup, part(rank_), part(rank_ + 1));
+        measured_.setup = setup;
+        measured_.setup.ranks = unsigned(ranks_);
     }
-    Measured measured{
-        setup, summaries.back().pairs, summaries.back().entries, median(summaries, &Summary::seconds), {}};
-    measured.setup.ranks = unsigned(ranks);
-    measured.ranks.resize(std::size_t(ranks));
-    const RankCosts mine = median(costs);
-    MPI_Gather(&mine, int(sizeof mine), MPI_BYTE, measured.ranks.data(), int(sizeof mine), MPI_BYTE, 0, comm);
-    return measured;
+
+    Measured run() {
+        measure_together();
+        measure_alone();
+        return measured_;
+    }
+
+private:
+    void measure_together() {
+        std::vector<RankCosts> costs;
+        std::vector<Summary> summaries;
+        for (unsigned round = 0; round <= rounds_; ++round) {
+            MPI_Barrier(comm_);
+            const Summary summary = call();
+            if (round == 0) continue;
+            summaries.push_back(summary);
+            costs.push_back(last_costs(*engine_));
+        }
+        measured_.pairs = summaries.back().pairs;
+        measured_.entries = summaries.back().entries;
+        measured_.wall_seconds = median(summaries, &Summary::seconds);
+        measured_.together = gather(median(costs));
+    }
+
+    void measure_alone() {
+        MessageTape tape;
+        use_tape(*engine_, &tape);
+        tape.record();
+        (void)call();
+        std::vector<RankCosts> costs;
+        for (int turn = 0; turn < ranks_; ++turn) {
+            wait_for_all();
+            for (unsigned round = 0; turn == rank_ && round <= rounds_; ++round) {
+                tape.replay();
+                (void)call();
+                if (round > 0) costs.push_back(last_costs(*engine_));
+            }
+        }
+        use_tape(*engine_, nullptr);
+        measured_.alone = gather(median(costs));
+    }
+
+    Summary call() {
+        Options options;
+        options.order = Order::octal;
+        return engine_->find_pairs({std::span(own_), {}}, pairs_, options, stop_);
+    }
+
+    /// Without taking time from a rank that is not there yet, as MPI's own barrier would.
+    void wait_for_all() {
+        constexpr auto nap = std::chrono::milliseconds(10);
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ibarrier(comm_, &request);
+        for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), done == 0;) std::this_thread::sleep_for(nap);
+    }
+
+    std::vector<RankCosts> gather(const RankCosts& mine) {
+        std::vector<RankCosts> all(std::size_t(ranks_), RankCosts{});
+        MPI_Gather(&mine, int(sizeof mine), MPI_BYTE, all.data(), int(sizeof mine), MPI_BYTE, 0, comm_);
+        return all;
+    }
+
+    MPI_Comm comm_;
+    unsigned rounds_;
+    std::stop_token stop_;
+    std::unique_ptr<Engine> engine_;
+    int rank_ = 0, ranks_ = 1;
+    std::vector<Box3f> own_;
+    PairList pairs_;
+    Measured measured_;
+};
+
+}  // namespace
+
+Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop) {
+    return Measuring(comm, setup, rounds, stop).run();
 }
 
 }  // namespace octopair::cluster

@@ -9,8 +9,8 @@
 
 namespace octopair::cluster {
 
-/// Collective: so many calls, after one that is not counted; each rank makes its slice of the scene. What the first rank
-/// returns has the costs of all. Pairs are listed in octal order, as ranks with one thread find them.
+/// Collective: so many calls together, and each rank as many alone, after one that is not counted; each rank makes its slice
+/// of the scene. What the first rank returns has the costs of all. Pairs are listed in octal order, as ranks with one thread find them.
 Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

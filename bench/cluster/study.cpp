@@ -44,20 +44,33 @@ private:
     std::string path_;
 };
 
-const Measured* alone(const std::vector<Measured>& all, const Measured& measured) {
+const Measured* on_one_rank(const std::vector<Measured>& all, const Setup& setup) {
     const auto found = std::ranges::find_if(all, [&](const Measured& other) {
-        return other.setup.ranks == 1 && other.setup.scene == measured.setup.scene &&
-               other.setup.objects == measured.setup.objects;
+        return other.setup.ranks == 1 && other.setup.scene == setup.scene && other.setup.objects == setup.objects;
     });
     return found == all.end() ? nullptr : &*found;
 }
 
+std::string costs_text(const EachRank& ranks, const EachRank* one) {
+    const std::string text =
+        fmt::format("{:>12.3f}{:>11.3f}{:>11.3f}", slowest(ranks) * 1e3, mean(ranks) * 1e3, imbalance(ranks));
+    return text +
+           (one != nullptr ? fmt::format("{:>11.1f}%", 100 * efficiency(*one, ranks)) : fmt::format("{:>12}", "-"));
+}
+
 std::string row_text(const Measured& measured, const Measured* one) {
-    std::string text = fmt::format("{:>6}{:>12.3f}{:>12.3f}{:>11.3f}", measured.setup.ranks, measured.slowest() * 1e3,
-                                   measured.mean() * 1e3, measured.imbalance());
-    text += one != nullptr ? fmt::format("{:>11.1f}%", 100 * measured.efficiency(*one)) : fmt::format("{:>12}", "-");
-    return text + fmt::format("{:>9.2f}%{:>10.1f}{:>11.0f}\n", 100 * measured.shared(), measured.bytes_per_object(),
-                              measured.messages_per_rank());
+    return fmt::format("{:>6}", measured.setup.ranks) +
+           costs_text(measured.alone, one != nullptr ? &one->alone : nullptr) +
+           fmt::format("{:>8.2f}%{:>9.1f}{:>10.0f}", 100 * measured.shared(), measured.bytes_per_object(),
+                       measured.messages_per_rank()) +
+           costs_text(measured.together, one != nullptr ? &one->together : nullptr) + '\n';
+}
+
+std::string heading_text(const Measured& measured) {
+    const std::string costs =
+        fmt::format("{:>12}{:>11}{:>11}{:>12}", "slowest ms", "mean ms", "imbalance", "efficiency");
+    return fmt::format("{} objects, {}: {} pairs\n\n{:>6}{}{:>9}{:>9}{:>10}{}\n", measured.setup.objects,
+                       measured.setup.scene, measured.pairs, "ranks", costs, "shared", "bytes/n", "messages", costs);
 }
 
 }  // namespace
@@ -91,11 +104,9 @@ std::string study_text(const std::vector<Measured>& all) {
     const Setup* last = nullptr;
     for (const Measured* row : rows) {
         if (last == nullptr || last->scene != row->setup.scene || last->objects != row->setup.objects) {
-            text += fmt::format("{}{} objects, {}: {} pairs\n\n{:>6}{:>12}{:>12}{:>11}{:>12}{:>10}{:>10}{:>11}\n",
-                                last == nullptr ? "" : "\n", row->setup.objects, row->setup.scene, row->pairs, "ranks",
-                                "slowest ms", "mean ms", "imbalance", "efficiency", "shared", "bytes/n", "messages");
+            text += (last == nullptr ? "" : "\n") + heading_text(*row);
         }
-        text += row_text(*row, alone(all, *row));
+        text += row_text(*row, on_one_rank(all, row->setup));
         last = &row->setup;
     }
     return text;

@@ -77,14 +77,23 @@ void Communicator::wait(std::span<MPI_Request> requests) {
     }
 }
 
+template <typename Run>
+void Communicator::taped(std::span<std::byte> result, const Run& run) {
+    if (replaying()) return tape_->give(result);
+    run();
+    if (tape_ != nullptr) tape_->take(result);
+}
+
 void Communicator::count_told(std::uint64_t bytes) { count(bytes * (size_ - 1), std::bit_width(size_ - 1)); }
 
 void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
     const WithinMpi counted(traffic_);
-    MPI_Request request = MPI_REQUEST_NULL;
-    check(
-        MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_, &request));
-    wait({&request, 1});
+    taped(all, [&] {
+        MPI_Request request = MPI_REQUEST_NULL;
+        check(MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_,
+                             &request));
+        wait({&request, 1});
+    });
     count_told(own.size());
 }
 
@@ -94,13 +103,15 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
     std::vector<int> counts(size_);
     for (unsigned r = 0; r < size_; ++r) counts[r] = int(begins[r + 1] - begins[r]);
     const std::vector<int> places(begins.begin(), begins.end() - 1);
-    MPI_Datatype item = MPI_DATATYPE_NULL;
-    check(MPI_Type_contiguous(int(own.item_bytes), MPI_BYTE, &item));
-    check(MPI_Type_commit(&item));
-    MPI_Request request = MPI_REQUEST_NULL;
-    check(MPI_Iallgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_, &request));
-    check(MPI_Type_free(&item));  // which the request outlives
-    wait({&request, 1});
+    taped({static_cast<std::byte*>(all), begins.back() * own.item_bytes}, [&] {
+        MPI_Datatype item = MPI_DATATYPE_NULL;
+        check(MPI_Type_contiguous(int(own.item_bytes), MPI_BYTE, &item));
+        check(MPI_Type_commit(&item));
+        MPI_Request request = MPI_REQUEST_NULL;
+        check(MPI_Iallgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_, &request));
+        check(MPI_Type_free(&item));  // which the request outlives
+        wait({&request, 1});
+    });
     count_told(std::uint64_t(counts[rank_]) * own.item_bytes);
 }
 
@@ -109,9 +120,11 @@ void Communicator::add_up(std::span<std::uint64_t> values) {
     for (std::span<std::uint64_t> left = values; !left.empty();) {
         const auto some =
             left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(std::uint64_t))));
-        MPI_Request request = MPI_REQUEST_NULL;
-        check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_, &request));
-        wait({&request, 1});
+        taped(std::as_writable_bytes(some), [&] {
+            MPI_Request request = MPI_REQUEST_NULL;
+            check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), MPI_UINT64_T, MPI_SUM, comm_, &request));
+            wait({&request, 1});
+        });
         count(2 * some.size_bytes() * (size_ - 1) / size_, 2 * std::bit_width(size_ - 1));
         left = left.subspan(some.size());
     }
@@ -121,9 +134,11 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
     const WithinMpi counted(traffic_);
     for (std::span<std::byte> left = bytes; !left.empty();) {
         const auto some = left.first(std::min(left.size(), message_bytes_));
-        MPI_Request request = MPI_REQUEST_NULL;
-        check(MPI_Ibcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_, &request));
-        wait({&request, 1});
+        taped(some, [&] {
+            MPI_Request request = MPI_REQUEST_NULL;
+            check(MPI_Ibcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_, &request));
+            wait({&request, 1});
+        });
         if (rank_ == from) count_told(some.size());
         left = left.subspan(some.size());
     }
@@ -132,10 +147,12 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
 Exchange Communicator::plan_exchange(RankCounts sent) {
     const WithinMpi counted(traffic_);
     Exchange exchange{std::move(sent), RankCounts(size_)};
-    MPI_Request request = MPI_REQUEST_NULL;
-    check(MPI_Ialltoall(exchange.sent.data(), 1, MPI_UINT64_T, exchange.received.data(), 1, MPI_UINT64_T, comm_,
-                        &request));
-    wait({&request, 1});
+    taped(std::as_writable_bytes(std::span(exchange.received)), [&] {
+        MPI_Request request = MPI_REQUEST_NULL;
+        check(MPI_Ialltoall(exchange.sent.data(), 1, MPI_UINT64_T, exchange.received.data(), 1, MPI_UINT64_T, comm_,
+                            &request));
+        wait({&request, 1});
+    });
     count(sizeof(std::uint64_t) * (size_ - 1), size_ - 1);
     return exchange;
 }
@@ -153,6 +170,10 @@ std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_
 
 void Communicator::exchange_parts(const Values& out, void* in, const Exchange& counts) {
     const WithinMpi counted(traffic_);
+    taped({static_cast<std::byte*>(in), counts.incoming() * out.item_bytes}, [&] { send_parts(out, in, counts); });
+}
+
+void Communicator::send_parts(const Values& out, void* in, const Exchange& counts) {
     const auto* const from = static_cast<const std::byte*>(out.data);
     auto* const to = static_cast<std::byte*>(in);
     const auto from_begins = begins_of(counts.sent, out.item_bytes),
@@ -193,6 +214,7 @@ void Communicator::send_stop() {
 }
 
 bool Communicator::stop_has_come() {
+    if (replaying()) return false;
     int there = 0;
     check(MPI_Iprobe(MPI_ANY_SOURCE, stop_tag, comm_, &there, MPI_STATUS_IGNORE));
     return there != 0;

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/mpi/message_tape.hpp"
+
 namespace octopair {
 
 /// What one rank has sent to others. How MPI sends what all ranks take part in is its own affair; counted is what its usual
@@ -63,6 +65,8 @@ public:
 
     /// What is done again and again while a function waits for other ranks; may be empty.
     void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
+    /// Borrowed; null: none.
+    void set_tape(MessageTape* tape) { tape_ = tape; }
 
     /// One value of each rank.
     template <typename T>
@@ -120,9 +124,14 @@ private:
     void gather_parts(const Values& own, std::span<const std::size_t> begins, void* all);
     void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
     void exchange_parts(const Values& out, void* in, const Exchange& counts);
+    void send_parts(const Values& out, void* in, const Exchange& counts);
     void count(std::uint64_t bytes, std::uint64_t messages);
     void count_told(std::uint64_t bytes);
     void wait(std::span<MPI_Request> requests);
+    /// Has `run` make `result`, unless the tape has it.
+    template <typename Run>
+    void taped(std::span<std::byte> result, const Run& run);
+    bool replaying() const { return tape_ != nullptr && tape_->replaying(); }
 
     MPI_Comm comm_ = MPI_COMM_NULL;
     unsigned rank_ = 0, size_ = 1;
@@ -131,6 +140,7 @@ private:
     Traffic traffic_;
     std::function<void()> meanwhile_;
     std::vector<MPI_Request> stops_;
+    MessageTape* tape_ = nullptr;
 };
 
 }  // namespace octopair

@@ -27,6 +27,7 @@ public:
     }
 
     const RankCosts& costs() const { return search_.costs(); }
+    void use(MessageTape* tape) { comm_.set_tape(tape); }
 
 private:
     /// Jobs that were submitted before come first, on all ranks.
@@ -67,6 +68,8 @@ AnyEngine& as_ranks(AnyEngine* ranks) {
 }  // namespace
 
 void gather_pairs(Engine& engine, PairList& pairs) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).gather(pairs); }
+
+void use_tape(Engine& engine, MessageTape* tape) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).use(tape); }
 
 RankCosts last_costs(const Engine& engine) { return as_ranks(dynamic_cast<const MpiEngine*>(&engine)).costs(); }
 
