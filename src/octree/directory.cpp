@@ -62,11 +62,11 @@ void Directory::leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) c
     }
 }
 
-/// A table of octants with 2^shift cells an axis, from `first` on; it begins at `begin` of table_.
+/// A table of the octants of a level, from the cell `first` on; it begins at `begin` of table_.
 struct Directory::Table {
     Cell first;
     std::array<std::uint32_t, 3> sizes;
-    unsigned shift;
+    unsigned level;
     std::size_t begin;
 };
 
@@ -82,34 +82,43 @@ void Directory::make_table(const Frame& frame) {
     table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};
     table_shift_ = deepest - level;
     table_.resize(std::size_t(table_size_[0]) * table_size_[1] * table_size_[2]);
-    fill_table(0, {{}, table_size_, table_shift_, 0});
+    fill_table(0, {{}, table_size_, level, 0});
 }
 
-/// Fills a table all of which lies within the octant `from`, and further ones where needed.
-void Directory::fill_table(NodeIndex from, const Table& table) {
-    const unsigned level = deepest - table.shift;
-    std::size_t at = table.begin;
-    for (std::uint32_t z = 0; z < table.sizes[2]; ++z) {
-        for (std::uint32_t y = 0; y < table.sizes[1]; ++y) {
-            for (std::uint32_t x = 0; x < table.sizes[0]; ++x, ++at) {
-                const Cell cell = {table.first[0] + (x << table.shift), table.first[1] + (y << table.shift),
-                                   table.first[2] + (z << table.shift), 0};
-                NodeIndex node = from;
-                while (nodes_[node].level < level && !nodes_[node].leaf()) {
-                    node = child(nodes_[node], digit_at(cell, nodes_[node].level));
-                }
-                if (nodes_[node].leaf()) {
-                    table_[at] = node | nodes_[node].level << node_bits;
-                    continue;
-                }
-                const std::size_t next = table_.size();
-                table_.resize(next + (std::size_t(1) << 3 * table_levels));
-                table_[at] = further + std::uint32_t(next);
-                constexpr std::uint32_t side = 1u << table_levels;
-                fill_table(node, {cell, {side, side, side}, table.shift - std::min(table.shift, table_levels), next});
-            }
+/// What lies within octant `node`, all of which the table covers but for what is beyond its sizes.
+void Directory::fill_table(NodeIndex index, const Table& table) {
+    const Node node = nodes_[index];
+    if (!node.leaf() && node.level < table.level) {
+        for (const NodeIndex child : children_[node.children]) fill_table(child, table);
+        return;
+    }
+    const unsigned shift = deepest - table.level;
+    std::array<std::uint32_t, 3> begin, end;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        begin[axis] = std::min((node.lo[axis] - table.first[axis]) >> shift, table.sizes[axis]);
+        end[axis] = std::min(begin[axis] + (1u << (table.level - node.level)), table.sizes[axis]);
+        if (begin[axis] == end[axis]) return;
+    }
+    const std::uint32_t element = node.leaf() ? index | node.level << node_bits : add_table(index, table);
+    for (std::uint32_t z = begin[2]; z < end[2]; ++z) {
+        for (std::uint32_t y = begin[1]; y < end[1]; ++y) {
+            const std::size_t row = table.begin + (std::size_t(z) * table.sizes[1] + y) * table.sizes[0];
+            std::fill(table_.begin() + std::ptrdiff_t(row + begin[0]), table_.begin() + std::ptrdiff_t(row + end[0]),
+                      element);
         }
     }
+}
+
+/// A further table, below an octant of `table`. Returns the element that tells of it.
+std::uint32_t Directory::add_table(NodeIndex index, const Table& table) {
+    const std::size_t begin = table_.size();
+    table_.resize(begin + (std::size_t(1) << 3 * table_levels));
+    constexpr std::uint32_t side = 1u << table_levels;
+    const unsigned level = std::min(table.level + table_levels, deepest);
+    for (const NodeIndex child : children_[nodes_[index].children]) {
+        fill_table(child, {nodes_[index].lo, {side, side, side}, level, begin});
+    }
+    return further + std::uint32_t(begin);
 }
 
 }  // namespace octopair

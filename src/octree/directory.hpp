@@ -88,7 +88,8 @@ private:
     NodeIndex append(const Octant& octant, NodeIndex parent, const OctantShape& shape);
     void make_table(const Frame& frame);
     struct Table;
-    void fill_table(NodeIndex from, const Table& table);
+    void fill_table(NodeIndex index, const Table& table);
+    std::uint32_t add_table(NodeIndex index, const Table& table);
 
     std::vector<Node> nodes_;
     std::vector<std::array<NodeIndex, 8>> children_;

@@ -1,6 +1,8 @@
 // ObjectArrays: objects of one set on their way from rank to rank, as arrays.
 #pragma once
 
+#include <hwy/cache_control.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -25,6 +27,8 @@ struct ObjectArrays {
         if (padded) padding.resize_discard(objects);
         positions.resize_discard(objects);
     }
+    /// Objects go to many places in turn, which no processor follows by itself.
+    static constexpr std::size_t fetched_ahead = 5;
     /// Calls use(copy), where copy(to, from) makes object `from` of `objects`, of this form, number `to`: its box, its
     /// padding.
     template <typename Use>
@@ -38,7 +42,10 @@ struct ObjectArrays {
                     to_padding[to] = from_padding[from];
                 });
             } else {
-                use([=](std::size_t to, std::size_t from) { to_boxes[to] = from_boxes[from]; });
+                use([=](std::size_t to, std::size_t from) {
+                    to_boxes[to] = from_boxes[from];
+                    hwy::Prefetch(to_boxes + to + fetched_ahead);
+                });
             }
         };
         if (wide) with(wide_boxes.data(), std::get<std::span<const Box3d>>(objects.boxes));

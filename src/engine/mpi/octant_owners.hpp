@@ -14,11 +14,26 @@
 
 namespace octopair {
 
+/// What there is to do in an octant: sums over its entries.
+struct OctantLoad {
+    std::uint64_t entries = 0;
+    std::uint64_t extent = 0;  ///< in cells, on the axis on which a box is shortest
+
+    void add(const CellBox& box) {
+        ++entries;
+        extent += std::min({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+    }
+    void add(const OctantLoad& other) {
+        entries += other.entries;
+        extent += other.extent;
+    }
+};
+
 class OctantOwners {
 public:
-    /// Borrows the directory. Cuts it between octants so that each of `ranks` has about the same of `work`, which has an
-    /// element for each octant: a function of these numbers alone.
-    OctantOwners(const Directory& directory, std::span<const std::uint64_t> work, unsigned ranks);
+    /// Borrows the directory. Cuts it between octants so that each of `ranks` has about the same work with these loads, one
+    /// for each octant: a function of these numbers alone.
+    OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
     NodeIndex begin(unsigned rank) const { return NodeIndex(begins_[rank]); }
@@ -28,11 +43,15 @@ public:
     /// All octants that a box belongs in lie, in pre-order, from the first of these to the last.
     struct Reach {
         NodeIndex first = 0, last = 0;
+        bool only = false;  ///< they are no others
     };
     /// `home`, `end`: the leaves that the box begins and ends in. A cell that is on no axis before another does not come
     /// before it in pre-order.
     static Reach reach(const CellBox& box, const Directory& directory, Directory::Leaf home, Directory::Leaf end) {
-        return {directory.at_most(home, natural_level(box)), end.node()};
+        const unsigned natural = natural_level(box), level = home.level();
+        const unsigned crossed = crossed_axes(box, level);
+        const bool only = level == end.level() && level <= natural && (crossed & (crossed - 1)) == 0;
+        return {directory.at_most(home, natural), end.node(), only};
     }
     bool is_shared(const Reach& reach) const { return owner(reach.first) != owner(reach.last); }
 

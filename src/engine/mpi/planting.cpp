@@ -16,7 +16,8 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t octants_a_rank = 8;  // to deal out, at least, where they can be divided
+constexpr std::uint64_t octants_a_rank = 1;  // to deal out, at least, where they can be divided: more cost more than
+                                             // they balance
 
 /// This rank's part of the sample.
 struct OwnSample {

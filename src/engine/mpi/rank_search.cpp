@@ -116,20 +116,20 @@ PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {
 RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants octants) {
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
-    std::vector<std::uint64_t> work;
+    std::vector<OctantLoad> loads;
     std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        work.resize(octants.directory.nodes().size(), 0);
+        loads.resize(octants.directory.nodes().size());
         routing.emplace(task.joint, own, octants, task.stop.get_token());
-        routing->find(executor, work);
+        routing->find(executor, loads);
     });
-    comm_.add_up(work);
+    comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});
     const unsigned sets = task.joint.join ? 2 : 1;
     std::optional<OctantOwners> cut;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        cut.emplace(octants.directory, work, comm_.size());
+        cut.emplace(octants.directory, loads, comm_.size());
         routing->address(executor, *cut);
         const Metered packing(comm_, costs_.pack);
         for (unsigned set = 0; set < sets; ++set) {

@@ -1,5 +1,7 @@
 #include "engine/mpi/routing.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <mutex>
 
@@ -15,11 +17,12 @@ namespace {
 constexpr std::size_t batch_size = 256;
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t block_size = 1 << 16;      // objects
+constexpr std::size_t fetched_ahead = 24;        // positions: objects go to many places in turn
 
 }  // namespace
 
 Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, std::stop_token stop)
-    : call_(call), source_(source), octants_(octants), stop_(std::move(stop)), homes_(source.size()) {
+    : call_(call), source_(source), octants_(octants), stop_(std::move(stop)), places_(source.size()) {
     std::size_t end = 0;
     for (unsigned set = 0; set < 2; ++set) {
         std::size_t begin = end;
@@ -30,13 +33,13 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOc
     }
 }
 
-void Routing::find(Executor& executor, std::span<std::uint64_t> work) {
+void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
     std::mutex mutex;
     executor.for_each(blocks_.size(), [&](std::size_t i) {
-        std::vector<std::uint64_t> own(work.size(), 0);
+        std::vector<OctantLoad> own(loads.size());
         find(blocks_[i], own);
         const std::lock_guard lock(mutex);
-        std::transform(own.begin(), own.end(), work.begin(), work.begin(), std::plus<>());
+        for (std::size_t node = 0; node < loads.size(); ++node) loads[node].add(own[node]);
     });
     for (const Block& block : blocks_) {
         if (block.bad) refuse(*block.bad);
@@ -60,7 +63,7 @@ bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, 
 
 }  // namespace
 
-void Routing::find(Block& block, std::span<std::uint64_t> work) {
+void Routing::find(Block& block, std::span<OctantLoad> loads) {
     const Directory& directory = octants_.directory;
     std::array<CellBox, batch_size> cells, ends;
     std::array<Directory::Leaf, batch_size> homes, end_leaves;
@@ -75,9 +78,10 @@ void Routing::find(Block& block, std::span<std::uint64_t> work) {
         directory.leaves(std::span(cells).first(count), homes);
         std::size_t crossing = 0;
         for (std::size_t i = 0; i < count; ++i) {
+            // No branch on whether a box crosses, which nothing foretells.
             const bool crosses = !within(cells[i], homes[i].level());
-            homes_[begin + i] = Home(homes[i].node(), crosses);
-            ++work[homes[i].node()];
+            places_[begin + i] = homes[i].node();
+            loads[homes[i].node()].add(cells[i]);
             crossers[crossing] = std::uint32_t(i);
             crossing += crosses ? 1 : 0;
         }
@@ -85,7 +89,9 @@ void Routing::find(Block& block, std::span<std::uint64_t> work) {
         directory.leaves(std::span(ends).first(crossing), end_leaves);
         for (std::size_t i = 0; i < crossing; ++i) {
             const std::uint32_t object = crossers[i];
-            block.reaches.push_back(OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i]));
+            loads[end_leaves[i].node()].add(cells[object]);
+            block.crossers.push_back(
+                {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
         }
     }
 }
@@ -103,48 +109,56 @@ void Routing::refuse(std::size_t object) const {
 
 void Routing::address(Executor& executor, const OctantOwners& owners) {
     owners_ = &owners;
+    several_ = owners.ranks();
     executor.for_each(blocks_.size(), [&](std::size_t i) { address(blocks_[i]); });
 }
 
-/// Calls visit(object, owner), or visit_shared(object) where there may be several, objects ascending.
-template <typename Visit, typename VisitShared>
-void Routing::for_each_object(const Block& block, Visit&& visit, VisitShared&& visit_shared) const {
-    const Reach* reach = block.reaches.data();
-    for (std::size_t object = block.objects.begin; object < block.objects.end; ++object) {
-        const Home home = homes_[object];
-        if (!home.crosses()) {
-            visit(object, owners_->owner(home.node()));
-        } else if (const Reach own = *reach++; !owners_->is_shared(own)) {
-            visit(object, owners_->owner(own.first));
-        } else {
-            visit_shared(object);
-        }
-    }
-}
-
 void Routing::address(Block& block) {
-    block.counts.assign(owners_->ranks(), 0);
-    for_each_object(
-        block, [&](std::size_t, unsigned owner) { ++block.counts[owner]; },
-        [&](std::size_t object) { share(block, object); });
+    block.counts.assign(several_ + 1, 0);
+    for (std::size_t i = block.objects.begin; i < block.objects.end; ++i) {
+        places_[i] = owners_->owner(places_[i]);
+        ++block.counts[places_[i]];
+    }
+    std::vector<Crosser> shared;
+    for (const Crosser& crosser : block.crossers) {
+        std::uint32_t& place = places_[crosser.object];
+        --block.counts[place];
+        place = owners_->is_shared(crosser.reach) ? several_ : owners_->owner(crosser.reach.first);
+        ++block.counts[place];
+        if (place == several_) shared.push_back(crosser);
+    }
+    block.counts.pop_back();
+    share(block, shared);
 }
 
-/// Between the first and the last octant of its reach there may be some that it does not touch.
-void Routing::share(Block& block, std::size_t object) {
-    Entry entry;
-    source_.pick({&object, 1}, {&entry, 1});
-    const CellBox cells = octants_.frame.cells(entry);
-    const std::size_t count_at = block.owners.size();
-    block.owners.push_back(0);
-    const auto begin = [&] { return block.owners.begin() + std::ptrdiff_t(count_at) + 1; };
-    owners_->for_each_owner(cells, octants_.directory.leaf(cells.lo), [&](std::uint32_t owner) {
-        if (std::find(begin(), block.owners.end(), owner) == block.owners.end()) block.owners.push_back(owner);
-    });
-    std::sort(begin(), block.owners.end());
-    const std::size_t count = block.owners.size() - count_at - 1;
-    block.owners[count_at] = std::uint32_t(count);
-    block.shared += count > 1 ? 1 : 0;
-    std::for_each(begin(), block.owners.end(), [&](std::uint32_t owner) { ++block.counts[owner]; });
+void Routing::share(Block& block, std::span<const Crosser> crossers) const {
+    // Between the first and the last octant of a reach there may be some that the box does not touch.
+    std::vector<std::size_t> unclear;
+    for (const Crosser& crosser : crossers) {
+        if (!crosser.reach.only) unclear.push_back(crosser.object);
+    }
+    std::vector<Entry> entries(unclear.size());
+    source_.pick(unclear, entries);
+    std::vector<CellBox> cells(unclear.size());
+    octants_.frame.cells(entries, cells);
+
+    const CellBox* next = cells.data();
+    std::vector<std::uint32_t> owners;
+    for (const Crosser& crosser : crossers) {
+        owners = {owners_->owner(crosser.reach.first), owners_->owner(crosser.reach.last)};
+        if (!crosser.reach.only) {
+            owners.clear();
+            owners_->for_each_owner(*next, octants_.directory.leaf(next->lo),
+                                    [&](std::uint32_t owner) { owners.push_back(owner); });
+            std::ranges::sort(owners);
+            owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+            ++next;
+        }
+        block.owners.push_back(std::uint32_t(owners.size()));
+        block.owners.insert(block.owners.end(), owners.begin(), owners.end());
+        block.shared += owners.size() > 1 ? 1 : 0;
+        for (const std::uint32_t owner : owners) ++block.counts[owner];
+    }
 }
 
 RankCounts Routing::counts(unsigned set) const {
@@ -159,15 +173,6 @@ std::uint64_t Routing::shared_objects() const {
     std::uint64_t objects = 0;
     for (const Block& block : blocks_) objects += block.shared;
     return objects;
-}
-
-/// Calls place(object, owner), objects ascending.
-template <typename Place>
-void Routing::for_each_copy(const Block& block, Place&& place) const {
-    const std::uint32_t* next = block.owners.data();
-    for_each_object(block, place, [&](std::size_t object) {
-        for (std::uint32_t left = *next++; left > 0; --left) place(object, *next++);
-    });
 }
 
 void Routing::pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const {
@@ -187,11 +192,24 @@ void Routing::pack(Executor& executor, unsigned set, const Objects& objects, Obj
         executor.for_each(blocks_.size(), [&](std::size_t b) {
             if (blocks_[b].set != set) return;
             std::uint64_t* const next = places[b].data();
-            for_each_copy(blocks_[b], [&](std::size_t object, std::uint32_t owner) {
-                const std::size_t to = std::size_t(next[owner]++), from = object - begin;
-                copy(to, from);
-                out.positions[to] = std::uint32_t(call_.begins[set] + from);
-            });
+            const std::uint32_t* owners = blocks_[b].owners.data();
+            const ObjectBlock objects_of_block = blocks_[b].objects;
+            std::uint32_t* const positions = out.positions.data();
+            const std::uint32_t first_position = std::uint32_t(call_.begins[set]);
+            for (std::size_t object = objects_of_block.begin; object < objects_of_block.end; ++object) {
+                const std::size_t from = object - begin;
+                const auto place = [&](std::uint32_t owner) {
+                    const std::size_t to = std::size_t(next[owner]++);
+                    copy(to, from);
+                    positions[to] = std::uint32_t(first_position + from);
+                    hwy::Prefetch(positions + to + fetched_ahead);
+                };
+                if (places_[object] != several_) {
+                    place(places_[object]);
+                } else {
+                    for (std::uint32_t left = *owners++; left > 0; --left) place(*owners++);
+                }
+            }
         });
     });
 }

@@ -32,8 +32,8 @@ public:
     /// Borrows all. `source`: this rank's objects.
     Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, std::stop_token stop);
 
-    /// Adds to `work`, which has an element for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
-    void find(Executor& executor, std::span<std::uint64_t> work);
+    /// Adds to `loads`, which has an element for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
+    void find(Executor& executor, std::span<OctantLoad> loads);
     /// Borrows `owners` until the end.
     void address(Executor& executor, const OctantOwners& owners);
     /// After address(): how many of a set go to each rank, and how many of all have several owners.
@@ -43,23 +43,22 @@ public:
     void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
 
 private:
-    using Reach = OctantOwners::Reach;
+    struct Crosser {
+        std::size_t object;
+        OctantOwners::Reach reach;
+    };
     struct Block {
         unsigned set = 0;
         ObjectBlock objects = {};                // of the source
         std::optional<std::size_t> bad = {};     // the first that is not a box
-        std::vector<Reach> reaches = {};         // of those that cross
+        std::vector<Crosser> crossers = {};      // out of the leaf that they begin in; ascending
         RankCounts counts = {};                  // of each rank
         std::vector<std::uint32_t> owners = {};  // of those that may have several: how many, and these
         std::uint64_t shared = 0;
     };
-    void find(Block& block, std::span<std::uint64_t> work);
+    void find(Block& block, std::span<OctantLoad> loads);
     void address(Block& block);
-    void share(Block& block, std::size_t object);
-    template <typename Visit, typename VisitShared>
-    void for_each_object(const Block& block, Visit&& visit, VisitShared&& visit_shared) const;
-    template <typename Place>
-    void for_each_copy(const Block& block, Place&& place) const;
+    void share(Block& block, std::span<const Crosser> crossers) const;
     [[noreturn]] void refuse(std::size_t object) const;
 
     const JointCall& call_;
@@ -68,7 +67,8 @@ private:
     std::stop_token stop_;
     std::vector<Block> blocks_;
     const OctantOwners* owners_ = nullptr;
-    Buffer<Home> homes_;  // of each object: the leaf that it begins in
+    Buffer<std::uint32_t> places_;  // of each object: the leaf that it begins in; after address() its owner
+    std::uint32_t several_ = 0;     // in place of an owner
 };
 
 }  // namespace octopair
