@@ -21,16 +21,23 @@
 #include <cstdint>
 #include <memory>
 
+#include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair {
 
 struct MpiOptions {
     unsigned threads = 1;  ///< of each rank; 0: one per core
+    /// The same on all ranks. paper: the first rank, the master, gets all objects and deals them out in equal runs; each rank
+    /// builds a sorted list; the first rank of each machine merges those of its machine; the master merges what they have,
+    /// scans, on all of its threads, and has all pairs in its piece. It needs the memory of the local engine.
+    Arrangement arrangement = Arrangement::shared;
+    unsigned ranks_per_machine = 2;  ///< of Arrangement::paper, which takes so many in a row for a machine; from 1 on
 };
 
 /// Collective. The engine works on a duplicate of `comm` and must be destroyed on all ranks before MPI_Finalize. Throws Error{usage}
-/// outside MPI_Init_thread and MPI_Finalize, Error{engine_failed} if MPI fails.
+/// outside MPI_Init_thread and MPI_Finalize, and where the ranks' arrangements differ or machines have no ranks,
+/// Error{engine_failed} if MPI fails.
 std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options = {});
 
 /// Collective: `pairs` of rank 0 becomes the pieces of all ranks, one after another; those of the others become empty.
@@ -44,7 +51,8 @@ struct RankCosts {
     double plant = 0;  ///< the octants
     double route = 0;  ///< to find where objects go
     double pack = 0;   ///< what is sent
-    double build = 0;  ///< the linear octree of what was received
+    double build = 0;  ///< the linear octree of what was received; in the paper's arrangement a sorted list
+    double merge = 0;  ///< lists, in the paper's arrangement
     double scan = 0;   ///< pairs
     double order = 0;  ///< their ascending order
     double mpi = 0;    ///< within MPI, waiting included where it looks about

@@ -17,6 +17,7 @@
 #include <memory>
 #include <string>
 
+#include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
 
 /// Where the package that a program is built with has octopair-worker: what links octopair::processes of an installed
@@ -27,15 +28,9 @@
 
 namespace octopair {
 
-/// What is shared out.
-enum class Arrangement : std::uint8_t {
-    shared,  ///< every step
-    paper,   ///< workers build sorted lists; merging and scanning is the application's own, as in the paper: to compare
-};
-
 struct ProcessOptions {
-    unsigned workers = 0;  ///< 0: one per core; at most 256
-    Arrangement arrangement = Arrangement::shared;
+    unsigned workers = 0;                           ///< 0: one per core; at most 256
+    Arrangement arrangement = Arrangement::shared;  ///< paper: the application merges and scans
     /// The program of the workers, octopair-worker of the same version. Empty: what the environment variable
     /// OCTOPAIR_WORKER names; or else octopair-worker beside the application's program, in ../libexec/octopair from
     /// there, in the package, as configured, or as built.

@@ -59,22 +59,28 @@ OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop) {
     return {double(objects) / double(std::max<std::size_t>(1, sampled)), stop};
 }
 
-PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
-    PlantedOctants octants;
-    octants.frame = Frame::fit(sampled, objects);
+OctantPlan plan_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
+    OctantPlan plan;
+    plan.frame = Frame::fit(sampled, objects);
     SampledOctant root;
     root.inside.resize(sampled.size());
-    octants.frame.cells(sampled, root.inside);
-    OctantShape shape;
-    octant_growth(objects, stop).grow(std::move(root), shape);
-    octants.directory = Directory(octants.frame, shape);
-    return octants;
+    plan.frame.cells(sampled, root.inside);
+    octant_growth(objects, stop).grow(std::move(root), plan.shape);
+    return plan;
+}
+
+OctantPlan plan_octants(const EntrySource& source, const std::stop_token& stop) {
+    // The sample is gone when the entries need the memory.
+    const std::vector<Entry> sampled = sample_of(source);
+    return plan_octants(sampled, source.size(), stop);
+}
+
+PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
+    return plan_octants(sampled, objects, stop).planted();
 }
 
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop) {
-    // The sample is gone when the entries need the memory.
-    const std::vector<Entry> sampled = sample_of(source);
-    return plant_octants(sampled, source.size(), stop);
+    return plan_octants(source, stop).planted();
 }
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
@@ -148,22 +154,7 @@ void LinearOctree::assemble(PlantedOctants octants, std::span<const SortedList> 
     for (const SortedList& list : lists) all += list.entries.size();
     entries_.resize_discard(std::size_t(all));
     begins_.resize(nodes().size() + 1);
-    std::uint64_t at = 0;
-    const auto append = [&](const SortedList& list, std::uint64_t begin, std::uint64_t end) {
-        const auto part = list.entries.subspan(begin, end - begin);
-        std::copy(part.begin(), part.end(), entries_.data() + at);
-        at += part.size();
-    };
-    for (std::size_t node = 0; node < nodes().size(); ++node) {
-        if (node % 256 == 0) throw_if_stopped(stop);
-        begins_[node] = at;
-        for (const SortedList& list : lists) append(list, list.home_begins[node], list.ghost_begins[node]);
-        for (const SortedList& list : lists) {
-            const bool last = node + 1 == nodes().size();
-            append(list, list.ghost_begins[node], last ? list.entries.size() : list.home_begins[node + 1]);
-        }
-    }
-    begins_.back() = at;
+    begins_.back() = merge_lists(lists, {entries_.span(), std::span(begins_).first(nodes().size()), {}}, stop);
     seconds_ = {};
     seconds_.merge = seconds_since(clock);
 }

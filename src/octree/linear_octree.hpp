@@ -25,6 +25,7 @@
 #include "octree/executor.hpp"
 #include "octree/frame.hpp"
 #include "octree/sample.hpp"
+#include "octree/sorted_list.hpp"
 
 namespace octopair {
 
@@ -42,15 +43,19 @@ struct PlantedOctants {
 Sample octant_sample(std::uint64_t objects);
 /// What decides on their octants.
 OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop);
+/// What octants grow from, small enough to be told to others.
+struct OctantPlan {
+    Frame frame;
+    OctantShape shape;
+
+    PlantedOctants planted() const { return {frame, Directory(frame, shape)}; }
+};
 /// From the sampled entries. Throws Error{cancelled}.
+OctantPlan plan_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
+OctantPlan plan_octants(const EntrySource& source, const std::stop_token& stop);
+/// The same, planted.
 PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop);
-
-/// The entries of some objects, sorted by octant: in each those of boxes whose home it is, then the others.
-struct SortedList {
-    std::span<const Entry> entries;
-    std::span<const std::uint64_t> home_begins, ghost_begins;  ///< in each octant
-};
 
 class LinearOctree {
 public:

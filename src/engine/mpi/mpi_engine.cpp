@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "engine/job_queue.hpp"
 #include "engine/mpi/communicator.hpp"
@@ -14,9 +15,26 @@ namespace octopair {
 
 namespace {
 
+/// What would be another search on another rank must be the same. Collective.
+const MpiOptions& alike(Communicator& comm, const MpiOptions& options) {
+    struct Told {
+        Arrangement arrangement;
+        unsigned ranks_per_machine;
+    };
+    const bool paper = options.arrangement == Arrangement::paper;
+    const std::vector<Told> all = comm.all_gather(Told{options.arrangement, paper ? options.ranks_per_machine : 1});
+    for (const Told& told : all) {
+        if (told.ranks_per_machine == 0) throw Error(ErrorCode::usage, "machines of no ranks");
+        if (told.arrangement != all[0].arrangement || told.ranks_per_machine != all[0].ranks_per_machine) {
+            throw Error(ErrorCode::usage, "the arrangements of the ranks' engines differ");
+        }
+    }
+    return options;
+}
+
 class MpiEngine final : public Engine {
 public:
-    MpiEngine(MPI_Comm comm, const MpiOptions& options) : comm_(comm), search_(comm_, options.threads) {}
+    MpiEngine(MPI_Comm comm, const MpiOptions& options) : comm_(comm), search_(comm_, alike(comm_, options)) {}
 
     void gather(PairList& pairs) {
         jobs_.wait_for_all();

@@ -58,11 +58,21 @@ struct ObjectArrays {
     }
 };
 
+/// Collective: boxes and paddings of `out`, which is of the form of `in`; what comes stands in `in` from `place` on.
+// NOLINTNEXTLINE(readability-function-size): from, to, where there, how many.
+inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArrays& in, const Exchange& counts,
+                             std::size_t place = 0) {
+    if (in.wide) {
+        comm.exchange(std::get<std::span<const Box3d>>(out.boxes).data(), in.wide_boxes.data() + place, counts);
+    } else {
+        comm.exchange(std::get<std::span<const Box3f>>(out.boxes).data(), in.boxes.data() + place, counts);
+    }
+    if (in.padded) comm.exchange(out.padding.data(), in.padding.data() + place, counts);
+}
+
 /// Collective: `out` holds what is to be sent; `in`, of the same form and large enough, gets what comes.
 inline void exchange(Communicator& comm, const ObjectArrays& out, ObjectArrays& in, const Exchange& counts) {
-    if (out.wide) comm.exchange(out.wide_boxes.data(), in.wide_boxes.data(), counts);
-    if (!out.wide) comm.exchange(out.boxes.data(), in.boxes.data(), counts);
-    if (out.padded) comm.exchange(out.padding.data(), in.padding.data(), counts);
+    exchange_objects(comm, out.view(), in, counts);
     comm.exchange(out.positions.data(), in.positions.data(), counts);
 }
 

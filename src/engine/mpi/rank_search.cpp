@@ -31,10 +31,11 @@ Outlet outlet_of(const Engine::Output& output) {
 /// One call.
 struct RankSearch::Task {
     Task(Communicator& comm, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
-        : request(asked), output(out), stops(comm, stop), agreement(comm), progress(sink) {}
+        : request(asked), output(out), told(sink), stops(comm, stop), agreement(comm), progress(sink) {}
 
     const Engine::Request& request;
     const Engine::Output& output;
+    const ProgressSink& told;
     std::stop_source stop;
     StopRelay stops;
     Agreement agreement;
@@ -43,6 +44,10 @@ struct RankSearch::Task {
     std::array<Objects, 2> slices;
     Summary summary;
 };
+
+RankSearch::RankSearch(Communicator& comm, const MpiOptions& options) : comm_(comm), passes_(options.threads) {
+    if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
+}
 
 Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
     Task task(comm_, request, output, control.progress);
@@ -90,9 +95,10 @@ void RankSearch::find(Task& task) {
     }
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
+    costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
+    if (master_) return find_at_master(task);
     const Objects& first = task.slices[0];
     const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
-    costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
     const BoxSource own(first, second, task.joint.form);
     PlantedOctants octants = plant(task, own);
     if (comm_.size() == 1) {
@@ -103,6 +109,15 @@ void RankSearch::find(Task& task) {
     passes_.take(route(task, own, std::move(octants)), task.stops);
     const Objects first_received = received_[0].view(), second_received = received_[1].view();
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
+}
+
+void RankSearch::find_at_master(Task& task) {
+    const Summary summary = master_->run(
+        {task.output, task.request.options, task.joint, task.slices, task.stops, task.stop.get_token(), task.told});
+    task.summary.pairs = summary.pairs;
+    task.summary.truncated = summary.truncated;
+    task.summary.entries = summary.entries;
+    task.summary.steps = summary.steps;
 }
 
 PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {

@@ -12,8 +12,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "engine/mpi/communicator.hpp"
+#include "engine/mpi/master_search.hpp"
 #include "engine/mpi/object_arrays.hpp"
 #include "engine/mpi/rank_passes.hpp"
 #include "engine/pair_list.hpp"
@@ -26,7 +28,7 @@ class PiecePlan;
 
 class RankSearch {
 public:
-    RankSearch(Communicator& comm, unsigned threads) : comm_(comm), passes_(threads) {}
+    RankSearch(Communicator& comm, const MpiOptions& options);
 
     /// Collective. The summary is that of all ranks, but for the steps, which are this rank's.
     Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
@@ -40,6 +42,7 @@ public:
 private:
     struct Task;
     void find(Task& task);
+    void find_at_master(Task& task);
     PlantedOctants plant(Task& task, const BoxSource& own);
     RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
     void search(Task& task, const Engine::Request& own_octants);
@@ -56,6 +59,7 @@ private:
     std::array<ObjectArrays, 2> sent_, received_;
     PairList found_;
     RankCosts costs_;
+    std::optional<MasterSearch> master_;  // of the paper's arrangement
 };
 
 }  // namespace octopair

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "base/stop.hpp"
-#include "engine/mpi/agreement.hpp"
+#include "engine/mpi/bad_object.hpp"
 #include "geometry/box_kernel.hpp"
 #include "octree/octants_of.hpp"
 
@@ -96,15 +96,9 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
     }
 }
 
-/// The first from this one on.
 void Routing::refuse(std::size_t object) const {
-    Entry entry;
-    while (object + 1 < source_.size() && source_.load(object, {&entry, 1})) ++object;
-    try {
-        source_.refuse(object, {call_.begins[0], call_.begins[1]});
-    } catch (const Error& error) {
-        throw BadObject{call_.position(object), error.what()};
-    }
+    refuse_object(source_, object, {call_.begins[0], call_.begins[1]},
+                  [&](std::size_t number) { return call_.position(number); });
 }
 
 void Routing::address(Executor& executor, const OctantOwners& owners) {

@@ -1,0 +1,78 @@
+#include "engine/mpi/list_exchange.hpp"
+
+#include "engine/mpi/agreement.hpp"
+#include "engine/mpi/cost_meter.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// How many values of a list go from a rank, and where to.
+struct Told {
+    std::uint64_t to, values;
+};
+
+Exchange exchange_of(const std::vector<Told>& told, unsigned rank) {
+    Exchange exchange{RankCounts(told.size(), 0), RankCounts(told.size(), 0)};
+    if (told[rank].to != rank) exchange.sent[told[rank].to] = told[rank].values;
+    for (unsigned from = 0; from < told.size(); ++from) {
+        if (from != rank && told[from].to == rank) exchange.received[from] = told[from].values;
+    }
+    return exchange;
+}
+
+}  // namespace
+
+std::vector<SortedList> ListExchange::bring(const SortedList& own, unsigned to) {
+    const unsigned rank = comm_.rank();
+    const std::size_t nodes = own.home_begins.size();
+    std::vector<Told> told = comm_.all_gather(Told{to, own.entries.size()});
+    const Exchange entries = exchange_of(told, rank);
+    for (Told& one : told) one.values = 2 * nodes;
+    const Exchange counts = exchange_of(told, rank);
+    Agreement(comm_).together([&] {
+        const Metered metered(comm_, costs_.pack);
+        if (to != rank) pack(own);
+        received_.resize_discard(entries.incoming());
+        received_counts_.resize_discard(counts.incoming());
+    });
+    comm_.exchange(own.entries.data(), received_.data(), entries);
+    comm_.exchange(sent_counts_.data(), received_counts_.data(), counts);
+    std::vector<SortedList> lists;
+    Agreement(comm_).together([&] {
+        const Metered metered(comm_, costs_.merge);
+        lists = unpack(nodes);
+    });
+    return lists;
+}
+
+void ListExchange::pack(const SortedList& list) {
+    const std::size_t nodes = list.home_begins.size();
+    sent_counts_.resize_discard(2 * nodes);
+    for (std::size_t node = 0; node < nodes; ++node) {
+        const std::uint64_t end = node + 1 < nodes ? list.home_begins[node + 1] : list.entries.size();
+        sent_counts_[2 * node] = std::uint32_t(list.ghost_begins[node] - list.home_begins[node]);
+        sent_counts_[2 * node + 1] = std::uint32_t(end - list.ghost_begins[node]);
+    }
+}
+
+std::vector<SortedList> ListExchange::unpack(std::size_t nodes) {
+    begins_.resize_discard(received_counts_.size());
+    std::vector<SortedList> lists;
+    std::size_t begin = 0;  // of the entries that follow
+    for (std::size_t i = 0; i < received_counts_.size(); i += 2 * nodes) {
+        const auto homes = begins_.span().subspan(i, nodes), ghosts = begins_.span().subspan(i + nodes, nodes);
+        std::uint64_t at = 0;
+        for (std::size_t node = 0; node < nodes; ++node) {
+            homes[node] = at;
+            at += received_counts_[i + 2 * node];
+            ghosts[node] = at;
+            at += received_counts_[i + 2 * node + 1];
+        }
+        lists.push_back({received_.span().subspan(begin, std::size_t(at)), homes, ghosts});
+        begin += std::size_t(at);
+    }
+    return lists;
+}
+
+}  // namespace octopair
