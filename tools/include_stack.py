@@ -21,7 +21,7 @@ BENCH = ["baselines", "machine", "paper", "cluster"]
 USES["baselines"] = {"base", "octree"}
 USES["machine"] = set()
 USES["paper"] = {"base", "baselines", "machine", "samples"}
-USES["cluster"] = {"base", "machine", "samples"}
+USES["cluster"] = {"base", "engine", "machine", "paper", "samples"}
 USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster"}
 
 PURPOSE = {

@@ -60,6 +60,17 @@ EachRank ranks_of(const Json& json) {
 
 }  // namespace
 
+std::string_view arrangement_name(Arrangement arrangement) {
+    return arrangement == Arrangement::paper ? "paper" : "shared";
+}
+
+Arrangement arrangement_of(std::string_view name) {
+    for (const Arrangement arrangement : {Arrangement::shared, Arrangement::paper}) {
+        if (name == arrangement_name(arrangement)) return arrangement;
+    }
+    throw Error(ErrorCode::usage, "'" + std::string(name) + "' is no arrangement of ranks; there are: shared, paper");
+}
+
 double computing(const RankCosts& costs) {
     double seconds = 0;
     for (const Step& step : computing_steps) seconds += costs.*step.seconds;
@@ -88,6 +99,8 @@ std::string measured_json(const std::vector<Measured>& all) {
         runs.push_back({{"scene", measured.setup.scene},
                         {"objects", measured.setup.objects},
                         {"ranks", measured.setup.ranks},
+                        {"arrangement", arrangement_name(measured.setup.arrangement)},
+                        {"ranks_per_machine", measured.setup.ranks_per_machine},
                         {"pairs", measured.pairs},
                         {"entries", measured.entries},
                         {"wall_seconds", measured.wall_seconds},
@@ -105,6 +118,8 @@ std::vector<Measured> measured_of(const std::string& json) {
             run.at("scene").get_to(measured.setup.scene);
             run.at("objects").get_to(measured.setup.objects);
             run.at("ranks").get_to(measured.setup.ranks);
+            measured.setup.arrangement = arrangement_of(run.at("arrangement").get<std::string>());
+            run.at("ranks_per_machine").get_to(measured.setup.ranks_per_machine);
             run.at("pairs").get_to(measured.pairs);
             run.at("entries").get_to(measured.entries);
             run.at("wall_seconds").get_to(measured.wall_seconds);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "octopair/mpi.hpp"
@@ -14,7 +15,19 @@ struct Setup {
     std::string scene = "uniform";  ///< a kind of samples/scenes.hpp, seed 1
     std::uint64_t objects = 0;
     unsigned ranks = 1;
+    /// As the paper arranges ranks, all objects are the first one's, as there; else each has an equal part.
+    Arrangement arrangement = Arrangement::shared;
+    unsigned ranks_per_machine = 2;  ///< of Arrangement::paper
+
+    bool same_call(const Setup& other) const {
+        return scene == other.scene && objects == other.objects && arrangement == other.arrangement;
+    }
 };
+
+/// "shared", "paper".
+std::string_view arrangement_name(Arrangement arrangement);
+/// Throws Error{usage} for what is neither.
+Arrangement arrangement_of(std::string_view name);
 
 /// Of each rank the median of each step.
 using EachRank = std::vector<RankCosts>;
@@ -49,9 +62,9 @@ struct Step {
     double RankCosts::*seconds;
 };
 inline constexpr Step computing_steps[] = {
-    {"join", &RankCosts::join},   {"plant", &RankCosts::plant}, {"route", &RankCosts::route},
-    {"pack", &RankCosts::pack},   {"build", &RankCosts::build}, {"scan", &RankCosts::scan},
-    {"order", &RankCosts::order},
+    {"join", &RankCosts::join}, {"plant", &RankCosts::plant}, {"route", &RankCosts::route},
+    {"pack", &RankCosts::pack}, {"build", &RankCosts::build}, {"merge", &RankCosts::merge},
+    {"scan", &RankCosts::scan}, {"order", &RankCosts::order},
 };
 
 /// JSON, an array of one object for each; and back. Throws Error{engine_failed} for text that is none.

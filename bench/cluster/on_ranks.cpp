@@ -14,6 +14,7 @@ namespace {
 /// Objects [begin, end) of the scene.
 std::vector<Box3f> make_slice(const Setup& setup, std::uint64_t begin, std::uint64_t end) {
     std::vector<Box3f> own;
+    if (begin == end) return own;
     own.reserve(std::size_t(end - begin));
     std::uint64_t at = 0;
     samples::generate_scene({setup.scene, setup.objects, 1}, [&](std::span<const Box3f> boxes) {
@@ -50,10 +51,17 @@ namespace {
 class Measuring {
 public:
     Measuring(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop)
-        : comm_(comm), rounds_(rounds), stop_(stop), engine_(make_mpi_engine(comm)) {
+        : comm_(comm),
+          rounds_(rounds),
+          stop_(stop),
+          engine_(
+              make_mpi_engine(comm, {.arrangement = setup.arrangement, .ranks_per_machine = setup.ranks_per_machine})) {
         MPI_Comm_rank(comm, &rank_);
         MPI_Comm_size(comm, &ranks_);
-        const auto part = [&](int number) { return setup.objects * std::uint64_t(number) / std::uint64_t(ranks_); };
+        const auto part = [&](int number) {
+            if (setup.arrangement == Arrangement::paper) return number == 0 ? 0 : setup.objects;
+            return setup.objects * std::uint64_t(number) / std::uint64_t(ranks_);
+        };
         own_ = make_slice(setup, part(rank_), part(rank_ + 1));
         measured_.setup = setup;
         measured_.setup.ranks = unsigned(ranks_);

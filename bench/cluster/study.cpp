@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "base/descriptor.hpp"
 #include "cluster/mpirun.hpp"
@@ -45,9 +46,8 @@ private:
 };
 
 const Measured* on_one_rank(const std::vector<Measured>& all, const Setup& setup) {
-    const auto found = std::ranges::find_if(all, [&](const Measured& other) {
-        return other.setup.ranks == 1 && other.setup.scene == setup.scene && other.setup.objects == setup.objects;
-    });
+    const auto found = std::ranges::find_if(
+        all, [&](const Measured& other) { return other.setup.ranks == 1 && other.setup.same_call(setup); });
     return found == all.end() ? nullptr : &*found;
 }
 
@@ -69,8 +69,13 @@ std::string row_text(const Measured& measured, const Measured* one) {
 std::string heading_text(const Measured& measured) {
     const std::string costs =
         fmt::format("{:>12}{:>11}{:>11}{:>12}", "slowest ms", "mean ms", "imbalance", "efficiency");
-    return fmt::format("{} objects, {}: {} pairs\n\n{:>6}{}{:>9}{:>9}{:>10}{}\n", measured.setup.objects,
-                       measured.setup.scene, measured.pairs, "ranks", costs, "shared", "bytes/n", "messages", costs);
+    std::string arranged;
+    if (measured.setup.arrangement == Arrangement::paper) {
+        arranged = fmt::format(", arranged as in the paper, {} to a machine", measured.setup.ranks_per_machine);
+    }
+    return fmt::format("{} objects, {}: {} pairs{}\n\n{:>6}{}{:>9}{:>9}{:>10}{}\n", measured.setup.objects,
+                       measured.setup.scene, measured.pairs, arranged, "ranks", costs, "shared", "bytes/n", "messages",
+                       costs);
 }
 
 }  // namespace
@@ -87,6 +92,9 @@ std::vector<Measured> measure(const StudyPlan& plan, const Show& show, const std
         command.insert(command.end(), plan.scenes.begin(), plan.scenes.end());
         command.emplace_back("--objects");
         for (const std::uint64_t objects : plan.objects) command.push_back(std::to_string(objects));
+        command.emplace_back("--arrangement");
+        for (const Arrangement arrangement : plan.arrangements) command.emplace_back(arrangement_name(arrangement));
+        command.insert(command.end(), {"--ranks-per-machine", std::to_string(plan.ranks_per_machine)});
         run_under_mpirun({plan.mpirun, ranks, command}, stop);
         const std::vector<Measured> measured = measured_of(file.content());
         all.insert(all.end(), measured.begin(), measured.end());
@@ -99,11 +107,12 @@ std::string study_text(const std::vector<Measured>& all) {
     std::vector<const Measured*> rows;
     rows.reserve(all.size());
     for (const Measured& measured : all) rows.push_back(&measured);
-    std::ranges::stable_sort(rows, {},
-                             [](const Measured* row) { return std::pair(row->setup.scene, row->setup.objects); });
+    std::ranges::stable_sort(rows, {}, [](const Measured* row) {
+        return std::tuple(row->setup.scene, row->setup.objects, row->setup.arrangement);
+    });
     const Setup* last = nullptr;
     for (const Measured* row : rows) {
-        if (last == nullptr || last->scene != row->setup.scene || last->objects != row->setup.objects) {
+        if (last == nullptr || !last->same_call(row->setup)) {
             text += (last == nullptr ? "" : "\n") + heading_text(*row);
         }
         text += row_text(*row, on_one_rank(all, row->setup));

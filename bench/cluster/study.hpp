@@ -18,6 +18,8 @@ namespace octopair::cluster {
 struct StudyPlan {
     std::vector<std::string> scenes = {"uniform"};
     std::vector<std::uint64_t> objects = {1'000'000};
+    std::vector<Arrangement> arrangements = {Arrangement::shared};
+    unsigned ranks_per_machine = 2;                           ///< of Arrangement::paper
     std::vector<unsigned> ranks = {1, 2, 5, 10, 20, 40, 64};  ///< ascending; 1 is among them
     unsigned rounds = 9;
     std::string mpirun = "mpirun";

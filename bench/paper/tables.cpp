@@ -12,15 +12,6 @@ namespace octopair::paper {
 
 namespace {
 
-/// 1234567 as "1,234,567".
-std::string grouped(std::uint64_t number) {
-    std::string text = std::to_string(number);
-    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
-    return text;
-}
-
-std::string microseconds(double seconds) { return grouped(std::uint64_t(std::llround(seconds * 1e6))); }
-
 std::string setup_text(const Setup& setup) {
     return fmt::format("{} on {}", finder_text(setup.finder), processors_text(setup));
 }
@@ -187,6 +178,14 @@ std::string fits_text(const Study& study) {
 }
 
 }  // namespace
+
+std::string grouped(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+    return text;
+}
+
+std::string microseconds(double seconds) { return grouped(std::uint64_t(std::llround(seconds * 1e6))); }
 
 Speedup speedup_of(const TimedRun& run, double serial_seconds) {
     const double speedup = serial_seconds / run.seconds;

@@ -7,6 +7,10 @@
 
 namespace octopair::paper {
 
+/// 1234567 as "1,234,567".
+std::string grouped(std::uint64_t number);
+std::string microseconds(double seconds);
+
 /// How a parallel run compares with the serial one of the same algorithm (the paper's section 5.2).
 struct Speedup {
     double speedup;     ///< serial time / parallel time

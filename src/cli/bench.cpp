@@ -1,32 +1,42 @@
-// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper); bench_cluster.cpp has `cluster`.
+// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper; on ranks: bench_machines.cpp);
+// bench_cluster.cpp has `cluster`.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <thread>
 
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/study_output.hpp"
 #include "cli/subcommands.hpp"
-#include "io/atomic_file.hpp"
 #include "octopair/error.hpp"
 #include "paper/json.hpp"
 #include "paper/study.hpp"
 #include "paper/tables.hpp"
 #include "samples/scenes.hpp"
 
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/bench_machines.hpp"
+#endif
+
 namespace octopair::cli {
 
 namespace {
 
 struct BenchRequest {
-    paper::StudyPlan plan = {"uniform", {100'000, 250'000, 500'000, 1'000'000, 1'500'000, 2'000'000}, 0, 7, 20};
-    std::string json;  // a file, or empty
+    paper::StudyPlan plan = {"uniform", {}, 0, 7, 20};  // no objects: the paper's numbers
+    std::string json;                                   // a file, or empty
     bool quiet = false;
+#ifdef OCTOPAIR_WITH_MPI
+    MachinesRequest machines;
+#endif
 };
+
+std::vector<std::uint64_t> objects_or(const std::vector<std::uint64_t>& asked, std::vector<std::uint64_t> usual) {
+    return asked.empty() ? usual : asked;
+}
 
 struct Bounds {
     std::uint64_t least, most;
@@ -51,21 +61,24 @@ std::vector<std::uint64_t> parse_objects(const std::vector<std::string>& texts) 
 }
 
 int run_paper(BenchRequest request) {
-    const Interrupt interrupt;
-    std::optional<io::AtomicFile> json;
-    if (!request.json.empty()) json.emplace(request.json);
-    if (request.plan.threads == 0) request.plan.threads = std::max(1u, std::thread::hardware_concurrency());
-    ProgressLine progress(!request.quiet);
-    const auto show = [&](std::string_view activity, double done) { progress.show(activity, done); };
-    const paper::Study study = paper::measure(request.plan, show, interrupt.token());
-    progress.clear();
-    io::StandardOutput out(interrupt.token());
-    out.write(paper::study_text(study));
-    out.commit();
-    if (json) {
-        json->write(paper::study_json(study));
-        json->commit();
+#ifdef OCTOPAIR_WITH_MPI
+    if (!request.machines.machines.empty()) {
+        if (request.plan.threads != 0) {
+            throw Error(ErrorCode::usage, "--threads: with --machines each processor is a rank of one thread");
+        }
+        return run_machines(request.machines,
+                            {request.plan.scene, objects_or(request.plan.objects, {1'000'000, 2'000'000}),
+                             request.plan.rounds, request.json, request.quiet});
     }
+#endif
+    const Interrupt interrupt;
+    StudyOutput output(request.json, request.quiet);
+    request.plan.objects =
+        objects_or(request.plan.objects, {100'000, 250'000, 500'000, 1'000'000, 1'500'000, 2'000'000});
+    if (request.plan.threads == 0) request.plan.threads = std::max(1u, std::thread::hardware_concurrency());
+    const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
+    const paper::Study study = paper::measure(request.plan, show, interrupt.token());
+    output.write(paper::study_text(study), paper::study_json(study), interrupt.token());
     return 0;
 }
 
@@ -108,6 +121,9 @@ void add_paper(CLI::App& bench, Action& action) {
             "a kind of octopair generate (default uniform)")
         ->type_name("KIND");
     add_numbers(*command, *request);
+#ifdef OCTOPAIR_WITH_MPI
+    add_machines_options(*command, request->machines);
+#endif
     command->add_option("--json", request->json, "write every time measured as JSON")->type_name("FILE");
     command->add_flag("--quiet", request->quiet, "no progress on standard error");
     command->callback([request, &action] { action = [request] { return run_paper(*request); }; });

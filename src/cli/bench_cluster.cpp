@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 
 #include "cli/cluster.hpp"
 #include "cli/failure.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/study_output.hpp"
 #include "cli/subcommands.hpp"
+#include "cli/words.hpp"
 #include "cluster/on_ranks.hpp"
 #include "cluster/study.hpp"
 #include "io/atomic_file.hpp"
@@ -43,10 +43,13 @@ int measure_on_ranks(const ClusterRequest& request) {
     try {
         for (const std::string& scene : request.plan.scenes) {
             for (const std::uint64_t objects : request.plan.objects) {
-                ranks.joint([&] {
-                    all.push_back(cluster::measure_on_ranks(MPI_COMM_WORLD, {scene, objects}, request.plan.rounds,
-                                                            interrupt.token()));
-                });
+                for (const Arrangement arrangement : request.plan.arrangements) {
+                    const cluster::Setup setup{scene, objects, 1, arrangement, request.plan.ranks_per_machine};
+                    ranks.joint([&] {
+                        all.push_back(
+                            cluster::measure_on_ranks(MPI_COMM_WORLD, setup, request.plan.rounds, interrupt.token()));
+                    });
+                }
             }
         }
         ranks.together([&] {
@@ -64,19 +67,10 @@ int measure_on_ranks(const ClusterRequest& request) {
 int run_cluster(const ClusterRequest& request) {
     if (!request.on_ranks.empty()) return measure_on_ranks(request);
     const Interrupt interrupt;
-    std::optional<io::AtomicFile> json;
-    if (!request.json.empty()) json.emplace(request.json);
-    ProgressLine progress(!request.quiet);
-    const auto show = [&](std::string_view activity, double done) { progress.show(activity, done); };
+    StudyOutput output(request.json, request.quiet);
+    const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
     const auto all = cluster::measure(request.plan, show, interrupt.token());
-    progress.clear();
-    io::StandardOutput out(interrupt.token());
-    out.write(cluster::study_text(all));
-    out.commit();
-    if (json) {
-        json->write(cluster::study_json(all));
-        json->commit();
-    }
+    output.write(cluster::study_text(all), cluster::study_json(all), interrupt.token());
     return 0;
 }
 
@@ -101,6 +95,29 @@ void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>
         ->type_name("N");
 }
 
+void add_arrangement(CLI::App& command, const std::shared_ptr<ClusterRequest>& request) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--arrangement",
+            [request](const std::vector<std::string>& names) {
+                request->plan.arrangements.clear();
+                for (const std::string& name : names) {
+                    check_word({"--arrangement", {"shared", "paper"}, {}}, name);
+                    request->plan.arrangements.push_back(cluster::arrangement_of(name));
+                }
+            },
+            "shared (default), or paper: a master deals out, merges and scans; or both")
+        ->type_name("WORD");
+    command
+        .add_option_function<std::string>(
+            "--ranks-per-machine",
+            [request](const std::string& text) {
+                request->plan.ranks_per_machine = unsigned(parse_some("--ranks-per-machine", text));
+            },
+            "in the paper's arrangement (default 2)")
+        ->type_name("N");
+}
+
 }  // namespace
 
 void add_bench_cluster(CLI::App& bench, Action& action) {
@@ -117,6 +134,7 @@ void add_bench_cluster(CLI::App& bench, Action& action) {
         ->type_name("KIND");
     add_numbers(*command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
     add_numbers(*command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
+    add_arrangement(*command, request);
     command
         ->add_option_function<std::string>(
             "--rounds",

@@ -1,0 +1,82 @@
+#include "cli/bench_machines.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "cli/interrupt.hpp"
+#include "cli/numbers.hpp"
+#include "cli/study_output.hpp"
+#include "cluster/study.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr unsigned most_machines = 10'000;
+constexpr unsigned ranks_per_machine = 2;  // the paper's
+
+std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
+    std::vector<unsigned> machines;
+    for (const std::string& text : texts) {
+        machines.push_back(unsigned(parse_count("--machines", text, most_machines)));
+        if (machines.back() == 0) throw Error(ErrorCode::usage, "--machines: 0 is less than 1");
+    }
+    std::ranges::sort(machines);
+    const auto same = std::ranges::unique(machines);
+    machines.erase(same.begin(), same.end());
+    return machines;
+}
+
+}  // namespace
+
+void add_machines_options(CLI::App& command, MachinesRequest& request) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--machines",
+            [&request](const std::vector<std::string>& texts) { request.machines = parse_machines(texts); },
+            "tables 1 and 2 on ranks, instead: on so many machines of 2 processors, several times (the paper: 1 5 10 "
+            "15 20)")
+        ->type_name("N");
+    command
+        .add_option_function<std::string>(
+            "--latency",
+            [&request](const std::string& text) {
+                request.network.latency_seconds = parse_length("--latency", text) / 1e6;
+            },
+            "of the network's model, with --machines: microseconds a message (default 10)")
+        ->type_name("US");
+    command
+        .add_option_function<std::string>(
+            "--bandwidth",
+            [&request](const std::string& text) {
+                request.network.bytes_per_second = parse_length("--bandwidth", text) * 1e6 / 8;
+                if (request.network.bytes_per_second == 0)
+                    throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
+            },
+            "of the network's model, with --machines: Mbit/s of each machine (default 800)")
+        ->type_name("MBIT");
+    command.add_option("--mpirun", request.mpirun, "with --machines: the command that starts ranks (default mpirun)")
+        ->type_name("COMMAND");
+}
+
+int run_machines(const MachinesRequest& request, const MachinesScene& scene) {
+    const Interrupt interrupt;
+    StudyOutput output(scene.json, scene.quiet);
+    cluster::StudyPlan plan;
+    plan.scenes = {scene.scene};
+    plan.objects = scene.objects;
+    plan.arrangements = {Arrangement::shared, Arrangement::paper};
+    plan.ranks_per_machine = ranks_per_machine;
+    plan.ranks = {1};
+    for (const unsigned machines : request.machines) plan.ranks.push_back(machines * ranks_per_machine);
+    plan.rounds = scene.rounds;
+    plan.mpirun = request.mpirun;
+    const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
+    const auto all = cluster::measure(plan, show, interrupt.token());
+    output.write(cluster::machines_text(all, request.network), cluster::machines_json(all, request.network),
+                 interrupt.token());
+    return 0;
+}
+
+}  // namespace octopair::cli

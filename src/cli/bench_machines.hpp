@@ -1,0 +1,36 @@
+// octopair bench paper --machines: the paper's tables with several processors on each machine, on ranks.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cluster/machines.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+class App;
+}
+
+namespace octopair::cli {
+
+struct MachinesRequest {
+    std::vector<unsigned> machines;  ///< how many, ascending; empty: not asked for
+    cluster::Network network;
+    std::string mpirun = "mpirun";
+};
+
+/// --machines, --latency, --bandwidth, --mpirun.
+void add_machines_options(CLI::App& command, MachinesRequest& request);
+
+/// What else `bench paper` says.
+struct MachinesScene {
+    std::string scene;
+    std::vector<std::uint64_t> objects;
+    unsigned rounds;
+    std::string json;
+    bool quiet;
+};
+/// Returns the exit status. Throws Error.
+int run_machines(const MachinesRequest& request, const MachinesScene& scene);
+
+}  // namespace octopair::cli
