@@ -61,6 +61,10 @@ def paper(results):
     return verbatim((results / "paper.txt").read_text(encoding="utf-8"))
 
 
+def machines(results):
+    return verbatim((results / "machines.txt").read_text(encoding="utf-8"))
+
+
 def scenes(results):
     return verbatim((results / "scenes.txt").read_text(encoding="utf-8"))
 
@@ -284,7 +288,7 @@ def service_aims(results):
     return "\n".join(lines)
 
 
-BLOCKS = {"machine": machine, "short": short, "paper": paper, "scenes": scenes, "frames": frames,
+BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
           "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
           "service_crowds": service_crowds, "service_aims": service_aims}

@@ -31,13 +31,13 @@ std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
 }  // namespace
 
 void add_machines_options(CLI::App& command, MachinesRequest& request) {
-    command
-        .add_option_function<std::vector<std::string>>(
-            "--machines",
-            [&request](const std::vector<std::string>& texts) { request.machines = parse_machines(texts); },
-            "tables 1 and 2 on ranks, instead: on so many machines of 2 processors, several times (the paper: 1 5 10 "
-            "15 20)")
-        ->type_name("N");
+    CLI::Option* const machines =
+        command
+            .add_option_function<std::vector<std::string>>(
+                "--machines",
+                [&request](const std::vector<std::string>& texts) { request.machines = parse_machines(texts); },
+                "tables 1 and 2 on ranks, instead: so many machines of 2 processors, several times")
+            ->type_name("N");
     command
         .add_option_function<std::string>(
             "--latency",
@@ -45,6 +45,7 @@ void add_machines_options(CLI::App& command, MachinesRequest& request) {
                 request.network.latency_seconds = parse_length("--latency", text) / 1e6;
             },
             "of the network's model, with --machines: microseconds a message (default 10)")
+        ->needs(machines)
         ->type_name("US");
     command
         .add_option_function<std::string>(
@@ -55,8 +56,10 @@ void add_machines_options(CLI::App& command, MachinesRequest& request) {
                     throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
             },
             "of the network's model, with --machines: Mbit/s of each machine (default 800)")
+        ->needs(machines)
         ->type_name("MBIT");
     command.add_option("--mpirun", request.mpirun, "with --machines: the command that starts ranks (default mpirun)")
+        ->needs(machines)
         ->type_name("COMMAND");
 }
 

@@ -35,9 +35,11 @@ _octopair() {
             return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
         --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
+        --arrangement) mapfile -t COMPREPLY < <(compgen -W "shared paper" -- "$current"); return ;;
         --log) mapfile -t COMPREPLY < <(compgen -W "text json" -- "$current"); return ;;
         --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
         --margin | --limit | --threads | --workers | --seed | --frames | --rounds | --patience | --listen | --metrics) return ;;
+        --machines | --latency | --bandwidth | --ranks | --ranks-per-machine) return ;;
         --grace | --stall | --max-* | --server | --id | --wait) return ;;
         --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # of result it is no more than a word
         --json)
@@ -53,9 +55,9 @@ _octopair() {
             if ((COMP_CWORD == 2)); then
                 mapfile -t COMPREPLY < <(compgen -W "paper cluster" -- "$current")
             elif [ "${COMP_WORDS[2]}" = cluster ]; then
-                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --ranks --rounds --mpirun --json --quiet --help" -- "$current")
+                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --ranks --arrangement --ranks-per-machine --rounds --mpirun --json --quiet --help" -- "$current")
             else
-                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --json --quiet --help" -- "$current")
+                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --machines --latency --bandwidth --mpirun --json --quiet --help" -- "$current")
             fi ;;
         detect)
             if [[ $current == -* ]]; then

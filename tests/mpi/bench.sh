@@ -50,12 +50,6 @@ assert set(modelled) == {(ranks, arrangement) for ranks in (1, 2, 4) for arrange
 assert all((seconds > 0) == (ranks == 4) for (ranks, _), seconds in modelled.items())
 assert modelled[4, "paper"] > (3000 / 2 * 24 + 3000 / 2 * 32) / 1e8
 END
-status=0
-"$program" bench paper --machines 2 --threads 1 > /dev/null 2>&1 || status=$?
-[ "$status" = 2 ] || fail "exit status $status for threads of machines"
-status=0
-"$program" bench cluster --arrangement other > /dev/null 2>&1 || status=$?
-[ "$status" = 2 ] || fail "exit status $status for an arrangement that is none"
 
 status=0
 "$program" bench cluster --ranks 2 --mpirun "no-such-mpirun" --json no.json > /dev/null 2> errors.txt || status=$?
