@@ -23,7 +23,7 @@ def load(path):
 def machine(results):
     """What measured."""
     others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
-              *results.glob("service.json")]
+              *results.glob("service.json"), *results.glob("machines.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
     said = files[0]
     commits = sorted({file["commit"] for file in files})

@@ -204,20 +204,26 @@ std::string machines_text(const std::vector<Measured>& all, const Network& netwo
 }
 
 std::string machines_json(const std::vector<Measured>& all, const Network& network) {
-    nlohmann::ordered_json json = {{"machine", bench::machine_json()}};
+    using Json = nlohmann::ordered_json;
+    Json json = bench::machine_json();
     json["network_model"] = {{"latency_seconds", network.latency_seconds},
                              {"bytes_per_second", network.bytes_per_second}};
-    json["modelled"] = nlohmann::ordered_json::array();
+    json["runs"] = Json::array();
     for (const Measured& measured : all) {
         const Modelled times = modelled(measured, network);
-        json["modelled"].push_back({{"scene", measured.setup.scene},
-                                    {"objects", measured.setup.objects},
-                                    {"ranks", measured.setup.ranks},
-                                    {"arrangement", arrangement_name(measured.setup.arrangement)},
-                                    {"computing_seconds", times.computing},
-                                    {"network_seconds", times.network}});
+        Json slowest;
+        for (const Step& step : computing_steps) slowest[step.name] = slowest_of(measured.alone, step.seconds);
+        json["runs"].push_back({{"scene", measured.setup.scene},
+                                {"objects", measured.setup.objects},
+                                {"ranks", measured.setup.ranks},
+                                {"arrangement", arrangement_name(measured.setup.arrangement)},
+                                {"pairs", measured.pairs},
+                                {"computing_seconds", times.computing},
+                                {"network_seconds", times.network},
+                                {"port_bytes", port_bytes(measured)},
+                                {"slowest_seconds", slowest},
+                                {"merge_machine", merged_on_machines(measured.alone)}});
     }
-    json["runs"] = nlohmann::ordered_json::parse(measured_json(all));
     return json.dump(2) + '\n';
 }
 

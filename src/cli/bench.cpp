@@ -34,7 +34,8 @@ struct BenchRequest {
 #endif
 };
 
-std::vector<std::uint64_t> objects_or(const std::vector<std::uint64_t>& asked, std::vector<std::uint64_t> usual) {
+std::vector<std::uint64_t> objects_or(const std::vector<std::uint64_t>& asked,
+                                      const std::vector<std::uint64_t>& usual) {
     return asked.empty() ? usual : asked;
 }
 

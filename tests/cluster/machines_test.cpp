@@ -6,13 +6,17 @@
 namespace octopair::cluster {
 namespace {
 
-RankCosts costs_of(double build, double merge, double scan, std::uint64_t bytes, std::uint64_t messages) {
+struct Sent {
+    std::uint64_t bytes, messages;
+};
+
+RankCosts costs_of(double build, double merge, double scan, const Sent& sent) {
     RankCosts costs;
     costs.build = build;
     costs.merge = merge;
     costs.scan = scan;
-    costs.bytes_sent = bytes;
-    costs.messages_sent = messages;
+    costs.bytes_sent = sent.bytes;
+    costs.messages_sent = sent.messages;
     return costs;
 }
 
@@ -31,13 +35,14 @@ Measured made(Arrangement arrangement, const EachRank& alone) {
 }
 
 Measured paper_on_six() {
-    return made(Arrangement::paper, {costs_of(0.010, 0.100, 0.200, 50'000'000, 20), costs_of(0.011, 0, 0, 4'000'000, 4),
-                                     costs_of(0.012, 0.003, 0, 10'000'000, 5), costs_of(0.010, 0, 0, 4'000'000, 4),
-                                     costs_of(0.010, 0.004, 0, 12'000'000, 5), costs_of(0.009, 0, 0, 4'000'000, 4)});
+    return made(Arrangement::paper,
+                {costs_of(0.010, 0.100, 0.200, {50'000'000, 20}), costs_of(0.011, 0, 0, {4'000'000, 4}),
+                 costs_of(0.012, 0.003, 0, {10'000'000, 5}), costs_of(0.010, 0, 0, {4'000'000, 4}),
+                 costs_of(0.010, 0.004, 0, {12'000'000, 5}), costs_of(0.009, 0, 0, {4'000'000, 4})});
 }
 
 Measured shared_on_six() {
-    EachRank ranks(6, costs_of(0.010, 0, 0.030, 1'000'000, 50));
+    EachRank ranks(6, costs_of(0.010, 0, 0.030, {1'000'000, 50}));
     ranks[3].scan = 0.040;
     ranks[4].bytes_sent = 5'000'000;
     return made(Arrangement::shared, ranks);
@@ -67,7 +72,7 @@ TEST(Machines, TheNetworkIsThatBetweenThem) {
 }
 
 TEST(Machines, TextHoldsOursAndThePapers) {
-    std::vector<Measured> all = {made(Arrangement::paper, {costs_of(0.5, 0.1, 0.348, 0, 0)}), paper_on_six()};
+    std::vector<Measured> all = {made(Arrangement::paper, {costs_of(0.5, 0.1, 0.348, {0, 0})}), paper_on_six()};
     for (const bool whole : {false, true}) {
         if (whole) all.push_back(shared_on_six());
         const std::string text = machines_text(all, {0, 1e9});

@@ -44,7 +44,7 @@ assert all(rank["build"] > 0 for rank in paper) and paper[0]["merge"] > 0 and pa
 assert [rank["objects"] for rank in runs[3]["together"]] == [3000, 0, 0, 0]
 paper = json.load(open("paper.json"))
 assert paper["network_model"] == {"latency_seconds": 5e-6, "bytes_per_second": 1e8}
-modelled = {(row["ranks"], row["arrangement"]): row["network_seconds"] for row in paper["modelled"]}
+modelled = {(row["ranks"], row["arrangement"]): row["network_seconds"] for row in paper["runs"]}
 assert set(modelled) == {(ranks, arrangement) for ranks in (1, 2, 4) for arrangement in ("shared", "paper")}
 # One machine needs no network; the master's has all objects and entries to carry.
 assert all((seconds > 0) == (ranks == 4) for (ranks, _), seconds in modelled.items())

@@ -181,6 +181,7 @@ TEST_P(Scene, MergedListsAreTheSameOctree) {
         const PlantedOctants octants = plant_octants(source_, {});
         std::vector<OwnedList> owned;
         std::vector<SortedList> lists;
+        lists.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
             const ObjectBlock objects{boxes_.size() * i / count, boxes_.size() * (i + 1) / count};
             owned.push_back(sorted_list(source_, octants, objects));
