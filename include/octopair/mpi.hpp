@@ -2,7 +2,8 @@
 //
 // Calls     every call is collective: all ranks of the communicator make the same calls in the same order, with the same
 //           options. Each gives its own slice of the objects (of each set, in a join); the slices in the order of the ranks
-//           are the objects of the call, numbered on from rank to rank; at most 2^32 - 1 in all. A slice may be empty.
+//           are the objects of the call, numbered on from rank to rank; at most 2^32 - 1 in all, but for find_pairs64. A
+//           slice may be empty.
 // Result    each rank receives a piece of the pairs, or streams it; the pieces in the order of the ranks are the same bytes
 //           as from every engine. A Summary counts the pairs of all ranks; PairList::size() those of the piece.
 // Errors    what is wrong on one rank ends the call on all, with the same Error; a stop request on one, too. A rank that
@@ -18,8 +19,12 @@
 
 #include <mpi.h>
 
+#include <compare>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <stop_token>
+#include <vector>
 
 #include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
@@ -43,6 +48,28 @@ std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options
 /// Collective: `pairs` of rank 0 becomes the pieces of all ranks, one after another; those of the others become empty.
 /// Throws Error{usage} unless make_mpi_engine made the engine.
 void gather_pairs(Engine& engine, PairList& pairs);
+
+/// Two objects by their indices; a < b (in a join: a of the first set, b of the second).
+struct Pair64 {
+    std::uint64_t a, b;
+    auto operator<=>(const Pair64&) const = default;
+};
+
+/// A rank's part of a set, borrowed. The set is in the order of `indices`, however it lies on the ranks.
+struct IndexedObjects {
+    Objects objects;
+    /// One for each object, each but once in the set; on all ranks empty: 0, 1, ... from rank to rank.
+    std::span<const std::uint64_t> indices = {};
+};
+
+/// Collective: this rank's piece of the pairs, as find_pairs would give it for all objects in the order of their indices. For
+/// indices of the caller's own, and for more objects than 2^32 - 1, of which a rank may have no more, with those that it
+/// shares. Pairs beyond Options::limit are found and dropped. Throws as Engine::find_pairs; Error{bad_input} for an index that
+/// is given twice; Error{usage} unless make_mpi_engine made the engine, not in the paper's arrangement.
+Summary find_pairs64(Engine& engine, const IndexedObjects& objects, std::vector<Pair64>& pairs,
+                     const Options& options = {}, std::stop_token stop = {});
+Summary find_pairs64_between(Engine& engine, const IndexedObjects& first, const IndexedObjects& second,
+                             std::vector<Pair64>& pairs, const Options& options = {}, std::stop_token stop = {});
 
 /// What the last call cost this rank. Seconds are processor time of the calling thread, without what it spent within MPI; so
 /// they leave out waiting, and the other threads of a rank that has several.

@@ -36,16 +36,16 @@ Case slice(const Case& whole, Spread spread) {
     return own;
 }
 
-std::vector<Pair> all_pieces(const std::vector<Pair>& own) {
-    const int bytes = int(own.size() * sizeof(Pair));
+std::vector<std::byte> all_bytes(std::span<const std::byte> own) {
+    const int bytes = int(own.size());
     std::vector<int> sizes(rank_count()), places;
     MPI_Allgather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD);
-    int all_bytes = 0;
+    int end = 0;
     for (const int size : sizes) {
-        places.push_back(all_bytes);
-        all_bytes += size;
+        places.push_back(end);
+        end += size;
     }
-    std::vector<Pair> all(std::size_t(all_bytes) / sizeof(Pair));
+    std::vector<std::byte> all(static_cast<std::size_t>(end));
     MPI_Allgatherv(own.data(), bytes, MPI_BYTE, all.data(), sizes.data(), places.data(), MPI_BYTE, MPI_COMM_WORLD);
     return all;
 }

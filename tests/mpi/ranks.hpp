@@ -3,8 +3,11 @@
 
 #include <mpi.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +49,15 @@ std::vector<Element> slice(const std::vector<Element>& all, Spread spread) {
 /// This rank's part of a case.
 Case slice(const Case& whole, Spread spread);
 
+std::vector<std::byte> all_bytes(std::span<const std::byte> own);
 /// What all ranks found, one after another, on every rank.
-std::vector<Pair> all_pieces(const std::vector<Pair>& own);
+template <typename AnyPair>
+std::vector<AnyPair> all_pieces(const std::vector<AnyPair>& own) {
+    const std::vector<std::byte> bytes = all_bytes(std::as_bytes(std::span(own)));
+    std::vector<AnyPair> all(bytes.size() / sizeof(AnyPair));
+    std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(all)).begin());
+    return all;
+}
 /// True on all ranks if on all.
 bool on_all(bool own);
 /// The largest of all ranks'.

@@ -1,17 +1,15 @@
 #include "engine/mpi/joint_call.hpp"
 
-#include <limits>
 #include <string>
 #include <string_view>
 
 #include "engine/mpi/agreement.hpp"
+#include "engine/mpi/bad_object.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
 
 /// What a rank says of its slice of a set.
 struct ToldSlice {
@@ -99,7 +97,13 @@ void choose_origin(Communicator& comm, const Engine::Request& request, JointCall
 
 }  // namespace
 
-JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet) {
+void JointCall::refuse(const BoxSource& source, std::size_t own) const {
+    refuse_object(
+        source, own, [&](std::size_t number) { return position(number); },
+        [&](std::size_t number) { return named_from(number); });
+}
+
+JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet, std::uint64_t most_objects) {
     Agreement(comm).together([&] { check_request(request); });
     const std::vector<Told> all = comm.all_gather(told_of(request, outlet));
     check_likeness(all);

@@ -26,6 +26,9 @@ struct JointCall {
     std::array<std::uint64_t, 2> sizes = {0, 0};   ///< and how many it brought
     std::array<bool, 2> wide = {}, padded = {};    ///< whether boxes are float64, objects have paddings
     EntryForm form;
+    /// Of this rank's objects, where they have indices of their own, of 64 bits; borrowed.
+    std::array<std::span<const std::uint64_t>, 2> indices = {};
+    bool indexed = false;
 
     /// A set of this rank's as it is held on all: of none, the caller may have said another precision.
     Objects slice(unsigned set, const Objects& given) const {
@@ -39,11 +42,22 @@ struct JointCall {
     std::uint64_t position(std::uint64_t own) const {
         return own < sizes[0] ? begins[0] + own : totals[0] + begins[1] + (own - sizes[0]);
     }
+    /// Throws BadObject for the first object of this rank's source, from this one on, that is not a box.
+    [[noreturn]] void refuse(const BoxSource& source, std::size_t own) const;
+
+private:
+    /// What to add to its number in this rank's slice for what it is called.
+    SetBegins named_from(std::uint64_t own) const {
+        if (!indexed) return {begins[0], begins[1]};
+        if (own < sizes[0]) return {indices[0][std::size_t(own)] - own, 0};
+        own -= sizes[0];
+        return {0, indices[1][std::size_t(own)] - own};
+    }
 };
 
 /// Collective. Throws Error, on all ranks the same: what is wrong with any rank's options and sizes, and where ranks do not
-/// ask for the same.
-JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet);
+/// ask for the same. `most_objects`: on all ranks.
+JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet, std::uint64_t most_objects);
 
 /// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank. A sample
 /// has a size and rising elements.

@@ -167,8 +167,10 @@ SortedList MasterSearch::make_list(const Task& task, const Sets& own, const Plan
         try {
             list = maker_.make(source, octants, std::uint32_t(begin), task.stop);
         } catch (const LinearOctree::Invalid& invalid) {
-            refuse_object(source, invalid.begin, {runs.begin(comm_.rank(), 0), runs.begin(comm_.rank(), 1)},
-                          [&](std::size_t number) { return begin + number; });
+            const SetBegins begins{runs.begin(comm_.rank(), 0), runs.begin(comm_.rank(), 1)};
+            refuse_object(
+                source, invalid.begin, [&](std::size_t number) { return begin + number; },
+                [&](std::size_t) { return begins; });
         }
     });
     return list;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,13 @@ public:
         PairList all;
         search_.gather(pairs, all.storage());
         pairs = std::move(all);
+    }
+
+    // NOLINTNEXTLINE(readability-function-size): what, where to, until when.
+    Summary find(const Request& request, const IndexedCall& indexed, const Control& control) {
+        jobs_.wait_for_all();
+        const std::lock_guard lock(calls_);
+        return search_.run(request, {}, control, &indexed);
     }
 
     const RankCosts& costs() const { return search_.costs(); }
@@ -86,6 +94,38 @@ AnyEngine& as_ranks(AnyEngine* ranks) {
 }  // namespace
 
 void gather_pairs(Engine& engine, PairList& pairs) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).gather(pairs); }
+
+namespace {
+
+/// With no half-filled list after a failure, and running out of memory an Error like any other.
+Summary find_indexed(Engine& engine, const Engine::Request& request, const IndexedCall& indexed, std::stop_token stop) {
+    MpiEngine& ranks = as_ranks(dynamic_cast<MpiEngine*>(&engine));
+    indexed.pairs.clear();
+    try {
+        return ranks.find(request, indexed, {std::move(stop), request.options.progress});
+    } catch (const std::bad_alloc&) {
+        indexed.pairs.clear();
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    } catch (...) {
+        indexed.pairs.clear();
+        throw;
+    }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): as find_pairs.
+Summary find_pairs64(Engine& engine, const IndexedObjects& objects, std::vector<Pair64>& pairs, const Options& options,
+                     std::stop_token stop) {
+    return find_indexed(engine, {objects.objects, nullptr, options}, {{objects.indices, {}}, pairs}, std::move(stop));
+}
+
+// NOLINTNEXTLINE(readability-function-size): as find_pairs_between.
+Summary find_pairs64_between(Engine& engine, const IndexedObjects& first, const IndexedObjects& second,
+                             std::vector<Pair64>& pairs, const Options& options, std::stop_token stop) {
+    return find_indexed(engine, {first.objects, &second.objects, options}, {{first.indices, second.indices}, pairs},
+                        std::move(stop));
+}
 
 void use_tape(Engine& engine, MessageTape* tape) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).use(tape); }
 

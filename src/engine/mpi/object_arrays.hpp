@@ -13,22 +13,23 @@
 namespace octopair {
 
 struct ObjectArrays {
-    bool wide = false;    ///< boxes are float64: `wide_boxes` has them, otherwise `boxes`
-    bool padded = false;  ///< otherwise `padding` is empty
+    bool wide = false;     ///< boxes are float64: `wide_boxes` has them, otherwise `boxes`
+    bool padded = false;   ///< otherwise `padding` is empty
+    bool indexed = false;  ///< objects are called by `indices`, otherwise by `positions`
     Buffer<Box3f> boxes = {};
     Buffer<Box3d> wide_boxes = {};
     Buffer<double> padding = {};
     Buffer<std::uint32_t> positions = {};  ///< in the set, of all ranks'
+    Buffer<std::uint64_t> indices = {};
 
-    std::size_t size() const { return positions.size(); }
+    std::size_t size() const { return indexed ? indices.size() : positions.size(); }
     void resize(std::size_t objects) {
         if (wide) wide_boxes.resize_discard(objects);
         if (!wide) boxes.resize_discard(objects);
         if (padded) padding.resize_discard(objects);
-        positions.resize_discard(objects);
+        if (indexed) indices.resize_discard(objects);
+        if (!indexed) positions.resize_discard(objects);
     }
-    /// Objects go to many places in turn, which no processor follows by itself.
-    static constexpr std::size_t fetched_ahead = 5;
     /// Calls use(copy), where copy(to, from) makes object `from` of `objects`, of this form, number `to`: its box, its
     /// padding.
     template <typename Use>
@@ -44,17 +45,39 @@ struct ObjectArrays {
             } else {
                 use([=](std::size_t to, std::size_t from) {
                     to_boxes[to] = from_boxes[from];
-                    hwy::Prefetch(to_boxes + to + fetched_ahead);
+                    fetch_ahead(to_boxes + to);
                 });
             }
         };
         if (wide) with(wide_boxes.data(), std::get<std::span<const Box3d>>(objects.boxes));
         if (!wide) with(boxes.data(), std::get<std::span<const Box3f>>(objects.boxes));
     }
+    /// The same of what objects are called: by their indices, or by their number in the slice and where that begins.
+    template <typename Use>
+    void naming(std::span<const std::uint64_t> from_indices, std::uint64_t slice_begin, Use&& use) {
+        if (indexed) {
+            std::uint64_t* const to_indices = indices.data();
+            use([=](std::size_t to, std::size_t from) { to_indices[to] = from_indices[from]; });
+        } else {
+            std::uint32_t* const to_positions = positions.data();
+            use([=](std::size_t to, std::size_t from) {
+                to_positions[to] = std::uint32_t(slice_begin + from);
+                fetch_ahead(to_positions + to);
+            });
+        }
+    }
     Objects view() const {
         const std::span<const double> paddings = padded ? padding.span() : std::span<const double>();
         if (wide) return {wide_boxes.span(), paddings};
         return {boxes.span(), paddings};
+    }
+
+private:
+    /// Objects go to many places in turn, which no processor follows by itself.
+    template <typename T>
+    static void fetch_ahead(const T* place) {
+        constexpr std::size_t ahead_bytes = 112;
+        hwy::Prefetch(reinterpret_cast<const std::byte*>(place) + ahead_bytes);
     }
 };
 
@@ -73,7 +96,8 @@ inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArray
 /// Collective: `out` holds what is to be sent; `in`, of the same form and large enough, gets what comes.
 inline void exchange(Communicator& comm, const ObjectArrays& out, ObjectArrays& in, const Exchange& counts) {
     exchange_objects(comm, out.view(), in, counts);
-    comm.exchange(out.positions.data(), in.positions.data(), counts);
+    if (out.indexed) comm.exchange(out.indices.data(), in.indices.data(), counts);
+    if (!out.indexed) comm.exchange(out.positions.data(), in.positions.data(), counts);
 }
 
 }  // namespace octopair

@@ -1,6 +1,7 @@
 #include "engine/mpi/rank_search.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/ascending_pieces.hpp"
 #include "engine/mpi/cost_meter.hpp"
+#include "engine/mpi/even_runs.hpp"
+#include "engine/mpi/index_order.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/octant_owners.hpp"
 #include "engine/mpi/planting.hpp"
@@ -21,6 +24,8 @@ namespace octopair {
 
 namespace {
 
+constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // whose indices a Pair has
+
 Outlet outlet_of(const Engine::Output& output) {
     if (output.list != nullptr) return Outlet::list;
     return output.sink != nullptr ? Outlet::sink : Outlet::count;
@@ -30,11 +35,20 @@ Outlet outlet_of(const Engine::Output& output) {
 
 /// One call.
 struct RankSearch::Task {
-    Task(Communicator& comm, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
-        : request(asked), output(out), told(sink), stops(comm, stop), agreement(comm), progress(sink) {}
+    Task(Communicator& comm, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink,
+         const IndexedCall* own_indices)
+        : request(asked),
+          output(out),
+          indexed(own_indices),
+          told(sink),
+          stops(comm, stop),
+          agreement(comm),
+          progress(sink),
+          order(comm) {}
 
     const Engine::Request& request;
     const Engine::Output& output;
+    const IndexedCall* indexed;
     const ProgressSink& told;
     std::stop_source stop;
     StopRelay stops;
@@ -42,15 +56,19 @@ struct RankSearch::Task {
     Progress progress;
     JointCall joint;
     std::array<Objects, 2> slices;
+    IndexOrder order;  // of an indexed call
     Summary summary;
+    unsigned sets() const { return joint.join ? 2 : 1; }
 };
 
 RankSearch::RankSearch(Communicator& comm, const MpiOptions& options) : comm_(comm), passes_(options.threads) {
     if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
 }
 
-Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
-    Task task(comm_, request, output, control.progress);
+// NOLINTNEXTLINE(readability-function-size): what, where to, until when, with which indices.
+Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
+                        const IndexedCall* indexed) {
+    Task task(comm_, request, output, control.progress, indexed);
     const std::stop_callback forward(control.stop, [&] { task.stop.request_stop(); });
     const auto end = [&] {
         found_.storage().reset();
@@ -87,14 +105,30 @@ void RankSearch::skip() noexcept {
     }
 }
 
-void RankSearch::find(Task& task) {
+void RankSearch::join(Task& task) {
+    if (task.indexed != nullptr && master_)
+        throw Error(ErrorCode::usage, "no pairs of 64 bits in the paper's arrangement");
+    const Metered metered(comm_, costs_.join);
     const Engine::Request& asked = task.request;
-    {
-        const Metered metered(comm_, costs_.join);
-        task.joint = join_call(comm_, asked, outlet_of(task.output));
-    }
+    const Outlet outlet = task.indexed != nullptr ? Outlet::list : outlet_of(task.output);
+    const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : most_objects;
+    task.joint = join_call(comm_, asked, outlet, most);
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
+    if (task.indexed == nullptr) return;
+    for (unsigned set = 0; set < task.sets(); ++set) {
+        task.order.take(task.joint, set, task.slices[set], task.indexed->indices[set]);
+        task.slices[set] = task.order.objects(set);
+    }
+    const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
+    task.joint = join_call(comm_, {task.slices[0], second, asked.options}, outlet, most);
+    task.joint.indexed = true;
+    for (unsigned set = 0; set < task.sets(); ++set) task.joint.indices[set] = task.order.indices(set);
+}
+
+void RankSearch::find(Task& task) {
+    const Engine::Request& asked = task.request;
+    join(task);
     costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
     if (master_) return find_at_master(task);
     const Objects& first = task.slices[0];
@@ -140,7 +174,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
         routing->find(executor, loads);
     });
     comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});
-    const unsigned sets = task.joint.join ? 2 : 1;
+    const unsigned sets = task.sets();
     std::optional<OctantOwners> cut;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
@@ -151,6 +185,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
             for (ObjectArrays* arrays : {&sent_[set], &received_[set]}) {
                 arrays->wide = task.joint.wide[set];
                 arrays->padded = task.joint.padded[set];
+                arrays->indexed = task.joint.indexed;
             }
             routing->pack(executor, set, task.slices[set], sent_[set]);
         }
@@ -158,13 +193,20 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     costs_.route -= costs_.pack;
     const OctantOwners& owners = *cut;
     costs_.shared_objects = routing->shared_objects();
+    std::uint64_t incoming = 0;
     for (unsigned set = 0; set < sets; ++set) {
         const Exchange counts = comm_.plan_exchange(routing->counts(set));
-        task.agreement.together([&] { received_[set].resize(counts.incoming()); });
+        incoming += counts.incoming();
+        task.agreement.together([&] {
+            if (incoming > most_objects)
+                throw Error(ErrorCode::resource_limit, "more than 2^32 - 1 objects on one rank");
+            received_[set].resize(counts.incoming());
+        });
         exchange(comm_, sent_[set], received_[set], counts);
         costs_.objects_received += received_[set].size();
     }
-    const PairNumbers numbers{received_[0].positions.span(), received_[sets - 1].positions.span()};
+    PairNumbers numbers;
+    if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
     return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
 }
 
@@ -173,7 +215,9 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
     // Its own stop: where this rank's part of a pass is abandoned, as at a limit, the others' are not.
     Call call{own_octants, task.output, source, {}, task.progress, {}};
     const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
-    if (outlet_of(task.output) == Outlet::count) {
+    if (task.indexed != nullptr) {
+        find_indexed(task, call);
+    } else if (outlet_of(task.output) == Outlet::count) {
         count(task, call);
     } else if (task.request.options.order == Order::octal) {
         find_octal(task, call);
@@ -185,6 +229,23 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
 }
 
 namespace {
+
+/// Collective: this rank's pairs become its piece of the ascending sequence of all.
+void sort_over_ranks(Communicator& comm, std::vector<Pair64>& pairs) {
+    Agreement agreement(comm);
+    std::vector<std::uint64_t> keys;
+    agreement.together([&] {
+        std::ranges::sort(pairs);
+        keys.reserve(pairs.size());
+        for (const Pair64& pair : pairs) keys.push_back(pair.a);
+    });
+    const Exchange counts = comm.plan_exchange(even_runs(comm, keys));
+    std::vector<Pair64> received;
+    agreement.together([&] { received.resize(counts.incoming()); });
+    comm.exchange(pairs.data(), received.data(), counts);
+    agreement.together([&] { std::ranges::sort(received); });
+    pairs = std::move(received);
+}
 
 /// Of pieces of these sizes, how many pairs of one rank's are within the limit; the summary gets what there are in all.
 std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, const Options& options,
@@ -216,6 +277,37 @@ std::uint64_t RankSearch::allowed(Task& task, const PiecePlan& plan) const {
     return octopair::allowed(pieces, comm_.rank(), task.request.options, task.summary);
 }
 
+/// What was found, in numbers of this rank, gets its indices; ascending, pairs go to the rank that their `a` belongs to.
+void RankSearch::find_indexed(Task& task, Call& call) {
+    const Options& options = task.request.options;
+    std::vector<Pair64>& pairs = task.indexed->pairs;
+    task.agreement.together([&] {
+        build(task, call);
+        const Metered metered(comm_, costs_.scan);
+        passes_.list_octal(call, found_.storage(), 1);
+        name_found(task, pairs);
+    });
+    if (options.order == Order::ascending) {
+        const Metered metered(comm_, costs_.order);
+        sort_over_ranks(comm_, pairs);
+    }
+    const auto pieces = comm_.all_gather(std::uint64_t(pairs.size()));
+    pairs.resize(std::size_t(octopair::allowed(pieces, comm_.rank(), options, task.summary)));
+}
+
+void RankSearch::name_found(const Task& task, std::vector<Pair64>& pairs) {
+    const auto indices = [&](unsigned set) {
+        return comm_.size() == 1 ? task.joint.indices[set]
+                                 : std::span<const std::uint64_t>(received_[set].indices.span());
+    };
+    const auto first = indices(0), second = indices(task.joint.join ? 1 : 0);
+    pairs.reserve(std::size_t(found_.size()));
+    for (const auto chunk : found_.chunks()) {
+        for (const Pair& pair : chunk) pairs.push_back({first[pair.a], second[pair.b]});
+    }
+    found_.storage().reset();
+}
+
 void RankSearch::gather(PairList& piece, PairList::Storage& all) {
     RankCounts to_first(comm_.size(), 0);
     to_first[0] = piece.size();
@@ -237,13 +329,13 @@ void RankSearch::gather(PairList& piece, PairList::Storage& all) {
 }
 
 /// In one part with the pass that comes first: what is built is then still in the cache.
-void RankSearch::build(Call& call) {
+void RankSearch::build(Task& task, Call& call) {
     constexpr double built = 0.3;  // of the progress
     const Metered metered(comm_, costs_.build);
     try {
         passes_.build(call, built);
     } catch (const LinearOctree::Invalid& invalid) {
-        if (comm_.size() == 1) call.source.refuse(invalid.begin);
+        if (comm_.size() == 1) task.joint.refuse(call.source, invalid.begin);
         throw Error(ErrorCode::bad_input, "an object changed while it was read");
     }
 }
@@ -251,7 +343,7 @@ void RankSearch::build(Call& call) {
 void RankSearch::count(Task& task, Call& call) {
     std::uint64_t pairs = 0;
     task.agreement.together([&] {
-        build(call);
+        build(task, call);
         const Metered metered(comm_, costs_.scan);
         pairs = passes_.count(call, 1);
     });
@@ -263,14 +355,14 @@ void RankSearch::find_octal(Task& task, Call& call) {
     std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
     if (limit) {
         task.agreement.together([&] {
-            build(call);
+            build(task, call);
             const Metered metered(comm_, costs_.scan);
             pairs = passes_.count(call, 0.6);
         });
         allowance = octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
     }
     task.agreement.together([&] {
-        if (!limit) build(call);
+        if (!limit) build(task, call);
         const Metered metered(comm_, costs_.scan);
         if (task.output.list != nullptr && !limit) {
             passes_.list_octal(call, task.output.list->storage(), 1);
@@ -293,7 +385,7 @@ void RankSearch::find_octal(Task& task, Call& call) {
 void RankSearch::find_ascending(Task& task, Call& call) {
     const bool whole = task.output.list != nullptr && !task.request.options.limit;
     if (comm_.size() == 1 && whole) {
-        build(call);
+        task.agreement.together([&] { build(task, call); });
         const Metered metered(comm_, costs_.scan);
         PairList::Storage& list = task.output.list->storage();
         const std::uint64_t rows = task.joint.totals[0];
@@ -304,7 +396,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     // What is not to be a list anyway must fit into the caller's buffer.
     std::uint64_t over = 0;
     task.agreement.together([&] {
-        build(call);
+        build(task, call);
         const Metered metered(comm_, costs_.scan);
         over = list_octal(call, whole ? ~std::uint64_t(0) : call.buffer_pairs() / 2) ? 0 : 1;
     });

@@ -12,7 +12,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "engine/mpi/communicator.hpp"
 #include "engine/mpi/master_search.hpp"
@@ -26,12 +29,20 @@ namespace octopair {
 
 class PiecePlan;
 
+/// A call for pairs of indices that are the caller's own, or of more bits than a Pair has.
+struct IndexedCall {
+    std::array<std::span<const std::uint64_t>, 2> indices;  ///< of each set; empty: 0, 1, ... from rank to rank
+    std::vector<Pair64>& pairs;
+};
+
 class RankSearch {
 public:
     RankSearch(Communicator& comm, const MpiOptions& options);
 
-    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's.
-    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
+    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. `indexed`: borrowed; its
+    /// `pairs` are then the output. Throws Error.
+    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
+                const IndexedCall* indexed = nullptr);
     /// In place of run() on a rank whose call was cancelled before it began: ends it on all. Does not throw.
     void skip() noexcept;
     /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
@@ -42,16 +53,19 @@ public:
 private:
     struct Task;
     void find(Task& task);
+    void join(Task& task);
     void find_at_master(Task& task);
     PlantedOctants plant(Task& task, const BoxSource& own);
     RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
     void search(Task& task, const Engine::Request& own_octants);
-    void build(Call& call);
+    void build(Task& task, Call& call);
     void count(Task& task, Call& call);
     void find_octal(Task& task, Call& call);
     void find_ascending(Task& task, Call& call);
     bool list_octal(Call& call, std::uint64_t most);
     void find_windows(Task& task, Call& call);
+    void find_indexed(Task& task, Call& call);
+    void name_found(const Task& task, std::vector<Pair64>& pairs);
     std::uint64_t allowed(Task& task, const PiecePlan& plan) const;
 
     Communicator& comm_;

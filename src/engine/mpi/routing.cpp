@@ -1,12 +1,9 @@
 #include "engine/mpi/routing.hpp"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <mutex>
 
 #include "base/stop.hpp"
-#include "engine/mpi/bad_object.hpp"
 #include "geometry/box_kernel.hpp"
 #include "octree/octants_of.hpp"
 
@@ -17,7 +14,6 @@ namespace {
 constexpr std::size_t batch_size = 256;
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t block_size = 1 << 16;      // objects
-constexpr std::size_t fetched_ahead = 24;        // positions: objects go to many places in turn
 
 }  // namespace
 
@@ -42,7 +38,7 @@ void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
         for (std::size_t node = 0; node < loads.size(); ++node) loads[node].add(own[node]);
     });
     for (const Block& block : blocks_) {
-        if (block.bad) refuse(*block.bad);
+        if (block.bad) call_.refuse(source_, *block.bad);
     }
 }
 
@@ -94,11 +90,6 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
                 {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
         }
     }
-}
-
-void Routing::refuse(std::size_t object) const {
-    refuse_object(source_, object, {call_.begins[0], call_.begins[1]},
-                  [&](std::size_t number) { return call_.position(number); });
 }
 
 void Routing::address(Executor& executor, const OctantOwners& owners) {
@@ -169,6 +160,19 @@ std::uint64_t Routing::shared_objects() const {
     return objects;
 }
 
+/// Calls place(object, where), objects ascending; next[rank] is where the next of a rank's goes.
+template <typename Place>
+void Routing::for_each_copy(const Block& block, RankCounts& next, const Place& place) const {
+    const std::uint32_t* owners = block.owners.data();
+    for (std::size_t object = block.objects.begin; object < block.objects.end; ++object) {
+        if (places_[object] != several_) {
+            place(object, next[places_[object]]++);
+        } else {
+            for (std::uint32_t left = *owners++; left > 0; --left) place(object, next[*owners++]++);
+        }
+    }
+}
+
 void Routing::pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const {
     // Where each block's go: by rank, then by block.
     std::vector<RankCounts> places(blocks_.size(), RankCounts(owners_->ranks()));
@@ -183,27 +187,14 @@ void Routing::pack(Executor& executor, unsigned set, const Objects& objects, Obj
     out.resize(std::size_t(at));
     const std::size_t begin = set == 0 ? 0 : std::size_t(call_.sizes[0]);
     out.copying(objects, [&](const auto& copy) {
-        executor.for_each(blocks_.size(), [&](std::size_t b) {
-            if (blocks_[b].set != set) return;
-            std::uint64_t* const next = places[b].data();
-            const std::uint32_t* owners = blocks_[b].owners.data();
-            const ObjectBlock objects_of_block = blocks_[b].objects;
-            std::uint32_t* const positions = out.positions.data();
-            const std::uint32_t first_position = std::uint32_t(call_.begins[set]);
-            for (std::size_t object = objects_of_block.begin; object < objects_of_block.end; ++object) {
-                const std::size_t from = object - begin;
-                const auto place = [&](std::uint32_t owner) {
-                    const std::size_t to = std::size_t(next[owner]++);
-                    copy(to, from);
-                    positions[to] = std::uint32_t(first_position + from);
-                    hwy::Prefetch(positions + to + fetched_ahead);
-                };
-                if (places_[object] != several_) {
-                    place(places_[object]);
-                } else {
-                    for (std::uint32_t left = *owners++; left > 0; --left) place(*owners++);
-                }
-            }
+        out.naming(call_.indices[set], call_.begins[set], [&](const auto& name) {
+            executor.for_each(blocks_.size(), [&](std::size_t b) {
+                if (blocks_[b].set != set) return;
+                for_each_copy(blocks_[b], places[b], [&](std::size_t object, std::uint64_t to) {
+                    copy(std::size_t(to), object - begin);
+                    name(std::size_t(to), object - begin);
+                });
+            });
         });
     });
 }

@@ -59,7 +59,8 @@ private:
     void find(Block& block, std::span<OctantLoad> loads);
     void address(Block& block);
     void share(Block& block, std::span<const Crosser> crossers) const;
-    [[noreturn]] void refuse(std::size_t object) const;
+    template <typename Place>
+    void for_each_copy(const Block& block, RankCounts& next, const Place& place) const;
 
     const JointCall& call_;
     const BoxSource& source_;
