@@ -17,12 +17,13 @@ CORE = ["base", "parallel", "geometry", "octree", "pipeline", "engine", "scene",
 USES = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
 USES["samples"] = {"base", "geometry"}
 USES["io"] = {"base", "geometry"}
-BENCH = ["baselines", "machine", "paper", "cluster"]
+BENCH = ["baselines", "machine", "paper", "cluster", "scaling"]
 USES["baselines"] = {"base", "octree"}
 USES["machine"] = set()
 USES["paper"] = {"base", "baselines", "machine", "samples"}
 USES["cluster"] = {"base", "engine", "machine", "paper", "samples"}
-USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster"}
+USES["scaling"] = {"machine", "samples", "cluster"}
+USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster", "scaling"}
 
 PURPOSE = {
     "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
@@ -30,7 +31,8 @@ PURPOSE = {
     "pipeline": "filters and their composition", "engine": "where and how pairs are found",
     "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
     "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
-    "paper": "the paper's section 5 again", "cluster": "what ranks cost", "cli": "the program",
+    "paper": "the paper's section 5 again", "cluster": "what ranks cost", "scaling": "time by threads and ranks",
+    "cli": "the program",
 }
 
 # First part of a third-party include: the folders that may use it.
@@ -38,8 +40,8 @@ THIRD_PARTY = {
     "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "scene"}, "assimp": {"io"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
-    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "service", "cli"},
-    "nlohmann": {"io", "machine", "paper", "cluster", "service", "cli"},
+    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "service", "cli"},
+    "nlohmann": {"io", "machine", "paper", "cluster", "scaling", "service", "cli"},
 }
 # What a public header of a component cannot do without: its users have it.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}

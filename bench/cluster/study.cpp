@@ -1,49 +1,21 @@
 #include "cluster/study.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <tuple>
 
-#include "base/descriptor.hpp"
 #include "cluster/mpirun.hpp"
+#include "cluster/temporary_file.hpp"
 #include "machine/machine.hpp"
-#include "octopair/error.hpp"
 
 namespace octopair::cluster {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file of this process's, gone at its end.
-class TemporaryFile {
-public:
-    TemporaryFile() : path_((fs::temp_directory_path() / "octopair-cluster-XXXXXX").string()) {
-        const Descriptor file(::mkstemp(path_.data()));
-        if (!file.open()) throw Error(ErrorCode::io_failed, path_ + ": cannot create");
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() { ::unlink(path_.c_str()); }
-
-    const std::string& path() const { return path_; }
-    std::string content() const {
-        std::ifstream in(path_);
-        std::ostringstream text;
-        text << in.rdbuf();
-        return text.str();
-    }
-
-private:
-    std::string path_;
-};
 
 const Measured* on_one_rank(const std::vector<Measured>& all, const Setup& setup) {
     const auto found = std::ranges::find_if(

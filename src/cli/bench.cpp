@@ -138,6 +138,7 @@ void add_bench(CLI::App& app, Action& action) {
     add_paper(*command, action);
 #ifdef OCTOPAIR_WITH_MPI
     add_bench_cluster(*command, action);
+    add_bench_scaling(*command, action);
 #endif
 }
 

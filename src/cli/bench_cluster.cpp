@@ -1,14 +1,12 @@
 // octopair bench cluster: what a call costs each of so many ranks (bench/cluster).
 //
 // The program has itself measured: it runs under mpirun, once for each number of ranks, and reads what the first rank wrote.
-#include <algorithm>
-#include <limits>
 #include <memory>
 
+#include "cli/bench_options.hpp"
 #include "cli/cluster.hpp"
 #include "cli/failure.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
 #include "cli/study_output.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/words.hpp"
@@ -16,7 +14,6 @@
 #include "cluster/study.hpp"
 #include "io/atomic_file.hpp"
 #include "octopair/error.hpp"
-#include "samples/scenes.hpp"
 
 namespace octopair::cli {
 
@@ -74,27 +71,6 @@ int run_cluster(const ClusterRequest& request) {
     return 0;
 }
 
-/// From 1 on. Throws Error{usage} that names the option.
-std::uint64_t parse_some(const std::string& name, const std::string& text) {
-    const std::uint64_t number = parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
-    if (number == 0) throw Error(ErrorCode::usage, name + ": 0 is less than 1");
-    return number;
-}
-
-template <typename Number>
-void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
-    command
-        .add_option_function<std::vector<std::string>>(
-            name,
-            [&numbers, name](const std::vector<std::string>& texts) {
-                numbers.clear();
-                for (const std::string& text : texts) numbers.push_back(Number(parse_some(name, text)));
-                std::ranges::sort(numbers);
-            },
-            what)
-        ->type_name("N");
-}
-
 void add_arrangement(CLI::App& command, const std::shared_ptr<ClusterRequest>& request) {
     command
         .add_option_function<std::vector<std::string>>(
@@ -123,24 +99,11 @@ void add_arrangement(CLI::App& command, const std::shared_ptr<ClusterRequest>& r
 void add_bench_cluster(CLI::App& bench, Action& action) {
     CLI::App* command = bench.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
     const auto request = std::make_shared<ClusterRequest>();
-    command
-        ->add_option_function<std::vector<std::string>>(
-            "--scene",
-            [request](const std::vector<std::string>& kinds) {
-                for (const std::string& kind : kinds) (void)samples::scene_description(kind);
-                request->plan.scenes = kinds;
-            },
-            "kinds of octopair generate (default uniform)")
-        ->type_name("KIND");
+    add_scenes(*command, request->plan.scenes);
     add_numbers(*command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
     add_numbers(*command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
     add_arrangement(*command, request);
-    command
-        ->add_option_function<std::string>(
-            "--rounds",
-            [request](const std::string& text) { request->plan.rounds = unsigned(parse_some("--rounds", text)); },
-            "calls of each, of which the median counts (default 9)")
-        ->type_name("R");
+    add_rounds(*command, request->plan.rounds);
     command->add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
         ->type_name("COMMAND");
     command->add_option("--json", request->json, "write every rank's costs as JSON")->type_name("FILE");

@@ -53,9 +53,12 @@ _octopair() {
     case $subcommand in
         bench)
             if ((COMP_CWORD == 2)); then
-                mapfile -t COMPREPLY < <(compgen -W "paper cluster" -- "$current")
+                mapfile -t COMPREPLY < <(compgen -W "paper cluster scaling" -- "$current")
             elif [ "${COMP_WORDS[2]}" = cluster ]; then
                 mapfile -t COMPREPLY < <(compgen -W "--scene --objects --ranks --arrangement --ranks-per-machine --rounds --mpirun --json --quiet --help" -- "$current")
+            elif [ "${COMP_WORDS[2]}" = scaling ]; then
+                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --weak --cores --threads-per-rank --rounds --mpirun --json
+                    --quiet --help" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --machines --latency --bandwidth --mpirun --json --quiet --help" -- "$current")
             fi ;;

@@ -12,6 +12,7 @@ using Action = std::function<int()>;
 void add_bench(CLI::App& app, Action& action);
 /// Of `bench`.
 void add_bench_cluster(CLI::App& bench, Action& action);
+void add_bench_scaling(CLI::App& bench, Action& action);
 void add_cancel(CLI::App& app, Action& action);
 void add_detect(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);

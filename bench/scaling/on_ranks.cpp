@@ -1,0 +1,175 @@
+#include "scaling/on_ranks.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <memory>
+#include <span>
+#include <thread>
+
+#include "octopair/error.hpp"
+#include "octopair/mpi.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::scaling {
+
+namespace {
+
+int rank_of(MPI_Comm comm) {
+    int rank = 0;
+    MPI_Comm_rank(comm, &rank);
+    return rank;
+}
+
+/// Parts of scenes that this rank gives: made once, also if several setups want the begin of one.
+class Slices {
+public:
+    explicit Slices(std::string scene) : scene_(std::move(scene)) {}
+
+    /// Objects [begin, end) of so many. Those of one begin are asked for with the largest end first.
+    std::span<const Box3f> slice(std::uint64_t objects, std::uint64_t begin, std::uint64_t end) {
+        std::vector<Box3f>& boxes = made_[{objects, begin}];
+        if (boxes.empty()) boxes = make(objects, begin, end);
+        return std::span<const Box3f>(boxes).first(std::size_t(end - begin));
+    }
+
+private:
+    std::vector<Box3f> make(std::uint64_t objects, std::uint64_t begin, std::uint64_t end) const {
+        std::vector<Box3f> own;
+        own.reserve(std::size_t(end - begin));
+        std::uint64_t at = 0;
+        samples::generate_scene({scene_, objects, 1}, [&](std::span<const Box3f> boxes) {
+            const std::uint64_t first = std::clamp(begin, at, at + boxes.size());
+            const std::uint64_t last = std::clamp(end, at, at + boxes.size());
+            own.insert(own.end(), boxes.begin() + std::ptrdiff_t(first - at),
+                       boxes.begin() + std::ptrdiff_t(last - at));
+            at += boxes.size();
+        });
+        return own;
+    }
+
+    std::string scene_;
+    std::map<std::pair<std::uint64_t, std::uint64_t>, std::vector<Box3f>> made_;
+};
+
+/// All ranks wait for each other, without a core: MPI's own waits look about all the time.
+void rest(MPI_Comm comm) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(comm, &request);
+    for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), done == 0;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+/// One setup, on the ranks that take part in it and on those that do not.
+class Contender {
+public:
+    Contender(MPI_Comm all, Entrant entrant) : entrant_(std::move(entrant)) {
+        const int part = rank_of(all) < int(entrant_.setup.processes()) ? 0 : MPI_UNDEFINED;
+        MPI_Comm_split(all, part, rank_of(all), &comm_);
+    }
+    Contender(const Contender&) = delete;
+    Contender& operator=(const Contender&) = delete;
+    ~Contender() {
+        engine_.reset();
+        if (comm_ != MPI_COMM_NULL) MPI_Comm_free(&comm_);
+    }
+
+    const Entrant& entrant() const { return entrant_; }
+
+    void prepare(Slices& slices) {
+        if (comm_ == MPI_COMM_NULL) return;
+        const std::uint64_t rank = std::uint64_t(rank_of(comm_)), ranks = entrant_.setup.processes();
+        own_ = slices.slice(entrant_.objects, entrant_.objects * rank / ranks, entrant_.objects * (rank + 1) / ranks);
+    }
+    /// Collective among those that take part.
+    void make_engine() {
+        if (comm_ == MPI_COMM_NULL) return;
+        engine_ = entrant_.setup.local() ? make_local_engine(entrant_.setup.threads)
+                                         : make_mpi_engine(comm_, {.threads = entrant_.setup.threads});
+    }
+    /// Likewise.
+    void call(bool counts, const std::stop_token& stop) {
+        if (comm_ == MPI_COMM_NULL) return;
+        Options options;
+        options.order = Order::octal;
+        MPI_Barrier(comm_);
+        const auto begin = std::chrono::steady_clock::now();
+        entrant_.pairs = engine_->find_pairs({own_, {}}, pairs_, options, stop).pairs;
+        MPI_Barrier(comm_);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        if (counts) entrant_.seconds.push_back(took.count());
+    }
+
+private:
+    Entrant entrant_;
+    MPI_Comm comm_ = MPI_COMM_NULL;
+    std::span<const Box3f> own_;
+    std::unique_ptr<Engine> engine_;
+    PairList pairs_;
+};
+
+/// Ranks that have no part, or ended early, sleep until all are there.
+void in_turn(MPI_Comm comm, const std::function<void()>& part) {
+    std::exception_ptr failure;
+    try {
+        part();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    rest(comm);
+    if (failure) std::rethrow_exception(failure);
+}
+
+void check_ranks(MPI_Comm comm, const std::vector<Setup>& setups) {
+    int ranks = 0;
+    MPI_Comm_size(comm, &ranks);
+    for (const Setup& setup : setups) {
+        if (setup.processes() <= unsigned(ranks)) continue;
+        throw Error(ErrorCode::usage, setup_text(setup) + " cannot be measured on " + setup_text({unsigned(ranks)}));
+    }
+}
+
+void check_pairs(const std::vector<Entrant>& entrants) {
+    std::map<std::uint64_t, const Entrant*> of_objects;
+    for (const Entrant& entrant : entrants) {
+        const Entrant& first = *of_objects.try_emplace(entrant.objects, &entrant).first->second;
+        if (entrant.pairs == first.pairs) continue;
+        throw Error(ErrorCode::engine_failed, setup_text(entrant.setup) + " found " + std::to_string(entrant.pairs) +
+                                                  " pairs, " + setup_text(first.setup) + ' ' +
+                                                  std::to_string(first.pairs));
+    }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): who, what, how often, how they agree, until when.
+Contest hold_on_ranks(MPI_Comm comm, Contest contest, const Turns& turns, const Together& together,
+                      const std::stop_token& stop) {
+    together([&] { check_ranks(comm, turns.setups); });
+    Slices slices(contest.scene);
+    std::vector<std::unique_ptr<Contender>> contenders;
+    contenders.reserve(turns.setups.size());
+    for (const Setup& setup : turns.setups) {
+        contenders.push_back(
+            std::make_unique<Contender>(comm, Entrant{setup, contest.objects_of(setup), 0, std::vector<double>()}));
+    }
+    together([&] {
+        for (const auto& contender : contenders) contender->prepare(slices);
+    });
+    for (const auto& contender : contenders) {
+        together([&] { in_turn(comm, [&] { contender->make_engine(); }); });
+    }
+    for (unsigned round = 0; round <= turns.rounds; ++round) {
+        for (const auto& contender : contenders) {
+            together([&] { in_turn(comm, [&] { contender->call(round > 0, stop); }); });
+        }
+    }
+    for (const auto& contender : contenders) contest.entrants.push_back(contender->entrant());
+    together([&] {
+        if (rank_of(comm) == 0) check_pairs(contest.entrants);
+    });
+    return contest;
+}
+
+}  // namespace octopair::scaling

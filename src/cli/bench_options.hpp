@@ -1,0 +1,61 @@
+// Options that subcommands of `bench` share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cli/numbers.hpp"
+#include "octopair/error.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::cli {
+
+/// From 1 on. Throws Error{usage} that names the option.
+inline std::uint64_t parse_some(const std::string& name, const std::string& text) {
+    const std::uint64_t number = parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
+    if (number == 0) throw Error(ErrorCode::usage, name + ": 0 is less than 1");
+    return number;
+}
+
+/// Numbers from 1 on, which come to stand in ascending order.
+template <typename Number>
+void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [&numbers, name](const std::vector<std::string>& texts) {
+                numbers.clear();
+                for (const std::string& text : texts) numbers.push_back(Number(parse_some(name, text)));
+                std::ranges::sort(numbers);
+            },
+            what)
+        ->type_name("N");
+}
+
+/// --scene, several times.
+inline void add_scenes(CLI::App& command, std::vector<std::string>& scenes) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--scene",
+            [&scenes](const std::vector<std::string>& kinds) {
+                for (const std::string& kind : kinds) (void)samples::scene_description(kind);
+                scenes = kinds;
+            },
+            "kinds of octopair generate (default uniform)")
+        ->type_name("KIND");
+}
+
+/// --rounds, of which the median counts.
+inline void add_rounds(CLI::App& command, unsigned& rounds) {
+    command
+        .add_option_function<std::string>(
+            "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_some("--rounds", text)); },
+            "calls of each, of which the median counts (default " + std::to_string(rounds) + ')')
+        ->type_name("R");
+}
+
+}  // namespace octopair::cli
