@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <list>
 #include <map>
 #include <memory>
 #include <span>
@@ -22,16 +23,19 @@ int rank_of(MPI_Comm comm) {
     return rank;
 }
 
-/// Parts of scenes that this rank gives: made once, also if several setups want the begin of one.
+/// Parts of scenes that this rank gives; one that begins as another does, and is no longer, lies in that one's memory.
 class Slices {
 public:
     explicit Slices(std::string scene) : scene_(std::move(scene)) {}
 
-    /// Objects [begin, end) of so many. Those of one begin are asked for with the largest end first.
+    /// Objects [begin, end) of so many; valid as long as this is.
     std::span<const Box3f> slice(std::uint64_t objects, std::uint64_t begin, std::uint64_t end) {
-        std::vector<Box3f>& boxes = made_[{objects, begin}];
-        if (boxes.empty()) boxes = make(objects, begin, end);
-        return std::span<const Box3f>(boxes).first(std::size_t(end - begin));
+        const auto length = std::size_t(end - begin);
+        auto found = std::ranges::find_if(made_, [&](const Made& made) {
+            return made.objects == objects && made.begin == begin && made.boxes.size() >= length;
+        });
+        if (found == made_.end()) found = made_.insert(found, {objects, begin, make(objects, begin, end)});
+        return std::span<const Box3f>(found->boxes).first(length);
     }
 
 private:
@@ -50,7 +54,11 @@ private:
     }
 
     std::string scene_;
-    std::map<std::pair<std::uint64_t, std::uint64_t>, std::vector<Box3f>> made_;
+    struct Made {
+        std::uint64_t objects, begin;
+        std::vector<Box3f> boxes;
+    };
+    std::list<Made> made_;  // of which none moves
 };
 
 /// All ranks wait for each other, without a core: MPI's own waits look about all the time.
