@@ -23,8 +23,10 @@ def load(path):
 def machine(results):
     """What measured."""
     others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
-              *results.glob("service.json"), *results.glob("machines.json")]
+              *results.glob("service.json"), *results.glob("machines.json"), *results.glob("scaling*.json"),
+              *results.glob("cluster.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
+    files = [file.get("machine", file) for file in files]
     said = files[0]
     commits = sorted({file["commit"] for file in files})
     return (f"Measured on {said['processor']}, {said['cores']} cores, with {said['compiler']}; octopair "
@@ -288,10 +290,71 @@ def service_aims(results):
     return "\n".join(lines)
 
 
+def scaling_results(results):
+    """Each scene with its title."""
+    for path in [results / "scaling.json", *results.glob("scaling_weak.json")]:
+        for result in load(path)["results"]:
+            yield f"{result['scene']}, {result['objects']:,}{' a core' if result['weak'] else ''}", result
+
+
+def scaling(results):
+    """A row for each number of threads and of ranks on each scene."""
+    lines = ["| scene, objects | on | milliseconds | times one thread | efficiency | against threads |",
+             "|---|---|--:|--:|--:|--:|"]
+    for title, result in scaling_results(results):
+        for row in result["rows"]:
+            threads = f"{row['threads']} thread{'s' if row['threads'] > 1 else ''}"
+            ranks = f"{row['ranks']} rank{'s' if row['ranks'] > 1 else ''}"
+            on = threads if row["engine"] == "local" else ranks if row["threads"] == 1 else f"{ranks} x {threads}"
+            against = f"{row['against_threads']:.2f} x" if "against_threads" in row else ""
+            cells = [title, on, milliseconds(row["median_seconds"]), f"{row['speedup']:.2f}",
+                     f"{100 * row['efficiency']:.0f}%", against]
+            lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def scaling_aims(results):
+    """Aims of ranks against threads, and what was measured."""
+    lines = ["| scene, objects | what | aim | measured | |", "|---|---|--:|--:|---|"]
+    for title, result in scaling_results(results):
+        for aim in result["aims"]:
+            many = "s" if aim["cores"] > 1 else ""
+            cells = [title, f"{aim['cores']} rank{many} / {aim['cores']} thread{many}", f"at most {aim['most']:g} x",
+                     f"{aim['reached']:.2f} x", "" if aim["kept"] else "missed"]
+            lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def cluster(results):
+    """A row for each number of ranks in each call."""
+    lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object |",
+             "|---|--:|--:|--:|--:|--:|--:|"]
+    runs = load(results / "cluster.json")["runs"]
+
+    def computing(run):
+        return [sum(seconds for step, seconds in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
+
+    def call(run):
+        return run["scene"], run["objects"], run.get("arrangement", "shared")
+
+    one = {call(run): computing(run)[0] for run in runs if run["ranks"] == 1}
+    for run in sorted(runs, key=call):
+        seconds, ranks = computing(run), run["ranks"]
+        sums = {name: sum(rank[name] for rank in run["together"]) for name in ("shared_objects", "bytes_sent")}
+        paper = ", as in the paper" if call(run)[2] == "paper" else ""
+        efficiency = f"{100 * one[call(run)] / (ranks * max(seconds)):.1f}%" if call(run) in one else "–"
+        cells = [f"{run['scene']}, {run['objects']:,}{paper}", str(ranks), milliseconds(max(seconds)),
+                 f"{max(seconds) * ranks / sum(seconds):.3f}", efficiency,
+                 f"{100 * sums['shared_objects'] / run['objects']:.2f}%", f"{sums['bytes_sent'] / run['objects']:.1f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
           "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
-          "service_crowds": service_crowds, "service_aims": service_aims}
+          "service_crowds": service_crowds, "service_aims": service_aims, "scaling": scaling,
+          "scaling_aims": scaling_aims, "cluster": cluster}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
     BLOCKS[f"peers_{table}"] = lambda results, table=table: peers(results, table)
 

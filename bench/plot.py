@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Draws what was measured, as SVG.
 
-    bench/plot.py FOLDER [--paper FILE] [--peers FILE...]
+    bench/plot.py FOLDER [--paper FILE] [--peers FILE...] [--scaling FILE...] [--cluster FILE]
 
-FILE: the JSON of `octopair bench paper`, and of octopair_compare. Written to FOLDER: figure-5.svg and components.svg from
-the first, peers-1m.svg from the comparisons of a million objects on one thread. The same files give the same bytes. Needs
-Matplotlib (scripts/setup bench), which Debian has for its own Python.
+FILE: the JSON of `octopair bench paper`, of octopair_compare, of `octopair bench scaling` and of `octopair bench cluster`.
+Written to FOLDER: figure-5.svg and components.svg from the first, peers-1m.svg from the comparisons of a million objects on
+one thread, scaling.svg, cluster-efficiency.svg and cluster-steps.svg. The same files give the same bytes. Needs Matplotlib
+(scripts/setup bench), which Debian has for its own Python.
 """
 import argparse
 import json
@@ -31,6 +32,10 @@ STYLE = {
     "axes.grid": True, "axes.axisbelow": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "figure.facecolor": "white",
     "axes.titlesize": 11, "legend.frameon": False, "legend.fontsize": 9,
 }
+
+
+def load(path):
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def save(figure, folder, name):
@@ -175,20 +180,152 @@ def peers(results, folder):
     save(figure, folder, "peers-1m.svg")
 
 
+def core_axis(axes, counts, label):
+    """Logarithmic, with a mark at each count."""
+    axes.set_xscale("log", base=2)
+    axes.xaxis.set_major_locator(ticker.FixedLocator(sorted(counts)))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    axes.xaxis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+    axes.set_xlabel(label)
+
+
+def panels(count):
+    """A figure of so many panels, up to three in a row, and these."""
+    columns = 2 if count in (2, 4) else min(count, 3)
+    rows = math.ceil(count / columns)
+    figure, grid = pyplot.subplots(rows, columns, figsize=(9, 3.2 * rows), squeeze=False, layout="constrained")
+    for axes in grid.flat[count:]:
+        axes.set_visible(False)
+    return figure, list(grid.flat[:count])
+
+
+def legend_above(figure, all_axes):
+    """One for all panels, each label once."""
+    labels = {label: handle for axes in all_axes for handle, label in zip(*axes.get_legend_handles_labels())}
+    inches = 0.35
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - inches / figure.get_figheight()))
+    figure.legend(labels.values(), labels.keys(), loc="upper center", ncols=len(labels))
+
+
+def engine_text(row):
+    """Threads, ranks, or ranks of several threads."""
+    if row["engine"] == "local":
+        return "threads"
+    return "ranks" if row["threads"] == 1 else f"ranks of {row['threads']} threads"
+
+
+def draw_speedups(axes, result):
+    """A line for each kind of engine: objects in the same time, against one thread."""
+    engines = {}
+    for row in result["rows"]:
+        engines.setdefault(engine_text(row), []).append(row)
+    cores = sorted({row["cores"] for row in result["rows"]})
+    axes.plot(cores, cores, "--", color=GREY, linewidth=1, label="each core as good as one")
+    for (name, rows), color in zip(engines.items(), LINES):
+        axes.plot([row["cores"] for row in rows], [row["speedup"] for row in rows], "o-", color=color, markersize=4,
+                  label=name)
+    core_axis(axes, cores, "cores")
+    axes.set_yscale("log", base=2)
+    axes.yaxis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+    axes.set_title(f"{result['scene']}, {result['objects']:,}{' a core' if result['weak'] else ''}")
+
+
+def scaling(results, folder):
+    """Speedup by cores, a panel for each scene."""
+    figure, all_axes = panels(len(results))
+    for axes, result in zip(all_axes, results):
+        draw_speedups(axes, result)
+    figure.supylabel("times the objects of one thread", fontsize=10)
+    legend_above(figure, all_axes)
+    save(figure, folder, "scaling.svg")
+
+
+RANK_STEPS = {"join": BLACK, "plant": GREEN, "route": PURPLE, "pack": YELLOW, "build": ORANGE, "merge": RED, "scan": SKY,
+              "order": BLUE}
+
+
+def rank_seconds(costs):
+    """Processor seconds of a rank's computing."""
+    return sum(seconds for step, seconds in costs["cpu_seconds"].items() if step in RANK_STEPS)
+
+
+def calls_of(cluster):
+    """The runs of each call that was measured on one rank too, by number of ranks, under what tells it from others."""
+    calls = {}
+    for run in cluster["runs"]:
+        name = f"{run['scene']}, {run['objects']:,}"
+        if run.get("arrangement") == "paper":
+            name += ", as in the paper"
+        calls.setdefault(name, {})[run["ranks"]] = run
+    return {name: runs for name, runs in calls.items() if 1 in runs}
+
+
+def cluster_efficiency(cluster, folder):
+    """Of the critical path: the seconds of one rank, over what so many slowest ranks take."""
+    figure, axes = pyplot.subplots(figsize=(9, 3.8), layout="constrained")
+    calls = calls_of(cluster)
+    for i, (name, runs) in enumerate(calls.items()):
+        one = rank_seconds(runs[1]["alone"][0])
+        ranks = sorted(runs)
+        shares = [100 * one / (k * max(map(rank_seconds, runs[k]["alone"]))) for k in ranks]
+        axes.plot(ranks, shares, "o-" if i < len(LINES) else "s--", color=LINES[i % len(LINES)], markersize=4, label=name)
+    core_axis(axes, {k for runs in calls.values() for k in runs}, "ranks")
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("efficiency of the critical path, %")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    save(figure, folder, "cluster-efficiency.svg")
+
+
+def draw_steps(axes, runs):
+    """A bar for each number of ranks, as high as so many slowest ranks take; in it what all ranks' steps add up to."""
+    ranks = sorted(runs)
+    bottom = [0.0] * len(ranks)
+    for step, color in RANK_STEPS.items():
+        sums = [1e3 * sum(costs["cpu_seconds"].get(step, 0) for costs in runs[k]["alone"]) for k in ranks]
+        if any(sums):
+            axes.bar(range(len(ranks)), sums, 0.7, bottom=bottom, color=color, label=step)
+        bottom = [a + b for a, b in zip(bottom, sums)]
+    slowest = [1e3 * k * max(map(rank_seconds, runs[k]["alone"])) for k in ranks]
+    axes.bar(range(len(ranks)), [a - b for a, b in zip(slowest, bottom)], 0.7, bottom=bottom, color="#dddddd",
+             label="behind the slowest")
+    axes.set_xticks(range(len(ranks)), ranks)
+    axes.set_xlabel("ranks")
+    axes.yaxis.set_major_formatter(ticker.StrMethodFormatter("{x:,.0f}"))
+    axes.grid(False, axis="x")
+
+
+def cluster_steps(cluster, folder):
+    """What a call costs all ranks together, a panel for each."""
+    calls = calls_of(cluster)
+    figure, all_axes = panels(len(calls))
+    for axes, (name, runs) in zip(all_axes, calls.items()):
+        draw_steps(axes, runs)
+        axes.set_title(name)
+    figure.supylabel("milliseconds of all ranks' processors", fontsize=10)
+    legend_above(figure, all_axes)
+    save(figure, folder, "cluster-steps.svg")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--paper", type=pathlib.Path, metavar="FILE")
     parser.add_argument("--peers", type=pathlib.Path, nargs="+", default=[], metavar="FILE")
+    parser.add_argument("--scaling", type=pathlib.Path, nargs="+", default=[], metavar="FILE")
+    parser.add_argument("--cluster", type=pathlib.Path, metavar="FILE")
     request = parser.parse_args()
     request.folder.mkdir(parents=True, exist_ok=True)
     pyplot.rcParams.update(STYLE)
     if request.paper:
-        study = json.loads(request.paper.read_text(encoding="utf-8"))
+        study = load(request.paper)
         figure_5(study, request.folder)
         components(study, request.folder)
-    peers([result for path in request.peers for result in json.loads(path.read_text(encoding="utf-8"))["results"]],
-          request.folder)
+    peers([result for path in request.peers for result in load(path)["results"]], request.folder)
+    if request.scaling:
+        scaling([result for path in request.scaling for result in load(path)["results"]], request.folder)
+    if request.cluster:
+        cluster_efficiency(load(request.cluster), request.folder)
+        cluster_steps(load(request.cluster), request.folder)
 
 
 if __name__ == "__main__":
