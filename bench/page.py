@@ -23,8 +23,7 @@ def load(path):
 def machine(results):
     """What measured."""
     others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
-              *results.glob("service.json"), *results.glob("machines.json"), *results.glob("scaling*.json"),
-              *results.glob("cluster.json")]
+              *results.glob("service.json"), *results.glob("scaling*.json"), *results.glob("cluster.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
     files = [file.get("machine", file) for file in files]
     said = files[0]
@@ -64,7 +63,10 @@ def paper(results):
 
 
 def machines(results):
-    return verbatim((results / "machines.txt").read_text(encoding="utf-8"))
+    """On which machine, and the tables."""
+    said = load(results / "machines.json")
+    return (f"Measured on {said['processor']}, {said['cores']} cores, commit {said['commit']}.\n\n"
+            + verbatim((results / "machines.txt").read_text(encoding="utf-8")))
 
 
 def scenes(results):
