@@ -37,7 +37,7 @@ PURPOSE = {
 
 # First part of a third-party include: the folders that may use it.
 THIRD_PARTY = {
-    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "scene"}, "assimp": {"io"},
+    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "engine", "scene"}, "assimp": {"io"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
     "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "service", "cli"},

@@ -112,11 +112,28 @@ void add_outcome(CLI::App& command, DetectRequest& request) {
         command.add_option("--output", request.output,
                            "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)");
     output->type_name("FILE");
+    command
+        .add_option_function<std::string>(
+            "--index-type",
+            [&request](const std::string& word) {
+                check_word({"--index-type", {"uint32", "uint64"}, {}}, word);
+                request.wide_indices = word == "uint64";
+            },
+            "of indices in .npy (default uint32; with --engine mpi uint64 where there are more objects)")
+        ->type_name("TYPE");
     add_order_options(command, request, "the first N pairs (with --events: rows)");
     command.add_flag("--count-only", request.count_only, "print the number of pairs alone")->excludes(output);
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
     command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
+}
+
+void check_index_type(const DetectRequest& request) {
+    if (!request.wide_indices) return;
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--index-type uint64: " + why); };
+    if (request.engine.kind != EngineKind::mpi) refuse("only with --engine mpi");
+    const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
+    if (!npy && !request.count_only) refuse("only in an .npy file");
 }
 
 }  // namespace
@@ -134,6 +151,7 @@ void add_detect(CLI::App& app, Action& action) {
         check_engine_choice(request->engine);
         if (!request->output.empty()) (void)io::pair_format(request->output);
         if (request->events) check_event_options(*request);
+        check_index_type(*request);
         action = [request] { return run_detect(*request); };
     });
 }

@@ -25,6 +25,7 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
+    bool wide_indices = false;  ///< uint64 in .npy files
     EngineChoice engine;
     std::string stats;  ///< a file, or empty
     bool quiet = false;

@@ -9,6 +9,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/npy_header.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::cli {
 
@@ -23,15 +24,27 @@ public:
     }
 
     void write(std::uint64_t frame, const PairList& piece) override {
+        write_piece(frame, io::NpyType::uint32, piece.size(), piece.chunks());
+    }
+    void write(std::uint64_t frame, std::span<const Pair64> piece) override {
+        write_piece(frame, io::NpyType::uint64, piece.size(), std::span<const std::span<const Pair64>>(&piece, 1));
+    }
+    void finish() override {}
+
+private:
+    // NOLINTNEXTLINE(readability-function-size): of which frame, what, how many, where.
+    template <typename AnyPair>
+    void write_piece(std::uint64_t frame, io::NpyType type, std::uint64_t pairs,
+                     std::span<const std::span<const AnyPair>> chunks) {
         if (moving_) open(io::frame_path(path_, frame));
-        const std::vector<std::uint64_t> sizes = cluster_.comm().all_gather(piece.size());
+        const std::vector<std::uint64_t> sizes = cluster_.comm().all_gather(pairs);
         const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t(0));
         const std::uint64_t before = std::accumulate(sizes.begin(), sizes.begin() + cluster_.rank(), std::uint64_t(0));
-        const std::string header = io::make_npy_header(io::NpyType::uint32, std::array<std::uint64_t, 2>{all, 2});
+        const std::string header = io::make_npy_header(type, std::array<std::uint64_t, 2>{all, 2});
         cluster_.together([&] {
             if (file_) file_->write(header);
-            std::uint64_t at = header.size() + before * sizeof(Pair);
-            for (const auto chunk : piece.chunks()) {
+            std::uint64_t at = header.size() + before * sizeof(AnyPair);
+            for (const auto chunk : chunks) {
                 if (file_) file_->write(std::as_bytes(chunk));
                 if (part_) part_->write_at(std::exchange(at, at + chunk.size_bytes()), std::as_bytes(chunk));
             }
@@ -43,9 +56,6 @@ public:
             file_.reset();
         });
     }
-    void finish() override {}
-
-private:
     void open(const std::string& path) {
         std::string temporary;
         cluster_.together([&] {
@@ -80,6 +90,9 @@ public:
         cluster_.together([&] {
             if (writer_) writer_->end_frame();
         });
+    }
+    void write(std::uint64_t, std::span<const Pair64>) override {
+        throw Error(ErrorCode::usage, "indices of 64 bits go to .npy files alone");
     }
     void finish() override {
         cluster_.together([&] {

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stop_token>
 
 #include "cli/cluster.hpp"
 #include "cli/detection.hpp"
 #include "io/pair_writer.hpp"
+#include "octopair/mpi.hpp"
 
 namespace octopair::cli {
 
@@ -18,6 +20,8 @@ public:
     virtual ~PieceOutput() = default;
     /// This rank's piece of a frame, the frames in order.
     virtual void write(std::uint64_t frame, const PairList& piece) = 0;
+    /// The same with indices of 64 bits: to .npy alone, Error{usage} otherwise.
+    virtual void write(std::uint64_t frame, std::span<const Pair64> piece) = 0;
     virtual void finish() = 0;
 };
 

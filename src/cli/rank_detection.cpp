@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/timed.hpp"
 #include "cli/input_set.hpp"
@@ -44,6 +47,8 @@ private:
         }
     }
 
+    /// Whether indices need more bits than a Pair has, or are to have them.
+    bool wide() const { return request_.wide_indices || report_.objects > std::numeric_limits<std::uint32_t>::max(); }
     bool join() const { return !request_.against.empty(); }
 
     void read() {
@@ -63,6 +68,11 @@ private:
         first_.padding = own(padding_->inputs(), first_);
         second_.padding = own(padding_->against(), second_);
         report_.objects = first_.total + second_.total;
+        const bool npy = !request_.output.empty() && io::pair_format(request_.output) == io::PairFormat::npy;
+        if (wide() && !npy && !request_.count_only) {
+            throw Error(ErrorCode::resource_limit,
+                        std::to_string(report_.objects) + " objects: indices of 64 bits go to .npy files alone");
+        }
         report_.crew = crew_of(request_.engine);
         report_.crew.ranks = cluster_.ranks();
     }
@@ -79,7 +89,7 @@ private:
             search(frame, &piece);
             progress_.clear();
             const Timed timed(report_.seconds.write);
-            output->write(frame, piece);
+            wide() ? output->write(frame, wide_piece_) : output->write(frame, piece);
         }
         const Timed timed(report_.seconds.write);
         output->finish();
@@ -91,7 +101,10 @@ private:
         const Options options = call_options(request_, report_, frame, progress_);
         Summary summary;
         cluster_.joint([&] {
-            if (piece == nullptr) {
+            if (wide()) {
+                summary = join() ? find_pairs64_between(*engine_, {first}, {second}, wide_piece_, options, stop_)
+                                 : find_pairs64(*engine_, {first}, wide_piece_, options, stop_);
+            } else if (piece == nullptr) {
                 summary = join() ? engine_->stream_pairs_between(first, second, {}, options, stop_)
                                  : engine_->stream_pairs(first, {}, options, stop_);
             } else {
@@ -120,6 +133,7 @@ private:
     InputSet first_, second_;
     std::optional<Paddings> padding_;
     std::unique_ptr<Engine> engine_;
+    std::vector<Pair64> wide_piece_;
     DetectReport report_;
 };
 
