@@ -6,6 +6,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
 #include "cli/study_output.hpp"
+#include "cluster/machines.hpp"
 #include "cluster/study.hpp"
 #include "octopair/error.hpp"
 
@@ -41,9 +42,7 @@ void add_machines_options(CLI::App& command, MachinesRequest& request) {
     command
         .add_option_function<std::string>(
             "--latency",
-            [&request](const std::string& text) {
-                request.network.latency_seconds = parse_length("--latency", text) / 1e6;
-            },
+            [&request](const std::string& text) { request.latency_seconds = parse_length("--latency", text) / 1e6; },
             "of the network's model, with --machines: microseconds a message (default 10)")
         ->needs(machines)
         ->type_name("US");
@@ -51,9 +50,8 @@ void add_machines_options(CLI::App& command, MachinesRequest& request) {
         .add_option_function<std::string>(
             "--bandwidth",
             [&request](const std::string& text) {
-                request.network.bytes_per_second = parse_length("--bandwidth", text) * 1e6 / 8;
-                if (request.network.bytes_per_second == 0)
-                    throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
+                request.bytes_per_second = parse_length("--bandwidth", text) * 1e6 / 8;
+                if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
             },
             "of the network's model, with --machines: Mbit/s of each machine (default 800)")
         ->needs(machines)
@@ -77,8 +75,10 @@ int run_machines(const MachinesRequest& request, const MachinesScene& scene) {
     plan.mpirun = request.mpirun;
     const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
     const auto all = cluster::measure(plan, show, interrupt.token());
-    output.write(cluster::machines_text(all, request.network), cluster::machines_json(all, request.network),
-                 interrupt.token());
+    cluster::Network network;
+    network.latency_seconds = request.latency_seconds.value_or(network.latency_seconds);
+    network.bytes_per_second = request.bytes_per_second.value_or(network.bytes_per_second);
+    output.write(cluster::machines_text(all, network), cluster::machines_json(all, network), interrupt.token());
     return 0;
 }
 

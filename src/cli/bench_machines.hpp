@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include "cluster/machines.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -14,8 +13,8 @@ class App;
 namespace octopair::cli {
 
 struct MachinesRequest {
-    std::vector<unsigned> machines;  ///< how many, ascending; empty: not asked for
-    cluster::Network network;
+    std::vector<unsigned> machines;                           ///< how many, ascending; empty: not asked for
+    std::optional<double> latency_seconds, bytes_per_second;  ///< of the network's model
     std::string mpirun = "mpirun";
 };
 
