@@ -35,7 +35,7 @@ struct MpiOptions {
     unsigned threads = 1;  ///< of each rank; 0: one per core
     /// The same on all ranks. paper: the first rank, the master, gets all objects and deals them out in equal runs; each rank
     /// builds a sorted list; the first rank of each machine merges those of its machine; the master merges what they have,
-    /// scans, on all of its threads, and has all pairs in its piece. It needs the memory of the local engine.
+    /// scans, on all of its threads, and has all pairs in its piece. It needs more memory than the local engine.
     Arrangement arrangement = Arrangement::shared;
     unsigned ranks_per_machine = 2;  ///< of Arrangement::paper, which takes so many in a row for a machine; from 1 on
 };
