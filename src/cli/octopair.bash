@@ -33,6 +33,7 @@ _octopair() {
                 mapfile -t COMPREPLY < <(compgen -W "node triangle" -- "$current")
             fi
             return ;;
+        --index-type) mapfile -t COMPREPLY < <(compgen -W "uint32 uint64" -- "$current"); return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
         --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
         --arrangement) mapfile -t COMPREPLY < <(compgen -W "shared paper" -- "$current"); return ;;
@@ -65,7 +66,7 @@ _octopair() {
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
-                    --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
+                    --index-type --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")

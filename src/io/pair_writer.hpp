@@ -2,7 +2,6 @@
 //
 //   npy    uint32, shape (m, 2); of a moving scene one file a frame, NAME.000000.npy. Its header is written when m is
 //   known.
-//          (Indices always fit: a call has at most 2^32 - 1 objects.)
 //   csv    header "a,b", or "frame,a,b" of a moving scene
 //   jsonl  {"a":0,"b":5}; of a moving scene with "frame" first; with "a_name" and "b_name" where an object has a name
 //

@@ -36,6 +36,14 @@ same() {
     cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
 }
 for order in ascending octal; do
+    on_ranks 3 detect a.npy b.npy --order $order --engine mpi --index-type uint64 --output wide.npy --quiet
+    "$program" detect a.npy b.npy --order $order --output narrow.npy --quiet
+    python3 - << 'END'
+import array
+wide, narrow = (open(name, "rb").read() for name in ("wide.npy", "narrow.npy"))
+assert b"'<u8'" in wide[:128] and wide[128:]
+assert list(array.array("Q", wide[128:])) == list(array.array("I", narrow[128:]))
+END
     same 3 pairs.npy a.npy b.npy --order $order --padding padding.npy
     same 4 pairs.csv a.npy --against b.npy --order $order --margin 0.002
     same 2 pairs.jsonl a.npy few.csv spheres.npy --order $order --limit 5000
