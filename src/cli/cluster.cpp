@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <span>
 
@@ -23,9 +24,14 @@ Cluster::Run::~Run() {
         int rank = 0;
         MPI_Comm_rank(MPI_COMM_WORLD, &rank);
         std::fprintf(stderr, "octopair: rank %d failed alone\n", rank);
-        MPI_Abort(MPI_COMM_WORLD, exit_status(ErrorCode::engine_failed));
+        abort(exit_status(ErrorCode::engine_failed));
     }
     MPI_Finalize();
+}
+
+void Cluster::abort(int status) {
+    MPI_Abort(MPI_COMM_WORLD, status);
+    std::abort();  // which MPI_Abort is not declared to make needless
 }
 
 void Cluster::together(const std::function<void()>& part) {

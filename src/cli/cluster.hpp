@@ -27,6 +27,8 @@ public:
     unsigned rank() const { return comm_.rank(); }
     unsigned ranks() const { return comm_.size(); }
     bool first() const { return rank() == 0; }
+    /// Ends all ranks at once, whatever they do; mpirun ends with this status.
+    [[noreturn]] static void abort(int status);
 
     /// Whether what was thrown last was thrown on all ranks.
     bool ends_alike() const { return run_.ends_alike; }

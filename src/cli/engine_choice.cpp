@@ -130,7 +130,7 @@ void check_engine_choice(const EngineChoice& choice) {
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
     if (choice.kind == EngineKind::mpi)
-        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` works on ranks");
+        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` and `octopair serve` work on ranks");
 #ifdef OCTOPAIR_WITH_PROCESSES
     if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
 #endif
@@ -145,7 +145,7 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
 EngineCrew crew_of(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
     if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};
-    if (choice.kind == EngineKind::mpi) return {"mpi", choice.threads.value_or(1), 0};
+    if (choice.kind == EngineKind::mpi) return {"mpi", one_a_core_unless(choice.threads.value_or(1), ~0u), 0};
     return {"local", one_a_core_unless(choice.threads, ~0u), 0};
 }
 

@@ -44,7 +44,7 @@ void add_engine_options(CLI::App& command, EngineChoice& choice);
 /// Throws Error{usage} for threads, workers or a server's options of an engine that has none.
 void check_engine_choice(const EngineChoice& choice);
 
-/// Throws what the makers of engines throw; Error{usage} for ranks, which only `detect` has.
+/// Throws what the makers of engines throw; Error{usage} for ranks, which only `detect` and `serve` have, in their own way.
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice);
 
 EngineCrew crew_of(const EngineChoice& choice);

@@ -1,55 +1,20 @@
 // octopair serve: the server.
 #include <malloc.h>
-#include <spdlog/spdlog.h>
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
-#include <string>
 
 #include "cli/interrupt.hpp"
 #include "cli/serve_options.hpp"
+#include "cli/serving.hpp"
 #include "cli/subcommands.hpp"
-#include "octopair/version.hpp"
-#include "service/server/server.hpp"
 
-#ifdef OCTOPAIR_WITH_PROCESSES
-#include "octopair/processes.hpp"
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/rank_serving.hpp"
 #endif
 
 namespace octopair::cli {
 
 namespace {
-
-void wait_for(const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any changed;
-    std::unique_lock lock(mutex);
-    changed.wait(lock, stop, [] { return false; });
-}
-
-service::ServerOptions options_of(const ServeRequest& request) {
-    service::ServerOptions options = request.options;
-    const EngineCrew crew = crew_of(request.engine);
-    options.engine_name = crew.engine;
-    const unsigned width = crew.threads + crew.workers;
-    // A worker process is woken for every job anyway.
-    options.lanes = {width, width, request.engine.kind == EngineKind::local ? width : 0};
-    options.engine = [choice = request.engine](unsigned workers) {
-        EngineChoice one = choice;
-        (one.kind == EngineKind::processes ? one.workers : one.threads) = workers;
-        return make_engine(one);
-    };
-#ifdef OCTOPAIR_WITH_PROCESSES
-    if (request.engine.kind == EngineKind::processes) {
-        options.worker_faults = [](const Engine& engine) {
-            const WorkerFaults faults = worker_faults(engine);
-            return faults.ended + faults.stopped;
-        };
-    }
-#endif
-    return options;
-}
 
 /// What an upload gave back serves the next one: memory that the system takes meanwhile has to be cleared again, which takes as
 /// long as all else that the server does with the bytes.
@@ -60,21 +25,16 @@ void keep_freed_memory() {
 
 int run_serve(const ServeRequest& request) {
     keep_freed_memory();
+#ifdef OCTOPAIR_WITH_MPI
+    if (request.engine.kind == EngineKind::mpi) return serve_on_ranks(request);
+#endif
     const Interrupt interrupt;
-    const auto log = service::make_log(request.log_form);
-    service::take_grpc_log(log);
-    log->set_level(spdlog::level::from_str(request.quiet ? "err" : request.log_level));
-    const service::ServerOptions options = options_of(request);
+    const auto log = make_log(request);
+    const service::ServerOptions options = server_options_of(request);
     service::Server server(options, log);
-    service::log_event(*log, spdlog::level::info, "started",
-                       {{"address", server.address().text()},
-                        {"version", OCTOPAIR_VERSION},
-                        {"engine", options.engine_name},
-                        {"width", std::uint64_t(options.lanes.large)}});
+    tell_start(*log, server, options);
     wait_for(interrupt.token());
-    log->info("stopping: no more jobs are taken");
-    server.drain();
-    log->info("stopped");
+    drain(*log, server);
     return 0;
 }
 

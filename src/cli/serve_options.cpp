@@ -35,8 +35,9 @@ void add_bytes(CLI::App& command, const Described& option, std::uint64_t& value)
         ->type_name(option.type);
 }
 
-/// Whole, at least `least`.
-void add_seconds(CLI::App& command, const Described& option, std::chrono::seconds& value, unsigned least) {
+/// Whole, at least `least`. `Seconds`: some, or perhaps some.
+template <typename Seconds>
+void add_seconds(CLI::App& command, const Described& option, Seconds& value, unsigned least) {
     constexpr std::uint64_t most = 1'000'000'000;
     command
         .add_option_function<std::string>(
@@ -125,6 +126,9 @@ void add_serve_options(CLI::App& command, ServeRequest& request) {
     command.add_option("--listen", request.listen, "unix:PATH or HOST:PORT")->type_name("ADDRESS");
     add_engine_options(command, request.engine);
     command.get_option("--engine")->description("where the server looks for pairs: as in `octopair info`, itself");
+    add_seconds(command,
+                {"--rank-timeout", "SECONDS", "that a rank may be silent while a job is under way (default 60)"},
+                request.rank_silence, 1);
     add_limits(command, request.options.limits);
     add_seconds(command, {"--grace", "SECONDS", "for the jobs that run, when the server ends (default 30)"},
                 request.options.grace, 0);
@@ -144,8 +148,8 @@ void complete_serve_request(CLI::App& command, ServeRequest& request) {
     if (request.engine.kind == EngineKind::server) {
         throw Error(ErrorCode::usage, "--engine: a server looks for pairs itself; it does not ask another one");
     }
-    if (request.engine.kind == EngineKind::mpi) {
-        throw Error(ErrorCode::usage, "--engine: a server has no ranks yet; it has threads or workers");
+    if (request.rank_silence && request.engine.kind != EngineKind::mpi) {
+        throw Error(ErrorCode::usage, "--rank-timeout: only --engine mpi has ranks");
     }
 }
 

@@ -1,6 +1,8 @@
 // The options of `octopair serve`, on the command line and in a file.
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <string>
 
 #include "cli/engine_choice.hpp"
@@ -13,6 +15,7 @@ struct ServeRequest {
     std::string config;  ///< a file, or empty
     std::string listen, metrics;
     EngineChoice engine;
+    std::optional<std::chrono::seconds> rank_silence;  ///< as asked for
     service::ServerOptions options;
     service::LogForm log_form = service::LogForm::text;
     std::string log_level = "info";

@@ -8,6 +8,7 @@
 namespace octopair {
 
 void StopRelay::pass_on() {
+    if (beside_) beside_();
     if (known_) return;
     if (stop_.stop_requested()) {
         known_ = sent_ = true;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "engine/mpi/communicator.hpp"
 #include "octopair/error.hpp"
@@ -25,8 +26,9 @@ struct BadObject {
 /// Makes the stop of any rank that of all, also while they work.
 class StopRelay {
 public:
-    /// `stop`: of this rank's call.
-    StopRelay(Communicator& comm, std::stop_source& stop) : comm_(comm), stop_(stop) {
+    /// `stop`: of this rank's call. `beside`, which may be empty, is done whenever stops are looked for.
+    StopRelay(Communicator& comm, std::stop_source& stop, std::function<void()> beside = {})
+        : comm_(comm), stop_(stop), beside_(std::move(beside)) {
         comm_.set_meanwhile([this] { pass_on(); });
     }
     StopRelay(const StopRelay&) = delete;
@@ -41,6 +43,7 @@ public:
 private:
     Communicator& comm_;
     std::stop_source& stop_;
+    std::function<void()> beside_;
     bool sent_ = false;   // by this rank
     bool known_ = false;  // to all, or too late
 };

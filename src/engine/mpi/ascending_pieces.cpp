@@ -17,30 +17,47 @@ constexpr std::size_t share_pairs = 1 << 16;  // to sort
 
 }  // namespace
 
-PiecePlan::PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, unsigned ranks, unsigned windows)
+PiecePlan::PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, const PieceGrid& grid)
     : bins_(bins),
-      windows_(windows),
-      cuts_(even_cuts(counts, std::size_t(ranks) * windows)),
+      grid_(grid),
+      cuts_(even_cuts(counts, grid.size())),
       pieces_(counts.size()),
-      rank_pairs_(ranks, 0) {
+      before_(grid.size() + 1) {
     for (std::uint32_t piece = 0; piece + 1 < cuts_.size(); ++piece) {
+        before_[piece + 1] = before_[piece];
         for (std::size_t bin = cuts_[piece]; bin < cuts_[piece + 1]; ++bin) {
             pieces_[bin] = piece;
-            rank_pairs_[piece / windows] += counts[bin];
+            before_[piece + 1] += counts[bin];
         }
     }
 }
 
 ObjectRange PiecePlan::rows(unsigned rank, unsigned window) const {
-    const std::size_t piece = std::size_t(rank) * windows_ + window;
+    const std::size_t piece = grid_.piece(rank, window);
     return {bins_.begin(cuts_[piece]), bins_.begin(cuts_[piece + 1])};
 }
 
-std::uint64_t PiecePlan::pairs(unsigned rank) const { return rank_pairs_[rank]; }
+std::uint64_t PiecePlan::allowed(unsigned rank, unsigned window, std::uint64_t limit) const {
+    const std::size_t piece = grid_.piece(rank, window);
+    return std::min(limit, before_[piece + 1]) - std::min(limit, before_[piece]);
+}
+
+std::uint64_t PiecePlan::pairs(unsigned rank) const {
+    std::uint64_t sum = 0;
+    for (unsigned window = 0; window < grid_.windows; ++window) sum += allowed(rank, window, before_.back());
+    return sum;
+}
+
+bool PiecePlan::is_wanted(unsigned window, std::uint64_t limit) const {
+    for (unsigned rank = 0; rank < grid_.ranks; ++rank) {
+        if (allowed(rank, window, limit) > 0) return true;
+    }
+    return false;
+}
 
 std::vector<std::uint8_t> PiecePlan::marks(unsigned window) const {
     std::vector<std::uint8_t> marks(pieces_.size());
-    std::ranges::transform(pieces_, marks.begin(), [&](std::uint32_t piece) { return piece % windows_ == window; });
+    std::ranges::transform(pieces_, marks.begin(), [&](std::uint32_t piece) { return grid_.window(piece) == window; });
     return marks;
 }
 
@@ -53,7 +70,7 @@ PiecePlan AscendingPieces::plan(const PairList& found, const RowBins& bins) {
         }
     });
     comm_.add_up(counts);
-    return {bins, counts, comm_.size(), 1};
+    return {bins, counts, {.ranks = comm_.size()}};
 }
 
 // NOLINTNEXTLINE(readability-function-size): what, by which plan, which part of it, where to, and until when.

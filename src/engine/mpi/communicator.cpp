@@ -15,6 +15,7 @@ namespace {
 
 constexpr int exchange_tag = 1;
 constexpr int stop_tag = 2;
+constexpr int pulse_tag = 3;
 
 void check(int code) {
     if (code == MPI_SUCCESS) return;
@@ -227,6 +228,23 @@ void Communicator::receive_stop(unsigned from) {
 void Communicator::finish_stop() {
     wait(stops_);
     stops_.clear();
+}
+
+bool Communicator::send_pulse() {
+    int gone = 0;
+    check(MPI_Test(&pulse_, &gone, MPI_STATUS_IGNORE));
+    if (gone == 0) return false;
+    check(MPI_Isend(nullptr, 0, MPI_BYTE, 0, pulse_tag, comm_, &pulse_));
+    return true;
+}
+
+std::optional<unsigned> Communicator::receive_pulse() {
+    int there = 0;
+    MPI_Status status{};
+    check(MPI_Iprobe(MPI_ANY_SOURCE, pulse_tag, comm_, &there, &status));
+    if (there == 0) return {};
+    check(MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, pulse_tag, comm_, MPI_STATUS_IGNORE));
+    return unsigned(status.MPI_SOURCE);
 }
 
 }  // namespace octopair

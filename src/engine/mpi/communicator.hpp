@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -115,6 +116,12 @@ public:
     /// Waits for that of a rank.
     void receive_stop(unsigned from);
 
+    /// Not collective: a message without content goes to rank 0, which is another one. False where the last one is still on
+    /// its way.
+    bool send_pulse();
+    /// The rank that one has come from, if one has; on rank 0.
+    std::optional<unsigned> receive_pulse();
+
 private:
     struct Values {
         const void* data;
@@ -141,6 +148,7 @@ private:
     std::function<void()> meanwhile_;
     std::vector<MPI_Request> stops_;
     MessageTape* tape_ = nullptr;
+    MPI_Request pulse_ = MPI_REQUEST_NULL;
 };
 
 }  // namespace octopair

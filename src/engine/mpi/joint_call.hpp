@@ -19,6 +19,11 @@ namespace octopair {
 /// What becomes of the pairs; the same on all ranks.
 enum class Outlet : std::uint8_t { count, list, sink };
 
+inline Outlet outlet_of(const Engine::Output& output) {
+    if (output.list != nullptr) return Outlet::list;
+    return output.sink != nullptr ? Outlet::sink : Outlet::count;
+}
+
 struct JointCall {
     bool join = false;
     std::array<std::uint64_t, 2> totals = {0, 0};  ///< objects of each set

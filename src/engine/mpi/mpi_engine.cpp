@@ -49,7 +49,7 @@ public:
     Summary find(const Request& request, const IndexedCall& indexed, const Control& control) {
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
-        return search_.run(request, {}, control, &indexed);
+        return search_.run(request, indexed, control);
     }
 
     const RankCosts& costs() const { return search_.costs(); }

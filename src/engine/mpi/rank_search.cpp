@@ -15,6 +15,7 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/octant_owners.hpp"
 #include "engine/mpi/planting.hpp"
+#include "engine/mpi/relay.hpp"
 #include "engine/mpi/routing.hpp"
 #include "engine/receiver.hpp"
 #include "engine/writers.hpp"
@@ -26,34 +27,28 @@ namespace {
 
 constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // whose indices a Pair has
 
-Outlet outlet_of(const Engine::Output& output) {
-    if (output.list != nullptr) return Outlet::list;
-    return output.sink != nullptr ? Outlet::sink : Outlet::count;
-}
-
 }  // namespace
 
 /// One call.
 struct RankSearch::Task {
-    Task(Communicator& comm, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink,
-         const IndexedCall* own_indices)
+    Task(RankSearch& search, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
         : request(asked),
           output(out),
-          indexed(own_indices),
           told(sink),
-          stops(comm, stop),
-          agreement(comm),
+          stops(search.comm_, stop, search.beside_),
+          agreement(search.comm_),
           progress(sink),
-          order(comm) {}
+          order(search.comm_) {}
 
     const Engine::Request& request;
     const Engine::Output& output;
-    const IndexedCall* indexed;
+    const IndexedCall* indexed = nullptr;
     const ProgressSink& told;
     std::stop_source stop;
     StopRelay stops;
     Agreement agreement;
     Progress progress;
+    std::optional<Relay> relay;  // where a sink of the first rank receives all
     JointCall joint;
     std::array<Objects, 2> slices;
     IndexOrder order;  // of an indexed call
@@ -61,14 +56,27 @@ struct RankSearch::Task {
     unsigned sets() const { return joint.join ? 2 : 1; }
 };
 
-RankSearch::RankSearch(Communicator& comm, const MpiOptions& options) : comm_(comm), passes_(options.threads) {
+RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> beside)
+    : comm_(comm), beside_(std::move(beside)), passes_(options.threads) {
     if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
 }
 
-// NOLINTNEXTLINE(readability-function-size): what, where to, until when, with which indices.
 Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
-                        const IndexedCall* indexed) {
-    Task task(comm_, request, output, control.progress, indexed);
+                        Recipients recipients) {
+    Task task(*this, request, output, control.progress);
+    const bool to_first = recipients == Recipients::first;
+    if (to_first && output.sink != nullptr) task.relay.emplace(comm_, *output.sink);
+    return run(task, control);
+}
+
+Summary RankSearch::run(const Engine::Request& request, const IndexedCall& indexed, const Engine::Control& control) {
+    const Engine::Output none;
+    Task task(*this, request, none, control.progress);
+    task.indexed = &indexed;
+    return run(task, control);
+}
+
+Summary RankSearch::run(Task& task, const Engine::Control& control) {
     const std::stop_callback forward(control.stop, [&] { task.stop.request_stop(); });
     const auto end = [&] {
         found_.storage().reset();
@@ -79,6 +87,11 @@ Summary RankSearch::run(const Engine::Request& request, const Engine::Output& ou
         const Traffic before = comm_.traffic();
         costs_ = {};
         find(task);
+        if (to_first && output.list != nullptr) {
+            PairList all;
+            gather(*output.list, all.storage());
+            *output.list = std::move(all);
+        }
         const Traffic& after = comm_.traffic();
         costs_.mpi = after.cpu_seconds - before.cpu_seconds;
         costs_.bytes_sent = after.bytes - before.bytes;
@@ -258,15 +271,22 @@ std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, c
     return std::min(pieces[rank], limit - std::min(limit, before));
 }
 
-/// What `give` hands over, up to so many pairs.
+/// What `give` hands over, up to so many pairs; returns how many.
 template <typename Give>
-void receive(const Engine::Output& output, std::uint64_t allowance, const Give& give) {
+std::uint64_t receive(const Engine::Output& output, std::uint64_t allowance, const Give& give) {
     Receiver receiver(output, allowance);
     try {
         give(receiver);
     } catch (const Receiver::LimitReached&) {
     }
     receiver.flush();
+    return receiver.pairs();
+}
+
+auto hand_out(const PairList& pairs) {
+    return [&](Receiver& receiver) {
+        for (const auto chunk : pairs.chunks()) receiver.take(chunk);
+    };
 }
 
 }  // namespace
@@ -306,6 +326,14 @@ void RankSearch::name_found(const Task& task, std::vector<Pair64>& pairs) {
         for (const Pair& pair : chunk) pairs.push_back({first[pair.a], second[pair.b]});
     }
     found_.storage().reset();
+}
+
+/// To the caller of each rank, or one rank's after another's to that of the first.
+void RankSearch::deliver(Task& task, std::uint64_t allowance, const Give& give) {
+    if (!task.relay) return task.agreement.together([&] { (void)receive(task.output, allowance, give); });
+    for (unsigned from = 0; from < comm_.size(); ++from) {
+        task.relay->hand_on(from, [&](const PairSink& sink) { (void)receive({.sink = &sink}, allowance, give); });
+    }
 }
 
 void RankSearch::gather(PairList& piece, PairList::Storage& all) {
@@ -350,6 +378,13 @@ void RankSearch::count(Task& task, Call& call) {
     (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
+/// Of one rank, how they are found: `build_first` comes before, `stream` hands them out.
+struct RankSearch::OctalPairs {
+    std::function<void()> build_first;
+    Give stream;
+    std::uint64_t allowance;
+};
+
 void RankSearch::find_octal(Task& task, Call& call) {
     const std::optional<std::uint64_t> limit = task.request.options.limit;
     std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
@@ -361,25 +396,52 @@ void RankSearch::find_octal(Task& task, Call& call) {
         });
         allowance = octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
     }
-    task.agreement.together([&] {
+    const auto build_first = [&] {
         if (!limit) build(task, call);
+    };
+    const Give stream = [&](Receiver& receiver) {
+        passes_.stream_octal(
+            call, [&](std::span<const Pair> some) { receiver.take(some); }, 1);
+    };
+    if (task.relay) {
+        pairs = relay_octal(task, call, {build_first, stream, allowance});
+    } else {
+        task.agreement.together([&] {
+            build_first();
+            const Metered metered(comm_, costs_.scan);
+            if (task.output.list != nullptr && !limit) {
+                passes_.list_octal(call, task.output.list->storage(), 1);
+                pairs = task.output.list->size();
+            } else {
+                pairs = receive(task.output, allowance, stream);
+            }
+        });
+    }
+    if (!limit) (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+}
+
+/// While rank 0 hands on what it finds, the others list theirs, as far as that fits into their buffers; what does not is found
+/// again, when its turn has come. Returns how many of the pairs were this rank's.
+std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& own) {
+    bool listed = false;
+    std::uint64_t pairs = 0;
+    task.agreement.together([&] {
+        own.build_first();
         const Metered metered(comm_, costs_.scan);
-        if (task.output.list != nullptr && !limit) {
-            passes_.list_octal(call, task.output.list->storage(), 1);
-            pairs = task.output.list->size();
+        if (own.allowance == 0) return;
+        if (comm_.rank() == 0) {
+            pairs = receive(task.output, own.allowance, own.stream);
         } else {
-            receive(task.output, allowance, [&](Receiver& receiver) {
-                passes_.stream_octal(
-                    call,
-                    [&](std::span<const Pair> some) {
-                        receiver.take(some);
-                        if (!limit) pairs += some.size();
-                    },
-                    1);
-            });
+            listed = list_octal(call, call.buffer_pairs());
         }
     });
-    if (!limit) (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    const Give give = listed ? Give(hand_out(found_)) : own.stream;
+    for (unsigned from = 1; from < comm_.size(); ++from) {
+        task.relay->hand_on(from, [&](const PairSink& sink) {
+            if (own.allowance > 0) pairs = receive({.sink = &sink}, own.allowance, give);
+        });
+    }
+    return pairs;
 }
 
 void RankSearch::find_ascending(Task& task, Call& call) {
@@ -408,12 +470,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     PairList sorted;
     PairList& piece = whole ? *task.output.list : sorted;
     pieces.bring_together(found_, plan, 0, piece.storage(), task.stop.get_token());
-    if (whole) return;
-    task.agreement.together([&] {
-        receive(task.output, allowance, [&](Receiver& receiver) {
-            for (const auto chunk : piece.chunks()) receiver.take(chunk);
-        });
-    });
+    if (!whole) deliver(task, allowance, hand_out(piece));
 }
 
 /// To found_; false, with nothing found, where there are more.
@@ -449,30 +506,23 @@ void RankSearch::find_windows(Task& task, Call& call) {
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
     // A rank holds a window three times for a while: found, sent and received.
     const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
-    const PiecePlan plan(bins, counts, comm_.size(), unsigned(all / (fit * comm_.size()) + 1));
-    Receiver receiver(task.output, allowed(task, plan));
+    const unsigned windows = unsigned(all / (fit * comm_.size()) + 1);
+    const PiecePlan plan(bins, counts, {comm_.size(), windows, task.relay.has_value()});
+    (void)allowed(task, plan);
+    const std::uint64_t limit = task.request.options.limit.value_or(all);
     AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
-    bool enough = false;
-    for (unsigned window = 0; window < plan.windows(); ++window) {
+    for (unsigned window = 0; window < windows; ++window) {
+        if (!plan.is_wanted(window, limit)) continue;
         std::vector<std::uint8_t> marks;
         PairList sorted;
         task.agreement.together([&] {
             const Metered metered(comm_, costs_.scan);
             marks = plan.marks(window);
             passes_.want({bins, marks});
-            passes_.list_octal(call, found_.storage(), 0.5 + 0.5 * double(window + 1) / double(plan.windows()));
+            passes_.list_octal(call, found_.storage(), 0.5 + 0.5 * double(window + 1) / double(windows));
         });
         pieces.bring_together(found_, plan, window, sorted.storage(), task.stop.get_token());
-        task.agreement.together([&] {
-            try {
-                for (const auto chunk : sorted.chunks()) {
-                    if (!enough) receiver.take(chunk);
-                }
-            } catch (const Receiver::LimitReached&) {
-                enough = true;
-            }
-            if (window + 1 == plan.windows()) receiver.flush();
-        });
+        deliver(task, plan.allowed(comm_.rank(), window, limit), hand_out(sorted));
     }
 }
 

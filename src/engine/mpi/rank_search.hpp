@@ -8,11 +8,12 @@
 //   order   ascending: pairs to the ranks that their `a` belongs to, where they are sorted    (ascending_pieces.hpp)
 //
 // The pieces of all ranks, one after another, are what the local engine finds. What every rank gets to know is the shape of
-// the tree, and a few numbers for each rank and octant; nothing else is gathered.
+// the tree, and a few numbers for each rank and octant; nothing else is gathered, unless rank 0 is to receive all pairs.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,6 +29,10 @@
 namespace octopair {
 
 class PiecePlan;
+class Receiver;
+
+/// Who receives pairs: each rank its piece, or the first rank those of all, in order.
+enum class Recipients : std::uint8_t { all, first };
 
 /// A call for pairs of indices that are the caller's own, or of more bits than a Pair has.
 struct IndexedCall {
@@ -37,12 +42,16 @@ struct IndexedCall {
 
 class RankSearch {
 public:
-    RankSearch(Communicator& comm, const MpiOptions& options);
+    /// `beside`, which may be empty, is done every few milliseconds of a call, on its thread; what it throws ends the call on
+    /// this rank.
+    RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> beside = {});
 
-    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. `indexed`: borrowed; its
-    /// `pairs` are then the output. Throws Error.
+    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. Of the recipients that a list
+    /// or a sink is given on all ranks for, the first rank alone may get pairs.
     Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
-                const IndexedCall* indexed = nullptr);
+                Recipients recipients = Recipients::all);
+    /// The same of an indexed call, whose `pairs` are the output of all ranks.
+    Summary run(const Engine::Request& request, const IndexedCall& indexed, const Engine::Control& control);
     /// In place of run() on a rank whose call was cancelled before it began: ends it on all. Does not throw.
     void skip() noexcept;
     /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
@@ -52,6 +61,10 @@ public:
 
 private:
     struct Task;
+    /// Hands this rank's pairs to a receiver.
+    using Give = std::function<void(Receiver&)>;
+    struct OctalPairs;
+    Summary run(Task& task, const Engine::Control& control);
     void find(Task& task);
     void join(Task& task);
     void find_at_master(Task& task);
@@ -66,9 +79,12 @@ private:
     void find_windows(Task& task, Call& call);
     void find_indexed(Task& task, Call& call);
     void name_found(const Task& task, std::vector<Pair64>& pairs);
+    std::uint64_t relay_octal(Task& task, Call& call, const OctalPairs& own);
     std::uint64_t allowed(Task& task, const PiecePlan& plan) const;
+    void deliver(Task& task, std::uint64_t allowance, const Give& give);
 
     Communicator& comm_;
+    std::function<void()> beside_;
     RankPasses passes_;
     std::array<ObjectArrays, 2> sent_, received_;
     PairList found_;

@@ -40,7 +40,7 @@ Host::Host(const ServerOptions& given, std::shared_ptr<spdlog::logger> logger)
                 ? nullptr
                 : std::make_unique<StateFolder>(given.state_folder, given.limits.state_bytes, log)),
       attached("", "", 0),
-      lanes(given.engine, given.lanes) {
+      lanes({given.engine, given.small_engine ? given.small_engine : given.engine}, given.lanes) {
     if (!state) return;
     detached = std::make_shared<DetachedJobs>(*this);
     detached->restore();

@@ -13,11 +13,11 @@ constexpr std::chrono::milliseconds ask_again(20);
 
 }  // namespace
 
-Lanes::Lanes(const EngineMaker& maker, const Widths& widths) : instant_(widths.instant) {
-    for (Instant& instant : instant_) instant.engine = maker(1);
+Lanes::Lanes(const Makers& makers, const Widths& widths) : instant_(widths.instant) {
+    for (Instant& instant : instant_) instant.engine = makers.small(1);
     try {
-        start(large_, maker, widths.large);
-        for (unsigned i = 0; i < widths.small; ++i) start(small_, maker, 1);
+        start(large_, makers.large, widths.large);
+        for (unsigned i = 0; i < widths.small; ++i) start(small_, makers.small, 1);
     } catch (...) {
         stop();
         throw;

@@ -35,7 +35,11 @@ public:
         unsigned small = 1;    ///< lanes, at least 1
         unsigned instant = 0;  ///< engines for jobs that run where they came in
     };
-    Lanes(const EngineMaker& maker, const Widths& widths);
+    /// Of the engine for large jobs, and of those for small ones.
+    struct Makers {
+        const EngineMaker &large, &small;
+    };
+    Lanes(const Makers& makers, const Widths& widths);
     Lanes(const Lanes&) = delete;
     Lanes& operator=(const Lanes&) = delete;
     /// Waits for the jobs that run; those that wait do not run any more.

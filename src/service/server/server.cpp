@@ -177,14 +177,14 @@ public:
     const Address& address() const { return listener_.address(); }
     ServerLoad load() const { return {host_.places.count(), host_.memory.taken(), listener_.connections()}; }
 
-    void drain() {
+    void drain(std::optional<std::chrono::milliseconds> grace) {
         constexpr std::chrono::milliseconds apart(20);
         host_.draining = true;
         host_.lanes.hold_detached();
         listener_.stop();
         server_->GetHealthCheckService()->SetServingStatus(false);
         // gRPC would wait for all calls: those that upload, and scenes that nobody steps.
-        const auto end = std::chrono::steady_clock::now() + host_.options.grace;
+        const auto end = std::chrono::steady_clock::now() + grace.value_or(host_.options.grace);
         while (!host_.idle() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(apart);
         server_->Shutdown(std::chrono::system_clock::now());
     }
@@ -229,6 +229,6 @@ const Address& Server::address() const { return state_->address(); }
 
 ServerLoad Server::load() const { return state_->load(); }
 
-void Server::drain() { state_->drain(); }
+void Server::drain(std::optional<std::chrono::milliseconds> grace) { state_->drain(grace); }
 
 }  // namespace octopair::service

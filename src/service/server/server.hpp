@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "service/server/server_options.hpp"
 
@@ -32,8 +33,9 @@ public:
     const Address& address() const;
     /// Thread-safe.
     ServerLoad load() const;
-    /// Takes no more jobs, waits for those that run, as long as ServerOptions::grace, and cancels what is left.
-    void drain();
+    /// Takes no more jobs, waits for those that run, as long as `grace`, or else ServerOptions::grace, and cancels what is
+    /// left.
+    void drain(std::optional<std::chrono::milliseconds> grace = {});
 
 private:
     class State;

@@ -35,7 +35,8 @@ struct ServerTls {
 struct ServerOptions {
     Address listen;
     EngineMaker engine;
-    std::string engine_name;  ///< as in --engine
+    EngineMaker small_engine;  ///< of small jobs; null: `engine`
+    std::string engine_name;   ///< as in --engine
     /// How many workers of an engine were lost; null: it has none.
     std::function<std::uint64_t(const Engine&)> worker_faults;
     Lanes::Widths lanes;

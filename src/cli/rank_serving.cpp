@@ -1,0 +1,98 @@
+#include "cli/rank_serving.hpp"
+
+#include <mpi.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <utility>
+
+#include "base/error_codes.hpp"
+#include "cli/cluster.hpp"
+#include "cli/failure.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/serving.hpp"
+#include "engine/mpi/leading.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+LeadingOptions leading_options_of(const ServeRequest& request) {
+    LeadingOptions options;
+    options.threads = crew_of(request.engine).threads;
+    if (request.rank_silence) options.silence = *request.rank_silence;
+    return options;
+}
+
+class FirstRank {
+public:
+    explicit FirstRank(const ServeRequest& request) : log_(make_log(request)), options_(server_options_of(request)) {
+        LeadingOptions leading = leading_options_of(request);
+        leading.lost = [this](const std::string& what) { lose(what); };
+        engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
+        options_.engine = [this](unsigned) { return std::move(engine_); };
+        // Small jobs are served on threads of this process; so are scenes.
+        options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
+        options_.lanes.instant = options_.lanes.small;
+    }
+
+    /// Throws Error where there can be no server.
+    void serve(const std::stop_token& stop) {
+        serve_until_end(stop);
+        if (lost_) Cluster::abort(exit_status(ErrorCode::engine_failed));
+    }
+
+private:
+    void serve_until_end(const std::stop_token& stop) {
+        const std::stop_callback asked(stop, [this] { end_.request_stop(); });
+        service::Server server(options_, log_);
+        tell_start(*log_, server, options_);
+        wait_for(end_.get_token());
+        if (!lost_) drain(*log_, server);
+        if (lost_) abandon(server);
+    }
+
+    void lose(const std::string& what) {
+        log_->error("{}: the program ends", what);
+        lost_ = true;
+        end_.request_stop();
+    }
+
+    /// The client of the job that was under way is told how it ended; those that wait will ask the next server. The engine's
+    /// end would wait for all ranks.
+    [[noreturn]] static void abandon(service::Server& server) {
+        constexpr std::chrono::seconds to_tell(2);
+        server.drain(to_tell);
+        Cluster::abort(exit_status(ErrorCode::engine_failed));
+    }
+
+    const std::shared_ptr<spdlog::logger> log_;
+    service::ServerOptions options_;
+    std::atomic<bool> lost_ = false;
+    std::stop_source end_;
+    std::unique_ptr<Engine> engine_;  // until the server takes it
+};
+
+}  // namespace
+
+int serve_on_ranks(const ServeRequest& request) {
+    const Interrupt interrupt;
+    Cluster cluster;
+    cluster.joint(check_leading_threads);
+    if (!cluster.first()) {
+        follow(MPI_COMM_WORLD, leading_options_of(request));
+        return 0;
+    }
+    FirstRank first(request);
+    try {
+        first.serve(interrupt.token());
+    } catch (const Error& error) {
+        return fail(error);
+    }
+    return 0;
+}
+
+}  // namespace octopair::cli
