@@ -41,7 +41,7 @@ _octopair() {
         --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
         --margin | --limit | --threads | --workers | --seed | --frames | --rounds | --patience | --listen | --metrics) return ;;
         --machines | --latency | --bandwidth | --ranks | --ranks-per-machine) return ;;
-        --grace | --stall | --max-* | --server | --id | --wait) return ;;
+        --grace | --stall | --rank-timeout | --max-* | --server | --id | --wait) return ;;
         --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # of result it is no more than a word
         --json)
             if [[ $subcommand == bench ]]; then
@@ -72,7 +72,7 @@ _octopair() {
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
         serve)
-            mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --grace --stall --max-objects
+            mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --rank-timeout --grace --stall --max-objects
                 --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-seconds --max-memory
                 --max-state --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --metrics --log --log-level --quiet
                 --help" -- "$current") ;;

@@ -1,9 +1,11 @@
 #include "cli/rank_serving.hpp"
 
 #include <mpi.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -29,7 +31,8 @@ LeadingOptions leading_options_of(const ServeRequest& request) {
 
 class FirstRank {
 public:
-    explicit FirstRank(const ServeRequest& request) : log_(make_log(request)), options_(server_options_of(request)) {
+    FirstRank(const ServeRequest& request, unsigned ranks)
+        : log_(make_log(request)), options_(server_options_of(request)), ranks_(ranks) {
         LeadingOptions leading = leading_options_of(request);
         leading.lost = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
@@ -49,7 +52,8 @@ private:
     void serve_until_end(const std::stop_token& stop) {
         const std::stop_callback asked(stop, [this] { end_.request_stop(); });
         service::Server server(options_, log_);
-        tell_start(*log_, server, options_);
+        // Which of the processes takes signals, nobody could see.
+        tell_start(*log_, server, options_, {{"ranks", std::uint64_t(ranks_)}, {"pid", std::uint64_t(getpid())}});
         wait_for(end_.get_token());
         if (!lost_) drain(*log_, server);
         if (lost_) abandon(server);
@@ -71,6 +75,7 @@ private:
 
     const std::shared_ptr<spdlog::logger> log_;
     service::ServerOptions options_;
+    unsigned ranks_;
     std::atomic<bool> lost_ = false;
     std::stop_source end_;
     std::unique_ptr<Engine> engine_;  // until the server takes it
@@ -86,7 +91,7 @@ int serve_on_ranks(const ServeRequest& request) {
         follow(MPI_COMM_WORLD, leading_options_of(request));
         return 0;
     }
-    FirstRank first(request);
+    FirstRank first(request, cluster.ranks());
     try {
         first.serve(interrupt.token());
     } catch (const Error& error) {

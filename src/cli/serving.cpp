@@ -8,7 +8,6 @@
 #include <string>
 
 #include "octopair/version.hpp"
-#include "service/server/event.hpp"
 
 #ifdef OCTOPAIR_WITH_PROCESSES
 #include "octopair/processes.hpp"
@@ -46,12 +45,14 @@ std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request) {
     return log;
 }
 
-void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options) {
-    service::log_event(log, spdlog::level::info, "started",
-                       {{"address", server.address().text()},
-                        {"version", OCTOPAIR_VERSION},
-                        {"engine", options.engine_name},
-                        {"width", std::uint64_t(options.lanes.large)}});
+void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
+                const std::vector<service::Field>& more) {
+    std::vector<service::Field> fields = {{"address", server.address().text()},
+                                          {"version", OCTOPAIR_VERSION},
+                                          {"engine", options.engine_name},
+                                          {"width", std::uint64_t(options.lanes.large)}};
+    fields.insert(fields.end(), more.begin(), more.end());
+    service::log_event(log, spdlog::level::info, "started", fields);
 }
 
 void wait_for(const std::stop_token& stop) {

@@ -5,8 +5,10 @@
 
 #include <memory>
 #include <stop_token>
+#include <vector>
 
 #include "cli/serve_options.hpp"
+#include "service/server/event.hpp"
 #include "service/server/server.hpp"
 
 namespace octopair::cli {
@@ -16,7 +18,9 @@ service::ServerOptions server_options_of(const ServeRequest& request);
 
 std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request);
 
-void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options);
+/// `more`: what only some engines have to tell.
+void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
+                const std::vector<service::Field>& more = {});
 /// Until there is a stop.
 void wait_for(const std::stop_token& stop);
 /// Tells that, too.

@@ -84,10 +84,11 @@ TEST_F(ServeOptions, OpenAddressesAreRefused) {
 }
 
 TEST_F(ServeOptions, WhatDoesNotFitIsRefused) {
-    for (const std::string arguments : {"", "--listen nowhere", "--listen unix:socket --engine unix:other",
-                                        "--listen unix:socket --engine local --workers 2",
-                                        "--listen unix:socket --tls-key key.pem", "--listen unix:socket --log xml",
-                                        "--listen unix:socket --log-level loud", "--listen unix:socket --token abc"}) {
+    for (const std::string arguments :
+         {"", "--listen nowhere", "--listen unix:socket --engine unix:other",
+          "--listen unix:socket --engine local --workers 2", "--listen unix:socket --rank-timeout 5",
+          "--listen unix:socket --tls-key key.pem", "--listen unix:socket --log xml",
+          "--listen unix:socket --log-level loud", "--listen unix:socket --token abc"}) {
         EXPECT_EQ(run("serve " + arguments).status, 2) << arguments;
     }
 }
