@@ -98,9 +98,10 @@ TEST_F(RankLeading, StreamsInBoundedMemory) {
         const auto local = make_local_engine(1);
         const std::uint64_t count = local->count_pairs(all);
         ASSERT_GT(count, testing::scaled(10 << 17, 4));  // pairs; 2^17 are 1 MiB
+        std::vector<std::optional<std::uint64_t>> limits = {{}, count / 3};
+        if (!testing::sanitized) limits.insert(limits.end(), {7, count - 5, count});
         for (const Order order : {Order::octal, Order::ascending}) {
-            for (const auto limit : {std::optional<std::uint64_t>(), std::optional(count - 5), std::optional(count / 3),
-                                     std::optional<std::uint64_t>(7), std::optional(count)}) {
+            for (const auto& limit : limits) {
                 Options options;
                 options.order = order;
                 options.limit = limit;
@@ -215,6 +216,7 @@ TEST_F(RankLeading, HasJobsAndCallsFromAllThreads) {
         Job job = engine.submit(borrowed(objects()), options);
         Job cancelled = engine.submit(borrowed(Objects{std::span<const Box3f>(many_), {}}));
         std::vector<std::jthread> callers;
+        callers.reserve(3);
         for (int i = 0; i < 3; ++i) callers.emplace_back([&] { expect_usable(engine); });
         EXPECT_TRUE(testing::same_bytes(job.take_pairs().to_vector(), expected_));
         EXPECT_EQ(last, 1);
