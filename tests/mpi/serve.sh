@@ -6,7 +6,12 @@ set -euo pipefail
 program=$1 mpirun=$2
 work=$(mktemp -d)
 server=""
-trap '[ -z "$server" ] || kill -KILL "$server" $(ranks) 2> /dev/null || true; rm -rf "$work"' EXIT
+# mpirun clears up what its ranks had, unless it is killed itself.
+clean_up() {
+    [ -z "$server" ] || { { kill -KILL $(ranks) || kill "$server"; } && wait "$server"; } 2> /dev/null || true
+    rm -rf "$work"
+}
+trap clean_up EXIT
 cd "$work"
 address=unix:$work/socket
 
