@@ -94,7 +94,7 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "replay a.npy --threads 1025",
         "replay a.npy --output p.csv",
         "serve",
-        "serve --listen unix:s --engine mpi",
+        "serve --listen unix:s --rank-timeout 5",
     };
     for (const std::string& arguments : wrong) {
         const Outcome outcome = run(arguments);

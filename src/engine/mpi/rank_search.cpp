@@ -43,6 +43,7 @@ struct RankSearch::Task {
     const Engine::Request& request;
     const Engine::Output& output;
     const IndexedCall* indexed = nullptr;
+    Recipients recipients = Recipients::all;
     const ProgressSink& told;
     std::stop_source stop;
     StopRelay stops;
@@ -64,8 +65,8 @@ RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::funct
 Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
                         Recipients recipients) {
     Task task(*this, request, output, control.progress);
-    const bool to_first = recipients == Recipients::first;
-    if (to_first && output.sink != nullptr) task.relay.emplace(comm_, *output.sink);
+    task.recipients = recipients;
+    if (recipients == Recipients::first && output.sink != nullptr) task.relay.emplace(comm_, *output.sink);
     return run(task, control);
 }
 
@@ -87,10 +88,10 @@ Summary RankSearch::run(Task& task, const Engine::Control& control) {
         const Traffic before = comm_.traffic();
         costs_ = {};
         find(task);
-        if (to_first && output.list != nullptr) {
+        if (task.recipients == Recipients::first && task.output.list != nullptr) {
             PairList all;
-            gather(*output.list, all.storage());
-            *output.list = std::move(all);
+            gather(*task.output.list, all.storage());
+            *task.output.list = std::move(all);
         }
         const Traffic& after = comm_.traffic();
         costs_.mpi = after.cpu_seconds - before.cpu_seconds;

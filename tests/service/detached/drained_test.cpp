@@ -72,7 +72,7 @@ protected:
 
 TEST_F(DrainedLanes, BeginNoDetachedJobs) {
     const auto before = queued_job(true), held = queued_job(true), attached = queued_job(false);
-    service::Lanes lanes(make, {1, 1, 0});
+    service::Lanes lanes({make, make}, {1, 1, 0});
     lanes.add(before);
     EXPECT_TRUE(comes_true([&] { return before->ended(); }));
     lanes.hold_detached();
@@ -84,7 +84,7 @@ TEST_F(DrainedLanes, BeginNoDetachedJobs) {
 
 TEST_F(DrainedLanes, RunNoDetachedJobsAtOnce) {
     const auto detached = queued_job(true), attached = queued_job(false);
-    service::Lanes lanes(make, {1, 1, 1});
+    service::Lanes lanes({make, make}, {1, 1, 1});
     lanes.hold_detached();
     lanes.add(attached);
     EXPECT_TRUE(attached->ended());
