@@ -30,12 +30,15 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOc
 }
 
 void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
+    // Loads are as long as the tree: one copy for each thread, none for one alone.
+    const std::size_t shares = std::min<std::size_t>(executor.width(), blocks_.size());
     std::mutex mutex;
-    executor.for_each(blocks_.size(), [&](std::size_t i) {
-        std::vector<OctantLoad> own(loads.size());
-        find(blocks_[i], own);
+    executor.for_each(shares, [&](std::size_t share) {
+        std::vector<OctantLoad> copy(shares > 1 ? loads.size() : 0);
+        const std::span<OctantLoad> own = shares > 1 ? std::span(copy) : loads;
+        for (std::size_t i = share; i < blocks_.size(); i += shares) find(blocks_[i], own);
         const std::lock_guard lock(mutex);
-        for (std::size_t node = 0; node < loads.size(); ++node) loads[node].add(own[node]);
+        for (std::size_t node = 0; node < copy.size(); ++node) loads[node].add(copy[node]);
     });
     for (const Block& block : blocks_) {
         if (block.bad) call_.refuse(source_, *block.bad);
