@@ -352,11 +352,17 @@ def cluster(results):
     return "\n".join(lines)
 
 
+def model(name):
+    """What bench/scaling_model.py makes of it."""
+    return lambda results: load(results / "model.json")[name]
+
+
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
           "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
           "service_crowds": service_crowds, "service_aims": service_aims, "scaling": scaling,
-          "scaling_aims": scaling_aims, "cluster": cluster}
+          "scaling_aims": scaling_aims, "cluster": cluster, "model": model("model"),
+          "model_check": model("model_check"), "model_far": model("model_far")}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
     BLOCKS[f"peers_{table}"] = lambda results, table=table: peers(results, table)
 

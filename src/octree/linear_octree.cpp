@@ -11,7 +11,8 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t sample_stride = 64;          // one object of so many is sampled, but
-constexpr std::size_t most_samples = 1 << 21;      // no more than these
+constexpr std::size_t most_samples = 1 << 21;      // no more than these, but
+constexpr std::size_t most_stride = 2048;          // objects: as many as crowd an octant
 constexpr std::size_t blocks_per_thread = 2;       // each counts entries per octant
 constexpr std::size_t least_block = 2048;          // objects
 constexpr std::size_t counts_per_range = 1 << 16;  // to be merged; fewer are not worth sharing out
@@ -52,7 +53,9 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 
 }  // namespace
 
-Sample octant_sample(std::uint64_t objects) { return {std::size_t(objects), sample_stride, most_samples}; }
+Sample octant_sample(std::uint64_t objects) {
+    return {std::size_t(objects), sample_stride, std::max(most_samples, std::size_t(objects) / most_stride)};
+}
 
 OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop) {
     const std::size_t sampled = octant_sample(objects).size();

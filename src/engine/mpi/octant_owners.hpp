@@ -23,6 +23,10 @@ struct OctantLoad {
         ++entries;
         extent += std::min({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
     }
+    void multiply(std::uint64_t by) {
+        entries *= by;
+        extent *= by;
+    }
     void add(const OctantLoad& other) {
         entries += other.entries;
         extent += other.extent;

@@ -184,7 +184,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
         loads.resize(octants.directory.nodes().size());
-        routing.emplace(task.joint, own, octants, task.stop.get_token());
+        routing.emplace(task.joint, own, octants, routing_, task.stop.get_token());
         routing->find(executor, loads);
     });
     comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});

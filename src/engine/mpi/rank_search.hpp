@@ -22,6 +22,7 @@
 #include "engine/mpi/master_search.hpp"
 #include "engine/mpi/object_arrays.hpp"
 #include "engine/mpi/rank_passes.hpp"
+#include "engine/mpi/routing.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "octopair/mpi.hpp"
@@ -87,6 +88,7 @@ private:
     std::function<void()> beside_;
     RankPasses passes_;
     std::array<ObjectArrays, 2> sent_, received_;
+    Routing::Memory routing_;
     PairList found_;
     RankCosts costs_;
     std::optional<MasterSearch> master_;  // of the paper's arrangement

@@ -12,21 +12,32 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t batch_size = 256;
+constexpr std::size_t least_counted = 1 << 14;   // objects: so many tell where a rank's lie
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
 constexpr std::size_t block_size = 1 << 16;      // objects
 
 }  // namespace
 
-Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, std::stop_token stop)
-    : call_(call), source_(source), octants_(octants), stop_(std::move(stop)), places_(source.size()) {
-    std::size_t end = 0;
+Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
+                 std::stop_token stop)
+    : call_(call),
+      source_(source),
+      octants_(octants),
+      stop_(std::move(stop)),
+      blocks_(memory.blocks_),
+      places_(memory.places_) {
+    counted_stride_ = std::max<std::size_t>(1, source.size() / least_counted);
+    places_.resize_discard(source.size());
+    std::size_t count = 0, end = 0;
     for (unsigned set = 0; set < 2; ++set) {
         std::size_t begin = end;
         end += std::size_t(call.sizes[set]);
         for (; begin < end; begin += block_size) {
-            blocks_.push_back({.set = set, .objects = {begin, std::min(begin + block_size, end)}});
+            if (count == blocks_.size()) blocks_.emplace_back();
+            blocks_[count++].begin(set, {begin, std::min(begin + block_size, end)});
         }
     }
+    blocks_.resize(count);
 }
 
 void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
@@ -40,6 +51,7 @@ void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
         const std::lock_guard lock(mutex);
         for (std::size_t node = 0; node < copy.size(); ++node) loads[node].add(copy[node]);
     });
+    for (OctantLoad& load : loads) load.multiply(counted_stride_);
     for (const Block& block : blocks_) {
         if (block.bad) call_.refuse(source_, *block.bad);
     }
@@ -80,15 +92,16 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
             // No branch on whether a box crosses, which nothing foretells.
             const bool crosses = !within(cells[i], homes[i].level());
             places_[begin + i] = homes[i].node();
-            loads[homes[i].node()].add(cells[i]);
             crossers[crossing] = std::uint32_t(i);
             crossing += crosses ? 1 : 0;
         }
+        const bool counted = begin / batch_size % counted_stride_ == 0;
+        for (std::size_t i = 0; counted && i < count; ++i) loads[homes[i].node()].add(cells[i]);
         for (std::size_t i = 0; i < crossing; ++i) ends[i].lo = cells[crossers[i]].hi;
         directory.leaves(std::span(ends).first(crossing), end_leaves);
         for (std::size_t i = 0; i < crossing; ++i) {
             const std::uint32_t object = crossers[i];
-            loads[end_leaves[i].node()].add(cells[object]);
+            if (counted) loads[end_leaves[i].node()].add(cells[object]);
             block.crossers.push_back(
                 {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
         }

@@ -28,21 +28,6 @@
 namespace octopair {
 
 class Routing {
-public:
-    /// Borrows all. `source`: this rank's objects.
-    Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, std::stop_token stop);
-
-    /// Adds to `loads`, which has an element for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
-    void find(Executor& executor, std::span<OctantLoad> loads);
-    /// Borrows `owners` until the end.
-    void address(Executor& executor, const OctantOwners& owners);
-    /// After address(): how many of a set go to each rank, and how many of all have several owners.
-    RankCounts counts(unsigned set) const;
-    std::uint64_t shared_objects() const;
-    /// Those of a set.
-    void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
-
-private:
     struct Crosser {
         std::size_t object;
         OctantOwners::Reach reach;
@@ -55,7 +40,39 @@ private:
         RankCounts counts = {};                  // of each rank
         std::vector<std::uint32_t> owners = {};  // of those that may have several: how many, and these
         std::uint64_t shared = 0;
+
+        void begin(unsigned of_set, const ObjectBlock& block) {
+            set = of_set;
+            objects = block;
+            bad.reset();
+            crossers.clear();
+            owners.clear();
+            shared = 0;
+        }
     };
+
+public:
+    /// What is kept from call to call: pages that are new have to be cleared first.
+    class Memory {
+        friend Routing;
+        std::vector<Block> blocks_;
+        Buffer<std::uint32_t> places_;
+    };
+    /// Borrows all. `source`: this rank's objects.
+    Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
+            std::stop_token stop);
+
+    /// Adds to `loads`, empty ones, one for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
+    void find(Executor& executor, std::span<OctantLoad> loads);
+    /// Borrows `owners` until the end.
+    void address(Executor& executor, const OctantOwners& owners);
+    /// After address(): how many of a set go to each rank, and how many of all have several owners.
+    RankCounts counts(unsigned set) const;
+    std::uint64_t shared_objects() const;
+    /// Those of a set.
+    void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
+
+private:
     void find(Block& block, std::span<OctantLoad> loads);
     void address(Block& block);
     void share(Block& block, std::span<const Crosser> crossers) const;
@@ -66,10 +83,11 @@ private:
     const BoxSource& source_;
     const PlantedOctants& octants_;
     std::stop_token stop_;
-    std::vector<Block> blocks_;
+    std::size_t counted_stride_ = 1;  // of batches: what octants hold is known from a part well enough
+    std::vector<Block>& blocks_;
     const OctantOwners* owners_ = nullptr;
-    Buffer<std::uint32_t> places_;  // of each object: the leaf that it begins in; after address() its owner
-    std::uint32_t several_ = 0;     // in place of an owner
+    Buffer<std::uint32_t>& places_;  // of each object: the leaf that it begins in; after address() its owner
+    std::uint32_t several_ = 0;      // in place of an owner
 };
 
 }  // namespace octopair

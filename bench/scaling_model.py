@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+"""A cost model of ranks, fitted to what `octopair bench cluster` measured (docs/scaling.md).
+
+    scaling_model.py RESULTS > RESULTS/model.json     the tables that bench/page.py puts there
+
+Of n objects on k ranks, boxes spread evenly:
+
+    shared   s = sigma (k / n)^(1/3)                          the part of the objects that several ranks receive: surfaces
+    compute  r (a + b log2 r) + d n + e k   seconds           r = (n / k) (1 + s) objects received; d: what every rank does for
+                                                              every octant of the tree; e: for every other rank
+    bytes    28 r (k - 1) / k + f n + g k + h                 that a rank sends
+    messages p (k - 1) + q                                    that a rank sends
+    network  messages x latency + bytes / bandwidth           a model: nothing of it was measured
+
+Constants come from least squares of relative errors on some of the runs; the others check them.
+"""
+import json
+import math
+import pathlib
+import sys
+
+import numpy
+
+CHECKED = {1_000_000, 2_000_000}  # objects of the runs that constants are not fitted to
+NETWORKS = {"1 Gbit/s, 50 us": (50e-6, 125e6), "25 Gbit/s, 5 us": (5e-6, 3.125e9), "200 Gbit/s, 2 us": (2e-6, 25e9)}
+
+
+def runs_of(results):
+    """Of uniform scenes on several ranks."""
+    runs = [run for name in ("cluster.json", "cluster_sizes.json")
+            for run in json.loads((results / name).read_text(encoding="utf-8"))["runs"]]
+    return [run for run in runs if run["scene"] == "uniform" and run["ranks"] > 1]
+
+
+def computing(run):
+    """Seconds of the mean rank."""
+    seconds = [sum(time for step, time in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
+    return sum(seconds) / len(seconds)
+
+
+def per_rank(run, name):
+    return sum(rank[name] for rank in run["together"]) / run["ranks"]
+
+
+def fit(rows, values):
+    """Not negative: a constant that would be is left out. Least squares of relative errors."""
+    rows, values = numpy.array(rows, float), numpy.array(values, float)
+    used = list(range(rows.shape[1]))
+    while True:
+        found = numpy.linalg.lstsq(rows[:, used] / values[:, None], numpy.ones(len(values)), rcond=None)[0]
+        if (found >= 0).all():
+            constants = numpy.zeros(rows.shape[1])
+            constants[used] = found
+            return constants.tolist()
+        del used[int(found.argmin())]
+
+
+class Model:
+    """What the constants say of a call."""
+
+    def __init__(self, runs):
+        self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
+                         [per_rank(run, "shared_objects") * run["ranks"] / run["objects"] for run in runs])[0]
+        sizes = [(run["objects"], run["ranks"]) for run in runs]
+        self.compute = fit([self.compute_row(n, k) for n, k in sizes], [computing(run) for run in runs])
+        self.sent = fit([[n, k, 1] for n, k in sizes],
+                        [per_rank(run, "bytes_sent") - 28 * self.received(*size) * (size[1] - 1) / size[1]
+                         for run, size in zip(runs, sizes)])
+        self.told = fit([[k - 1, 1] for _, k in sizes], [per_rank(run, "messages_sent") for run in runs])
+
+    def shared(self, n, k):
+        return min(1.0, self.sigma * (k / n) ** (1 / 3))
+
+    def received(self, n, k):
+        return n / k * (1 + self.shared(n, k))
+
+    def compute_row(self, n, k):
+        received = self.received(n, k)
+        return [received, received * math.log2(received), n, k]
+
+    def seconds(self, n, k):
+        """Of received objects, of the tree, of other ranks."""
+        parts = [a * b for a, b in zip(self.compute, self.compute_row(n, k))]
+        return parts[0] + parts[1], parts[2], parts[3]
+
+    def bytes(self, n, k):
+        f, g, h = self.sent
+        return 28 * self.received(n, k) * (k - 1) / k + f * n + g * k + h
+
+    def messages(self, k):
+        return self.told[0] * (k - 1) + self.told[1]
+
+
+def table(head, rows):
+    return "\n".join([f"| {' | '.join(head)} |", f"|{'--:|' * len(head)}", *(f"| {' | '.join(row)} |" for row in rows)])
+
+
+def constants_text(model):
+    a, b, d, e = model.compute
+    f, g, h = model.sent
+    p, q = model.told
+    return table(["sigma", "a, ns", "b, ns", "d, ns", "e, us", "f", "g", "h", "p", "q"],
+                 [[f"{model.sigma:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{d * 1e9:.3f}", f"{e * 1e6:.2f}",
+                   f"{f:.4f}", f"{g:.0f}", f"{h:,.0f}", f"{p:.1f}", f"{q:.0f}"]])
+
+
+def check_text(model, runs):
+    """Measured and as the model says, of runs that it was not fitted to."""
+    rows = []
+    for run in sorted(runs, key=lambda run: (run["objects"], run["ranks"])):
+        n, k = run["objects"], run["ranks"]
+        pairs = [(computing(run) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
+                 (per_rank(run, "shared_objects") * k / n * 100, model.shared(n, k) * 100, "{:.2f}"),
+                 (per_rank(run, "bytes_sent") * k / n, model.bytes(n, k) * k / n, "{:.1f}")]
+        rows.append([f"{n:,}", str(k)] + [form.format(number) for measured, said, form in pairs for number in
+                                          (measured, said)])
+    return table(["objects", "ranks", "mean ms", "model", "shared %", "model", "bytes an object", "model"], rows)
+
+
+def far_text(model):
+    """Far beyond what was measured."""
+    rows = []
+    for n, k in ((10**8, 64), (10**9, 512), (10**9, 4096), (10**10, 1024), (10**10, 4096)):
+        objects, tree, ranks = model.seconds(n, k)
+        networks = [model.messages(k) * latency + model.bytes(n, k) / bandwidth
+                    for latency, bandwidth in NETWORKS.values()]
+        rows.append([f"10^{round(math.log10(n))}", f"{k:,}", *(f"{seconds * 1e3:,.1f}" for seconds in
+                                                             (objects, tree, ranks)),
+                     f"{100 * objects / (objects + tree + ranks):.0f}%",
+                     *(f"{seconds * 1e3:,.0f}" for seconds in networks)])
+    return table(["objects", "ranks", "ms: own objects", "the tree", "other ranks", "own part", *NETWORKS], rows)
+
+
+def texts(results):
+    """The tables of docs/scaling.md."""
+    runs = runs_of(results)
+    model = Model([run for run in runs if run["objects"] not in CHECKED])
+    checked = [run for run in runs if run["objects"] in CHECKED]
+    return {"model": constants_text(model), "model_check": check_text(model, checked), "model_far": far_text(model)}
+
+
+if __name__ == "__main__":
+    print(json.dumps(texts(pathlib.Path(sys.argv[1])), indent=2))
