@@ -6,8 +6,9 @@
 Of n objects on k ranks, boxes spread evenly:
 
     shared   s = sigma (k / n)^(1/3)                          the part of the objects that several ranks receive: surfaces
-    compute  r (a + b log2 r) + d n + e k   seconds           r = (n / k) (1 + s) objects received; d: what every rank does for
-                                                              every octant of the tree; e: for every other rank
+    plant    c r + d n + e k   seconds                        r = (n / k) (1 + s) objects received; d: what every rank does for
+                                                              all octants of the tree; e: for every other rank
+    compute  r (a + b log2 r) + m k   seconds                 all other steps
     bytes    28 r (k - 1) / k + f n + g k + h                 that a rank sends
     messages p (k - 1) + q                                    that a rank sends
     network  messages x latency + bytes / bandwidth           a model: nothing of it was measured
@@ -32,10 +33,18 @@ def runs_of(results):
     return [run for run in runs if run["scene"] == "uniform" and run["ranks"] > 1]
 
 
+def mean_seconds(run, steps):
+    """Of the ranks."""
+    return sum(rank["cpu_seconds"][step] for rank in run["alone"] for step in steps) / run["ranks"]
+
+
+def planting(run):
+    return mean_seconds(run, ["plant"])
+
+
 def computing(run):
-    """Seconds of the mean rank."""
-    seconds = [sum(time for step, time in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
-    return sum(seconds) / len(seconds)
+    """All but planting."""
+    return mean_seconds(run, set(run["alone"][0]["cpu_seconds"]) - {"plant", "mpi"})
 
 
 def per_rank(run, name):
@@ -62,6 +71,7 @@ class Model:
         self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
                          [per_rank(run, "shared_objects") * run["ranks"] / run["objects"] for run in runs])[0]
         sizes = [(run["objects"], run["ranks"]) for run in runs]
+        self.plant = fit([[self.received(n, k), n, k] for n, k in sizes], [planting(run) for run in runs])
         self.compute = fit([self.compute_row(n, k) for n, k in sizes], [computing(run) for run in runs])
         self.sent = fit([[n, k, 1] for n, k in sizes],
                         [per_rank(run, "bytes_sent") - 28 * self.received(*size) * (size[1] - 1) / size[1]
@@ -76,12 +86,13 @@ class Model:
 
     def compute_row(self, n, k):
         received = self.received(n, k)
-        return [received, received * math.log2(received), n, k]
+        return [received, received * math.log2(received), k]
 
     def seconds(self, n, k):
         """Of received objects, of the tree, of other ranks."""
-        parts = [a * b for a, b in zip(self.compute, self.compute_row(n, k))]
-        return parts[0] + parts[1], parts[2], parts[3]
+        own, logarithm, ranks = (a * b for a, b in zip(self.compute, self.compute_row(n, k)))
+        c, d, e = self.plant
+        return own + logarithm + c * self.received(n, k), d * n, ranks + e * k
 
     def bytes(self, n, k):
         f, g, h = self.sent
@@ -96,11 +107,12 @@ def table(head, rows):
 
 
 def constants_text(model):
-    a, b, d, e = model.compute
+    a, b, m = model.compute
+    c, d, e = model.plant
     f, g, h = model.sent
     p, q = model.told
-    return table(["sigma", "a, ns", "b, ns", "d, ns", "e, us", "f", "g", "h", "p", "q"],
-                 [[f"{model.sigma:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{d * 1e9:.3f}", f"{e * 1e6:.2f}",
+    return table(["sigma", "a, ns", "b, ns", "c, ns", "d, ns", "e, us", "m, us", "f", "g", "h", "p", "q"],
+                 [[f"{model.sigma:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{c * 1e9:.1f}", f"{d * 1e9:.3f}", f"{e * 1e6:.2f}", f"{m * 1e6:.2f}",
                    f"{f:.4f}", f"{g:.0f}", f"{h:,.0f}", f"{p:.1f}", f"{q:.0f}"]])
 
 
@@ -109,7 +121,7 @@ def check_text(model, runs):
     rows = []
     for run in sorted(runs, key=lambda run: (run["objects"], run["ranks"])):
         n, k = run["objects"], run["ranks"]
-        pairs = [(computing(run) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
+        pairs = [((planting(run) + computing(run)) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
                  (per_rank(run, "shared_objects") * k / n * 100, model.shared(n, k) * 100, "{:.2f}"),
                  (per_rank(run, "bytes_sent") * k / n, model.bytes(n, k) * k / n, "{:.1f}")]
         rows.append([f"{n:,}", str(k)] + [form.format(number) for measured, said, form in pairs for number in
