@@ -10,11 +10,12 @@
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/ascending_pieces.hpp"
 #include "engine/mpi/cost_meter.hpp"
-#include "engine/mpi/even_runs.hpp"
 #include "engine/mpi/index_order.hpp"
+#include "engine/mpi/indexed_pairs.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/octant_owners.hpp"
 #include "engine/mpi/planting.hpp"
+#include "engine/mpi/rank_task.hpp"
 #include "engine/mpi/relay.hpp"
 #include "engine/mpi/routing.hpp"
 #include "engine/receiver.hpp"
@@ -28,34 +29,6 @@ namespace {
 constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // whose indices a Pair has
 
 }  // namespace
-
-/// One call.
-struct RankSearch::Task {
-    Task(RankSearch& search, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
-        : request(asked),
-          output(out),
-          told(sink),
-          stops(search.comm_, stop, search.beside_),
-          agreement(search.comm_),
-          progress(sink),
-          order(search.comm_) {}
-
-    const Engine::Request& request;
-    const Engine::Output& output;
-    const IndexedCall* indexed = nullptr;
-    Recipients recipients = Recipients::all;
-    const ProgressSink& told;
-    std::stop_source stop;
-    StopRelay stops;
-    Agreement agreement;
-    Progress progress;
-    std::optional<Relay> relay;  // where a sink of the first rank receives all
-    JointCall joint;
-    std::array<Objects, 2> slices;
-    IndexOrder order;  // of an indexed call
-    Summary summary;
-    unsigned sets() const { return joint.join ? 2 : 1; }
-};
 
 RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> beside)
     : comm_(comm), beside_(std::move(beside)), passes_(options.threads) {
@@ -205,11 +178,18 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
         }
     });
     costs_.route -= costs_.pack;
-    const OctantOwners& owners = *cut;
     costs_.shared_objects = routing->shared_objects();
+    exchange_objects(task, *routing);
+    const OctantOwners& owners = *cut;
+    PairNumbers numbers;
+    if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
+    return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
+}
+
+void RankSearch::exchange_objects(Task& task, const Routing& routing) {
     std::uint64_t incoming = 0;
-    for (unsigned set = 0; set < sets; ++set) {
-        const Exchange counts = comm_.plan_exchange(routing->counts(set));
+    for (unsigned set = 0; set < task.sets(); ++set) {
+        const Exchange counts = comm_.plan_exchange(routing.counts(set));
         incoming += counts.incoming();
         task.agreement.together([&] {
             if (incoming > most_objects)
@@ -219,9 +199,6 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
         exchange(comm_, sent_[set], received_[set], counts);
         costs_.objects_received += received_[set].size();
     }
-    PairNumbers numbers;
-    if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
-    return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
 }
 
 void RankSearch::search(Task& task, const Engine::Request& own_octants) {
@@ -243,23 +220,6 @@ void RankSearch::search(Task& task, const Engine::Request& own_octants) {
 }
 
 namespace {
-
-/// Collective: this rank's pairs become its piece of the ascending sequence of all.
-void sort_over_ranks(Communicator& comm, std::vector<Pair64>& pairs) {
-    Agreement agreement(comm);
-    std::vector<std::uint64_t> keys;
-    agreement.together([&] {
-        std::ranges::sort(pairs);
-        keys.reserve(pairs.size());
-        for (const Pair64& pair : pairs) keys.push_back(pair.a);
-    });
-    const Exchange counts = comm.plan_exchange(even_runs(comm, keys));
-    std::vector<Pair64> received;
-    agreement.together([&] { received.resize(counts.incoming()); });
-    comm.exchange(pairs.data(), received.data(), counts);
-    agreement.together([&] { std::ranges::sort(received); });
-    pairs = std::move(received);
-}
 
 /// Of pieces of these sizes, how many pairs of one rank's are within the limit; the summary gets what there are in all.
 std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, const Options& options,
@@ -306,7 +266,11 @@ void RankSearch::find_indexed(Task& task, Call& call) {
         build(task, call);
         const Metered metered(comm_, costs_.scan);
         passes_.list_octal(call, found_.storage(), 1);
-        name_found(task, pairs);
+        const auto indices = [&](unsigned set) {
+            return comm_.size() == 1 ? task.joint.indices[set] : std::as_const(received_[set].indices).span();
+        };
+        name_pairs(found_, indices(0), indices(task.joint.join ? 1 : 0), pairs);
+        found_.storage().reset();
     });
     if (options.order == Order::ascending) {
         const Metered metered(comm_, costs_.order);
@@ -314,19 +278,6 @@ void RankSearch::find_indexed(Task& task, Call& call) {
     }
     const auto pieces = comm_.all_gather(std::uint64_t(pairs.size()));
     pairs.resize(std::size_t(octopair::allowed(pieces, comm_.rank(), options, task.summary)));
-}
-
-void RankSearch::name_found(const Task& task, std::vector<Pair64>& pairs) {
-    const auto indices = [&](unsigned set) {
-        return comm_.size() == 1 ? task.joint.indices[set]
-                                 : std::span<const std::uint64_t>(received_[set].indices.span());
-    };
-    const auto first = indices(0), second = indices(task.joint.join ? 1 : 0);
-    pairs.reserve(std::size_t(found_.size()));
-    for (const auto chunk : found_.chunks()) {
-        for (const Pair& pair : chunk) pairs.push_back({first[pair.a], second[pair.b]});
-    }
-    found_.storage().reset();
 }
 
 /// To the caller of each rank, or one rank's after another's to that of the first.

@@ -71,6 +71,7 @@ private:
     void find_at_master(Task& task);
     PlantedOctants plant(Task& task, const BoxSource& own);
     RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
+    void exchange_objects(Task& task, const Routing& routing);
     void search(Task& task, const Engine::Request& own_octants);
     void build(Task& task, Call& call);
     void count(Task& task, Call& call);
@@ -79,7 +80,6 @@ private:
     bool list_octal(Call& call, std::uint64_t most);
     void find_windows(Task& task, Call& call);
     void find_indexed(Task& task, Call& call);
-    void name_found(const Task& task, std::vector<Pair64>& pairs);
     std::uint64_t relay_octal(Task& task, Call& call, const OctalPairs& own);
     std::uint64_t allowed(Task& task, const PiecePlan& plan) const;
     void deliver(Task& task, std::uint64_t allowance, const Give& give);

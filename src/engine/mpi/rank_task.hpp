@@ -1,0 +1,44 @@
+// RankSearch::Task: one call, on its way through the steps.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <stop_token>
+
+#include "engine/mpi/agreement.hpp"
+#include "engine/mpi/index_order.hpp"
+#include "engine/mpi/joint_call.hpp"
+#include "engine/mpi/rank_search.hpp"
+#include "engine/mpi/relay.hpp"
+#include "engine/progress.hpp"
+
+namespace octopair {
+
+struct RankSearch::Task {
+    Task(RankSearch& search, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
+        : request(asked),
+          output(out),
+          told(sink),
+          stops(search.comm_, stop, search.beside_),
+          agreement(search.comm_),
+          progress(sink),
+          order(search.comm_) {}
+
+    const Engine::Request& request;
+    const Engine::Output& output;
+    const IndexedCall* indexed = nullptr;
+    Recipients recipients = Recipients::all;
+    const ProgressSink& told;
+    std::stop_source stop;
+    StopRelay stops;
+    Agreement agreement;
+    Progress progress;
+    std::optional<Relay> relay;  // where a sink of the first rank receives all
+    JointCall joint;
+    std::array<Objects, 2> slices;
+    IndexOrder order;  // of an indexed call
+    Summary summary;
+    unsigned sets() const { return joint.join ? 2 : 1; }
+};
+
+}  // namespace octopair
