@@ -55,8 +55,10 @@ Called scattered(const OwnedObjects& set, Spread spread, std::uint64_t seed) {
 }
 
 std::vector<Pair64> called(const std::vector<Pair>& pairs) {
-    std::vector<Pair64> all;
-    for (const Pair& pair : pairs) all.push_back({index_of(pair.a), index_of(pair.b)});
+    std::vector<Pair64> all(pairs.size());
+    std::ranges::transform(pairs, all.begin(), [](const Pair& pair) {
+        return Pair64{index_of(pair.a), index_of(pair.b)};
+    });
     return all;
 }
 

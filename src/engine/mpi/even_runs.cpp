@@ -36,8 +36,8 @@ RankCounts even_runs(Communicator& comm, std::span<const std::uint64_t> keys) {
     RankCounts runs;
     agreement.together([&] {
         std::ranges::sort(samples, {}, &SampledKey::key);
-        std::vector<std::uint64_t> weights;
-        for (const SampledKey& sample : samples) weights.push_back(sample.weight);
+        std::vector<std::uint64_t> weights(samples.size());
+        std::ranges::transform(samples, weights.begin(), &SampledKey::weight);
         std::size_t begin = 0;
         const std::vector<std::size_t> cuts = even_cuts(weights, comm.size());
         for (std::size_t rank = 1; rank <= comm.size(); ++rank) {

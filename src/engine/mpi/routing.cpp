@@ -18,6 +18,7 @@ constexpr std::size_t block_size = 1 << 16;      // objects
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): what is routed, where, with which memory, until when.
 Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
                  std::stop_token stop)
     : call_(call),
