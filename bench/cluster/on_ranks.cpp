@@ -95,10 +95,13 @@ private:
         use_tape(*engine_, &tape);
         tape.record();
         (void)call();
+        // What disturbs the machine for a moment would fall on one rank, if that had one turn.
+        constexpr unsigned turns = 3;
         std::vector<RankCosts> costs;
-        for (int turn = 0; turn < ranks_; ++turn) {
+        for (unsigned turn = 0; turn < turns * unsigned(ranks_); ++turn) {
             wait_for_all();
-            for (unsigned round = 0; turn == rank_ && round <= rounds_; ++round) {
+            const bool own = turn % unsigned(ranks_) == unsigned(rank_);
+            for (unsigned round = 0; own && round <= (rounds_ + turns - 1) / turns; ++round) {
                 tape.replay();
                 (void)call();
                 if (round > 0) costs.push_back(last_costs(*engine_));
