@@ -23,9 +23,8 @@ def load(path):
 def machine(results):
     """What measured."""
     others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
-              *results.glob("service.json"), *results.glob("scaling*.json"), *results.glob("cluster.json")]
+              *results.glob("service.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
-    files = [file.get("machine", file) for file in files]
     said = files[0]
     commits = sorted({file["commit"] for file in files})
     return (f"Measured on {said['processor']}, {said['cores']} cores, with {said['compiler']}; octopair "
@@ -62,10 +61,14 @@ def paper(results):
     return verbatim((results / "paper.txt").read_text(encoding="utf-8"))
 
 
+def measured_on(said):
+    """Of what was measured apart from the rest."""
+    return f"Measured on {said['processor']}, {said['cores']} cores, commit {said['commit']}.\n\n"
+
+
 def machines(results):
     """On which machine, and the tables."""
-    said = load(results / "machines.json")
-    return (f"Measured on {said['processor']}, {said['cores']} cores, commit {said['commit']}.\n\n"
+    return (measured_on(load(results / "machines.json"))
             + verbatim((results / "machines.txt").read_text(encoding="utf-8")))
 
 
@@ -331,7 +334,8 @@ def cluster(results):
     """A row for each number of ranks in each call."""
     lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object |",
              "|---|--:|--:|--:|--:|--:|--:|"]
-    runs = load(results / "cluster.json")["runs"]
+    study = load(results / "cluster.json")
+    runs = study["runs"]
 
     def computing(run):
         return [sum(seconds for step, seconds in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
@@ -349,7 +353,7 @@ def cluster(results):
                  f"{max(seconds) * ranks / sum(seconds):.3f}", efficiency,
                  f"{100 * sums['shared_objects'] / run['objects']:.2f}%", f"{sums['bytes_sent'] / run['objects']:.1f}"]
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+    return measured_on(study["machine"]) + "\n".join(lines)
 
 
 def model(name):
