@@ -112,7 +112,8 @@ def constants_text(model):
     f, g, h = model.sent
     p, q = model.told
     return table(["sigma", "a, ns", "b, ns", "c, ns", "d, ns", "e, us", "m, us", "f", "g", "h", "p", "q"],
-                 [[f"{model.sigma:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{c * 1e9:.1f}", f"{d * 1e9:.3f}", f"{e * 1e6:.2f}", f"{m * 1e6:.2f}",
+                 [[f"{model.sigma:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{c * 1e9:.1f}", f"{d * 1e9:.3f}",
+                   f"{e * 1e6:.2f}", f"{m * 1e6:.2f}",
                    f"{f:.4f}", f"{g:.0f}", f"{h:,.0f}", f"{p:.1f}", f"{q:.0f}"]])
 
 

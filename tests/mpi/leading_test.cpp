@@ -64,17 +64,6 @@ protected:
         EXPECT_FALSE(summary.truncated);
         EXPECT_GT(summary.entries, 0u);
     }
-    template <typename Call>
-    static std::string error_of(ErrorCode code, const Call& call) {
-        try {
-            call();
-        } catch (const Error& error) {
-            EXPECT_EQ(int(error.code()), int(code)) << error.what();
-            return error.what();
-        }
-        ADD_FAILURE() << "no error";
-        return {};
-    }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
@@ -128,7 +117,8 @@ TEST_F(RankLeading, TellsErrorsInTheWordsOfThreads) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const auto expect_same = [&](ErrorCode code, const auto& call) {
-            EXPECT_EQ(error_of(code, [&] { call(engine); }), error_of(code, [&] { call(*local); }));
+            EXPECT_EQ(testing::message_of(code, [&] { call(engine); }),
+                      testing::message_of(code, [&] { call(*local); }));
             expect_usable(engine);
         };
         std::vector<Box3f> bad = boxes_;
@@ -187,7 +177,8 @@ TEST_F(RankLeading, EndsAllRanksAtAStop) {
     lead([&](Engine& engine) {
         std::stop_source early;
         early.request_stop();
-        (void)error_of(ErrorCode::cancelled, [&] { (void)engine.count_pairs(objects(), {}, early.get_token()); });
+        (void)testing::message_of(ErrorCode::cancelled,
+                                  [&] { (void)engine.count_pairs(objects(), {}, early.get_token()); });
         for (const Order order : {Order::octal, Order::ascending}) {
             std::stop_source stop;
             const std::jthread stopper([&] {
@@ -197,7 +188,7 @@ TEST_F(RankLeading, EndsAllRanksAtAStop) {
             Options options;
             options.order = order;
             const PairSink sink = [](std::span<const Pair>) {};
-            (void)error_of(ErrorCode::cancelled, [&] {
+            (void)testing::message_of(ErrorCode::cancelled, [&] {
                 (void)engine.stream_pairs({std::span<const Box3f>(many_), {}}, sink, options, stop.get_token());
             });
         }

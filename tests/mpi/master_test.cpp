@@ -153,18 +153,6 @@ TEST(RankMaster, IsOneOfTheRanksThatBuildLists) {
     }
 }
 
-template <typename Call>
-std::string message_of(ErrorCode code, const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(int(error.code()), int(code)) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "nothing was thrown";
-    return {};
-}
-
 /// Whoever has it in its run finds it, and all say what the local engine would.
 TEST(RankMaster, NamesTheFirstBadBox) {
     std::vector<Box3f> boxes = samples::make_scene("dense", 5'000, 1);
@@ -175,11 +163,13 @@ TEST(RankMaster, NamesTheFirstBadBox) {
         const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);
         const std::vector<Box3f> well = testing::slice(good, Spread::even);
         PairList list;
-        EXPECT_EQ(message_of(ErrorCode::bad_input, [&] { (void)engine->find_pairs(view(own), list); }),
-                  message_of(ErrorCode::bad_input, [&] { (void)find_pairs(boxes); }));
-        EXPECT_EQ(message_of(ErrorCode::bad_input, [&] { (void)engine->count_pairs_between(view(well), view(own)); }),
-                  message_of(ErrorCode::bad_input,
-                             [&] { (void)make_local_engine(1)->count_pairs_between(view(good), view(boxes)); }));
+        EXPECT_EQ(testing::message_of(ErrorCode::bad_input, [&] { (void)engine->find_pairs(view(own), list); }),
+                  testing::message_of(ErrorCode::bad_input, [&] { (void)find_pairs(boxes); }));
+        EXPECT_EQ(testing::message_of(ErrorCode::bad_input,
+                                      [&] { (void)engine->count_pairs_between(view(well), view(own)); }),
+                  testing::message_of(ErrorCode::bad_input, [&] {
+                      (void)make_local_engine(1)->count_pairs_between(view(good), view(boxes));
+                  }));
     }
     EXPECT_EQ(engine->count_pairs(view(testing::slice(good, Spread::even))), find_pairs(good).size());
 }
@@ -194,7 +184,7 @@ TEST(RankMaster, EndsOnAllWhereItsReceiverFails) {
     if (own_rank() == 0) {
         EXPECT_THROW(call(), std::runtime_error);
     } else {
-        EXPECT_EQ(message_of(ErrorCode::engine_failed, call), "rank 0: the receiver of the pairs failed");
+        EXPECT_EQ(testing::message_of(ErrorCode::engine_failed, call), "rank 0: the receiver of the pairs failed");
     }
     expect_at_master(listed(*engine, view(own), Order::ascending), [&] { return find_pairs(boxes); });
 }
@@ -215,8 +205,8 @@ TEST(RankMaster, IsStoppedByAnotherRank) {
         Options options;
         options.order = order;
         PairList list;
-        EXPECT_EQ(message_of(ErrorCode::cancelled,
-                             [&] { (void)engine->find_pairs(view(many), list, options, stop.get_token()); }),
+        EXPECT_EQ(testing::message_of(ErrorCode::cancelled,
+                                      [&] { (void)engine->find_pairs(view(many), list, options, stop.get_token()); }),
                   "cancelled");
     }
 }
@@ -233,13 +223,14 @@ TEST(RankMaster, HasFewObjectsOrNone) {
 }
 
 TEST(RankMaster, NeedsTheSameArrangementOnAllRanks) {
-    EXPECT_EQ(message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }), "machines of no ranks");
+    EXPECT_EQ(testing::message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }), "machines of no ranks");
     if (rank_count() == 1) GTEST_SKIP() << "one rank cannot differ";
-    EXPECT_EQ(message_of(ErrorCode::usage, [] { (void)make_paper_engine(own_rank() == 0 ? 1 : 2); }),
+    EXPECT_EQ(testing::message_of(ErrorCode::usage, [] { (void)make_paper_engine(own_rank() == 0 ? 1 : 2); }),
               "the arrangements of the ranks' engines differ");
-    EXPECT_EQ(message_of(ErrorCode::usage,
-                         [] { (void)(own_rank() == 0 ? make_paper_engine() : make_mpi_engine(MPI_COMM_WORLD)); }),
-              "the arrangements of the ranks' engines differ");
+    EXPECT_EQ(
+        testing::message_of(ErrorCode::usage,
+                            [] { (void)(own_rank() == 0 ? make_paper_engine() : make_mpi_engine(MPI_COMM_WORLD)); }),
+        "the arrangements of the ranks' engines differ");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What the tests of the MPI engine share: they run on all ranks alike, each with its slice of the same scene.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mpi.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
 #include "support/cases.hpp"
 
@@ -58,6 +60,19 @@ std::vector<AnyPair> all_pieces(const std::vector<AnyPair>& own) {
     std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(all)).begin());
     return all;
 }
+/// What the Error says that `call` throws; fails if it throws none, or of another code.
+template <typename Call>
+std::string message_of(ErrorCode code, const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        EXPECT_EQ(int(error.code()), int(code)) << error.what();
+        return error.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return {};
+}
+
 /// True on all ranks if on all.
 bool on_all(bool own);
 /// The largest of all ranks'.

@@ -5,6 +5,7 @@
 // is there too.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,7 +48,7 @@ public:
     /// All octants that a box belongs in lie, in pre-order, from the first of these to the last.
     struct Reach {
         NodeIndex first = 0, last = 0;
-        bool only = false;  ///< they are no others
+        bool only = false;  ///< there are no others
     };
     /// `home`, `end`: the leaves that the box begins and ends in. A cell that is on no axis before another does not come
     /// before it in pre-order.

@@ -2,7 +2,7 @@
 //
 //   find     each object's home leaf -> how much work each octant makes with this rank's objects
 //   address  with the owners: the ranks that each object goes to, and how many objects go to each rank
-//   pack     boxes, paddings and positions, one rank's after another's, each rank's ascending by position
+//   pack     boxes, paddings, positions or indices, one rank's after another's, each rank's ascending by position
 // What arrives from all ranks, in their order, is then again ascending by position, set after set; so within a rank objects
 // have numbers of their own, in the same order as their positions.
 //
@@ -58,6 +58,7 @@ public:
         std::vector<Block> blocks_;
         Buffer<std::uint32_t> places_;
     };
+
     /// Borrows all. `source`: this rank's objects.
     Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
             std::stop_token stop);
