@@ -10,6 +10,10 @@ install(DIRECTORY include/octopair DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES
 install(FILES ${PROJECT_BINARY_DIR}/include/octopair/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/octopair)
 install(TARGETS octopair EXPORT octopair_targets)
 install(EXPORT octopair_targets NAMESPACE octopair:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+if(OCTOPAIR_WITH_PIPELINE)
+    install(TARGETS octopair_pipeline EXPORT octopair_pipeline_targets)
+    install(EXPORT octopair_pipeline_targets NAMESPACE octopair:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/octopair)
+endif()
 if(OCTOPAIR_WITH_PROCESSES)
     install(TARGETS octopair_worker EXPORT octopair_processes_targets
             RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/octopair)

@@ -27,7 +27,7 @@ USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster", "scaling"}
 
 PURPOSE = {
     "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
-    "geometry": "boxes and how they are judged", "octree": "octal codes, encode, sort, merge, scan",
+    "geometry": "boxes, shapes, and how they are judged", "octree": "octal codes, encode, sort, merge, scan",
     "pipeline": "filters and their composition", "engine": "where and how pairs are found",
     "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
     "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
@@ -40,6 +40,7 @@ THIRD_PARTY = {
     "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "engine", "scene"}, "assimp": {"io"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
+    "fcl": {"geometry"}, "Eigen": {"geometry"}, "boost": {"geometry"},
     "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "service", "cli"},
     "nlohmann": {"io", "machine", "paper", "cluster", "scaling", "service", "cli"},
 }

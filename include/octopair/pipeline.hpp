@@ -1,0 +1,159 @@
+// The pipeline: filters in a row behind any engine. Pairs go in, collisions come out.
+//
+//     pairs -> [masks, exclusions] -> [exact object] -> [exact feature] -> collisions with contacts
+//
+// Order     that of the engine's pairs (Options::order); the same bytes for any number of threads and from every engine.
+// Memory    bounded by the batch: at most Options::buffer_bytes of pairs are held, and what filters learned of a part of
+//           them.
+// Errors    octopair::Error; what a filter or the sink throws ends the call and reaches the caller.
+// Threads   filters run in the caller's process, on several threads at once, each with its own batch; one pipeline makes
+//           one call at a time. CMake: link octopair::pipeline.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octopair/engine.hpp"
+#include "octopair/shapes.hpp"
+
+namespace octopair {
+
+/// What two objects are to each other. `collision`: they meet, and nobody asked how.
+enum class CollisionClass : std::uint8_t {
+    unknown,    ///< no exact filter has seen the pair
+    clearance,  ///< they do not meet, but are no further apart than margin and paddings allow
+    collision,
+    touching,     ///< they meet, and their insides do not
+    penetrating,  ///< their insides, or surfaces, pass through each other
+    contained,    ///< one lies inside the other, and their surfaces do not meet
+};
+
+/// Where two features meet. `normal`: of length 1, from a to b: moving b along it by `depth` ends this contact.
+struct Contact {
+    static constexpr std::uint32_t no_feature = 0xFFFFFFFF;
+
+    Point3d point;
+    Point3d normal;
+    double depth = 0;                      ///< >= 0
+    std::uint32_t feature_a = no_feature;  ///< the triangle of a mesh
+    std::uint32_t feature_b = no_feature;
+};
+
+/// What filters learned of a pair.
+struct Finding {
+    CollisionClass collision_class = CollisionClass::unknown;
+    double distance = 0;                  ///< between two that do not meet
+    std::array<Point3d, 2> nearest = {};  ///< of these: a point of a and one of b, that far apart
+    double depth = 0;                     ///< of two that meet: how deep, where a filter found out
+    double time = 0;                      ///< of moving objects: when they first meet, 0 to 1
+    std::vector<Contact> contacts = {};
+    bool more_contacts = false;  ///< contacts were left out for the limit's sake
+    std::uint64_t note = 0;      ///< a user's own filters may use it; no other does
+};
+
+/// Some pairs on their way through the filters, in order.
+class Batch {
+public:
+    std::span<const Pair> pairs() const { return pairs_; }
+    /// What is known of each pair: as many as there are pairs, or none if no filter has learned anything.
+    std::span<const Finding> findings() const { return findings_; }
+
+    /// What is known of a pair, to be added to. Finding places are made for all pairs at the first call.
+    Finding& finding(std::size_t i) {
+        if (findings_.empty()) findings_.resize(pairs_.size());
+        return findings_[i];
+    }
+
+    /// Lets pairs through for which keep(i) is true, with what is known of them. Called in order of i, which counts in
+    /// the batch as it was before; `keep` may call finding(i). Throws Error{cancelled} after a stop request.
+    template <typename Keep>
+    void keep_if(Keep keep) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            if (stop_.stop_requested()) cancel();
+            if (!keep(i)) continue;
+            if (kept != i) {
+                pairs_[kept] = pairs_[i];
+                if (!findings_.empty()) findings_[kept] = std::move(findings_[i]);
+            }
+            ++kept;
+        }
+        pairs_.resize(kept);
+        if (!findings_.empty()) findings_.resize(kept);
+    }
+
+    /// For filters that take long over one pair.
+    const std::stop_token& stop() const { return stop_; }
+
+private:
+    friend class Pipeline;
+    [[noreturn]] static void cancel();
+
+    std::vector<Pair> pairs_;
+    std::vector<Finding> findings_;
+    std::stop_token stop_;
+};
+
+/// One stage of the pipeline. A user's own: a class with a name, and an apply() that calls batch.keep_if().
+class Filter {
+public:
+    Filter() = default;
+    Filter(const Filter&) = delete;
+    Filter& operator=(const Filter&) = delete;
+    virtual ~Filter() = default;
+
+    /// For the summary: "exact object".
+    virtual std::string_view name() const = 0;
+    /// Called by several threads at once, with different batches. What it does to a pair must depend on that pair alone.
+    virtual void apply(Batch& batch) const = 0;
+};
+
+/// A filter made of a condition that a pair has to meet.
+std::unique_ptr<Filter> make_filter(std::string name, std::function<bool(Pair)> keep);
+
+struct FilterCounts {
+    std::string name;
+    std::uint64_t in = 0, out = 0;
+    double seconds = 0;  ///< of all threads together
+};
+
+struct PipelineSummary {
+    std::uint64_t collisions = 0;  ///< what came out
+    bool truncated = false;        ///< `limit` was reached and at least one more collision exists
+    double seconds = 0;            ///< wall clock
+    Summary search;                ///< of the all-pairs stage, as far as it went
+    std::vector<FilterCounts> filters;
+};
+
+/// Receives batches in order, on the calling thread; a batch is valid during the call only, and not empty. What it throws
+/// ends the call and reaches the caller.
+using CollisionSink = std::function<void(const Batch&)>;
+
+class Pipeline {
+public:
+    /// `threads`: for the filters; 0: one per core.
+    explicit Pipeline(unsigned threads = 0);
+    ~Pipeline();
+
+    /// Behind those that are there.
+    void add(std::unique_ptr<Filter> filter);
+
+    /// Finds pairs with the engine and filters them; `limit` counts what comes out. An empty sink has it counted only.
+    PipelineSummary run(Engine& engine, const Objects& objects, const CollisionSink& sink, const Options& options = {},
+                        std::stop_token stop = {});
+    PipelineSummary run_between(Engine& engine, const Objects& first, const Objects& second, const CollisionSink& sink,
+                                const Options& options = {}, std::stop_token stop = {});
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace octopair
