@@ -1,0 +1,161 @@
+// Geometry: a shape, checked and made ready.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "geometry/shape/prepared.hpp"
+#include "geometry/shape/vector.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::bad_input, what); }
+
+void check_length(double value, const std::string& what) {
+    if (!(value > 0) || !std::isfinite(value)) {
+        refuse(what + " is " + std::to_string(value) + "; it must be finite and above 0");
+    }
+}
+
+void check_point(const Point3d& point, const std::string& what) {
+    for (const double at : point) {
+        if (!std::isfinite(at)) refuse(what + " has a coordinate that is not finite: " + std::to_string(at));
+    }
+}
+
+void check_lengths(const Point3d& lengths, const std::string& what) {
+    for (std::size_t axis = 0; axis < 3; ++axis) check_length(lengths[axis], what + " along " + "xyz"[axis]);
+}
+
+void check_shape(const shape::Sphere& sphere) { check_length(sphere.radius, "a sphere's radius"); }
+void check_shape(const shape::Box& box) { check_lengths(box.half_extents, "a box's half extent"); }
+void check_shape(const shape::Capsule& capsule) {
+    check_length(capsule.radius, "a capsule's radius");
+    if (!(capsule.length >= 0) || !std::isfinite(capsule.length)) {
+        refuse("a capsule's length is " + std::to_string(capsule.length) + "; it must be finite and not below 0");
+    }
+}
+void check_shape(const shape::Cylinder& cylinder) {
+    check_length(cylinder.radius, "a cylinder's radius");
+    check_length(cylinder.length, "a cylinder's length");
+}
+void check_shape(const shape::Cone& cone) {
+    check_length(cone.radius, "a cone's radius");
+    check_length(cone.length, "a cone's length");
+}
+void check_shape(const shape::Ellipsoid& ellipsoid) { check_lengths(ellipsoid.radii, "an ellipsoid's radius"); }
+void check_shape(const shape::Plane& plane) {
+    check_point(plane.normal, "a plane's normal");
+    if (plane.normal == Point3d{0, 0, 0}) refuse("a plane's normal is 0");
+    if (!std::isfinite(plane.offset)) refuse("a plane's offset is not finite: " + std::to_string(plane.offset));
+    const double length = vector::length(plane.normal);
+    if (!std::isfinite(length) || !std::isfinite(plane.offset / length)) {
+        refuse("a plane's offset is " + std::to_string(plane.offset) + ", beyond float64 for a normal of its length");
+    }
+}
+void check_shape(const shape::ConvexHull& hull) {
+    if (hull.points.empty()) refuse("a convex hull has no points");
+    for (std::size_t i = 0; i < hull.points.size(); ++i) {
+        check_point(hull.points[i], "point " + std::to_string(i) + " of a convex hull");
+    }
+}
+void check_shape(const shape::Mesh& mesh) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        check_point(mesh.vertices[i], "vertex " + std::to_string(i) + " of a mesh");
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const std::uint32_t vertex : mesh.triangles[i]) {
+            if (vertex < mesh.vertices.size()) continue;
+            refuse("triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) + " of " +
+                   std::to_string(mesh.vertices.size()));
+        }
+    }
+}
+
+/// The vertices that a triangle uses, each once.
+std::vector<Point3d> used_vertices(const shape::Mesh& mesh) {
+    std::vector<char> used(mesh.vertices.size(), 0);
+    for (const auto& triangle : mesh.triangles) {
+        for (const std::uint32_t vertex : triangle) used[vertex] = 1;
+    }
+    std::vector<Point3d> vertices;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i]) vertices.push_back(mesh.vertices[i]);
+    }
+    return vertices;
+}
+
+/// Its core's outermost coordinates, and outward by the radius.
+Box3d box_of(const ConvexSolid& solid) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d box = {};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Point3d direction = {};
+        direction[axis] = 1;
+        const double high = support(solid, direction)[axis];
+        direction[axis] = -1;
+        const double low = support(solid, direction)[axis];
+        box.max[axis] = solid.radius > 0 ? std::nextafter(high + solid.radius, infinity) : high;
+        box.min[axis] = solid.radius > 0 ? std::nextafter(low - solid.radius, -infinity) : low;
+    }
+    return box;
+}
+
+template <typename Points>
+double farthest_from(const Point3d& centre, const Points& points) {
+    double most = 0;
+    for (const Point3d& point : points) most = std::max(most, vector::length(vector::minus(point, centre)));
+    return most;
+}
+
+/// How far from the box's centre the shape reaches, before rounding.
+double reach(const Geometry::Prepared& made) {
+    const Point3d& centre = made.bounds.centre;
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made.shape)) return farthest_from(centre, mesh->vertices);
+    const Point3d& extents = made.convex.extents;
+    switch (made.convex.core) {
+        case ConvexSolid::Core::points:
+            return farthest_from(centre, made.convex.points) + made.convex.radius;
+        case ConvexSolid::Core::ellipsoid:
+            return *std::max_element(extents.begin(), extents.end());
+        case ConvexSolid::Core::box:
+            return vector::length(extents);
+        default:
+            return std::hypot(extents[0], extents[2]);
+    }
+}
+
+ShapeBounds bounds_of(const Geometry::Prepared& made) {
+    const bool mesh = !made.vertices.empty();
+    if (!mesh && !made.convex.exists()) return {};
+    ShapeBounds bounds;
+    bounds.bounded = true;
+    bounds.box = mesh ? made.vertices.world_box(Pose{}) : box_of(made.convex);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        bounds.centre[axis] = bounds.box.min[axis] / 2 + bounds.box.max[axis] / 2;
+    return bounds;
+}
+
+}  // namespace
+
+Geometry::Geometry(shape::Any shape) {
+    std::visit([](const auto& one) { check_shape(one); }, shape);
+    auto made = std::make_shared<Prepared>();
+    made->shape = std::move(shape);
+    made->convex = make_convex_solid(made->shape);
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) made->vertices = VertexBlocks(used_vertices(*mesh));
+    made->bounds = bounds_of(*made);
+    if (made->bounds.bounded) {
+        // The centre is rounded, and so are differences, squares and their sum.
+        made->bounds.radius = reach(*made) * (1 + 16 * std::numeric_limits<double>::epsilon());
+        if (!std::isfinite(made->bounds.radius)) refuse("a shape is larger than float64 can tell");
+    }
+    prepared_ = std::move(made);
+}
+
+const shape::Any& Geometry::shape() const { return prepared_->shape; }
+
+}  // namespace octopair

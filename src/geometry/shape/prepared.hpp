@@ -1,0 +1,30 @@
+// Geometry::Prepared: a shape with all that the exact stages make of it once, to be shared by its objects.
+#pragma once
+
+#include <memory>
+
+#include "geometry/shape/convex_solid.hpp"
+#include "geometry/shape/vertex_blocks.hpp"
+#include "octopair/shapes.hpp"
+
+namespace octopair {
+
+class MeshTree;  // mesh_tree.hpp
+
+/// In the shape's own space, rounded outward; of planes, and of meshes without vertices, nothing.
+struct ShapeBounds {
+    Box3d box = {};
+    Point3d centre = {};  ///< the box's
+    double radius = 0;    ///< of a sphere around the centre that holds all
+    bool bounded = false;
+};
+
+struct Geometry::Prepared {
+    shape::Any shape;
+    ShapeBounds bounds;
+    ConvexSolid convex;                    ///< exists for all but planes and meshes
+    VertexBlocks vertices;                 ///< of meshes, of those vertices that a triangle uses
+    std::shared_ptr<const MeshTree> tree;  ///< of meshes
+};
+
+}  // namespace octopair
