@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/shape/mesh_tree.hpp"
 #include "geometry/shape/prepared.hpp"
 #include "geometry/shape/vector.hpp"
 #include "octopair/error.hpp"
@@ -146,7 +147,10 @@ Geometry::Geometry(shape::Any shape) {
     auto made = std::make_shared<Prepared>();
     made->shape = std::move(shape);
     made->convex = make_convex_solid(made->shape);
-    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) made->vertices = VertexBlocks(used_vertices(*mesh));
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) {
+        made->vertices = VertexBlocks(used_vertices(*mesh));
+        made->tree = make_mesh_tree(*mesh);
+    }
     made->bounds = bounds_of(*made);
     if (made->bounds.bounded) {
         // The centre is rounded, and so are differences, squares and their sum.

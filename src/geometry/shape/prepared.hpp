@@ -9,7 +9,7 @@
 
 namespace octopair {
 
-class MeshTree;  // mesh_tree.hpp
+struct MeshTree;  // mesh_tree.hpp
 
 /// In the shape's own space, rounded outward; of planes, and of meshes without vertices, nothing.
 struct ShapeBounds {
