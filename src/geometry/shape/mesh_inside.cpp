@@ -15,14 +15,14 @@ namespace {
 class RayTest {
 public:
     RayTest(const PosedMesh& mesh, const Point3d& from) : pose_(mesh.pose), from_(from) {
-        origin_ = to_world(mesh.pose, mesh.tree.origin);
+        origin_ = vector::posed(mesh.pose, mesh.tree.origin);
         const MeshNode& root = mesh.tree.nodes[0];
         for (int row = 0; row < 3; ++row) {
             double made_of = std::abs(pose_.rows[row][3]) + std::abs(from[row]);
             for (int axis = 0; axis < 3; ++axis) {
-                made_of += std::abs(pose_.rows[row][axis]) *
-                           (std::abs(mesh.tree.origin[axis]) + std::abs(double(root.centre[axis])) +
-                            double(root.half[axis]));
+                made_of +=
+                    std::abs(pose_.rows[row][axis]) *
+                    (std::abs(mesh.tree.origin[axis]) + std::abs(double(root.centre[axis])) + double(root.half[axis]));
             }
             slack_[row] = 64 * 0x1p-53 * made_of;  // fewer than 64 roundings
         }
@@ -90,7 +90,7 @@ bool encloses(const PosedMesh& mesh, const Point3d& point) {
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner) {
     if (!outer.tree.parts.any_closed) return false;
     return std::any_of(inner.tree.parts.corners.begin(), inner.tree.parts.corners.end(),
-                       [&](const Point3d& corner) { return encloses(outer, to_world(inner.pose, corner)); });
+                       [&](const Point3d& corner) { return encloses(outer, vector::posed(inner.pose, corner)); });
 }
 
 }  // namespace octopair

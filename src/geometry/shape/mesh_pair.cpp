@@ -95,8 +95,10 @@ void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
     visit_leaves(a, b, 0, [&](const MeshNode& node_a, const MeshNode& node_b) {
         const WorldLeaf leaf_a(a, node_a), leaf_b(b, node_b);
         return tell_meeting(leaf_a, leaf_b, [&](std::uint32_t i, std::uint32_t j) {
-            return tell({a.tree.numbers[leaf_a.place(i)], b.tree.numbers[leaf_b.place(j)], leaf_a.triangle(i),
-                         leaf_b.triangle(j)});
+            const std::uint32_t at_a = leaf_a.place(i), at_b = leaf_b.place(j);
+            constexpr auto oriented = MeshParts::Side::oriented;
+            return tell({a.tree.numbers[at_a], b.tree.numbers[at_b], leaf_a.triangle(i), leaf_b.triangle(j),
+                         a.tree.parts.sides[at_a] == oriented && b.tree.parts.sides[at_b] == oriented});
         });
     });
 }

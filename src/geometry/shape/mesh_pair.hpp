@@ -1,6 +1,6 @@
 // Two posed meshes: whether they meet, where, and how far apart they are.
 //
-// What meets is judged on the triangles' places in the world (world.hpp) by the exact test of triangles; the hierarchies
+// What meets is judged on the triangles' places in the world (shapes.hpp) by the exact test of triangles; the hierarchies
 // only leave out what cannot matter. So the answer is that of testing all pairs of triangles.
 #pragma once
 
@@ -26,6 +26,7 @@ struct MeetingTriangles {
     std::uint32_t number_a, number_b;
     const Triangle3d& a;
     const Triangle3d& b;
+    bool both_oriented;  ///< parts of closed surfaces that know their outside
 };
 /// Tells of all pairs of triangles that meet, in an order that depends on meshes and poses alone. Ends where `tell` returns
 /// false.

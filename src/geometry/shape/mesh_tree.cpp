@@ -134,8 +134,8 @@ private:
                 return std::min(int((item.centre[axis] - low) * scale), bins - 1);
             };
             const int cut = best_cut(items, bin_of);
-            const auto middle = std::partition(items.begin(), items.end(),
-                                               [&](const Item& item) { return bin_of(item) < cut; });
+            const auto middle =
+                std::partition(items.begin(), items.end(), [&](const Item& item) { return bin_of(item) < cut; });
             if (middle != items.begin() && middle != items.end()) {
                 return task.begin + std::uint32_t(middle - items.begin());
             }

@@ -12,14 +12,14 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/shape/world.hpp"
+#include "geometry/shape/vector.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair {
 
 struct MeshNode {
-    float centre[3];  ///< about MeshTree::origin
-    float half[3];    ///< half extents; infinite where float32 does not reach
+    float centre[3];      ///< about MeshTree::origin
+    float half[3];        ///< half extents; infinite where float32 does not reach
     std::uint32_t first;  ///< of a leaf: its first triangle; of an inner node: its first child
     std::uint32_t count;  ///< triangles of a leaf; 0 of an inner node
 
@@ -49,7 +49,7 @@ struct MeshTree {
 
     Triangle3d world_triangle(const Pose& pose, std::uint32_t triangle) const {
         const auto& [a, b, c] = triangles[triangle];
-        return {to_world(pose, vertices[a]), to_world(pose, vertices[b]), to_world(pose, vertices[c])};
+        return {vector::posed(pose, vertices[a]), vector::posed(pose, vertices[b]), vector::posed(pose, vertices[c])};
     }
 };
 

@@ -56,7 +56,7 @@ double reach_in_world(const PosedBoxes& boxes) {
 
 /// From a's origin to b's.
 Point3d between_origins(const PosedBoxes& a, const PosedBoxes& b) {
-    const Point3d from = to_world(a.pose, a.origin), to = to_world(b.pose, b.origin);
+    const Point3d from = vector::posed(a.pose, a.origin), to = vector::posed(b.pose, b.origin);
     return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
 

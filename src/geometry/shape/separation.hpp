@@ -1,7 +1,7 @@
 // Boxes of two posed shapes: how far apart they are at least, in the world.
 //
 // Each shape has boxes in its own space, about an origin (mesh_tree.hpp). A pair of them is compared along the axes of both
-// spaces, or of the world where a pose cannot be undone. Bounds hold for the places that to_world() gives, whatever was
+// spaces, or of the world where a pose cannot be undone. Bounds hold for the places that vector::posed gives, whatever was
 // rounded there and here: every comparison leaves room for it. What is not a number tells nothing apart.
 #pragma once
 

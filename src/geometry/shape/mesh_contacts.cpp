@@ -1,0 +1,197 @@
+#include "geometry/shape/mesh_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "geometry/exact/orientation.hpp"
+#include "geometry/exact/triangle_contact.hpp"
+#include "geometry/shape/mesh_traversal.hpp"
+#include "geometry/shape/vector.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Point3d middle_of(const Triangle3d& triangle) {
+    Point3d middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        middle[axis] = triangle[0][axis] / 3 + triangle[1][axis] / 3 + triangle[2][axis] / 3;
+    }
+    return middle;
+}
+
+/// A mesh of one point, to be put anywhere.
+class Probe {
+public:
+    Probe() {
+        tree_.vertices.resize(1);
+        tree_.triangles = {{0, 0, 0}};
+        tree_.numbers = {0};
+        tree_.nodes = {{{0, 0, 0}, {0, 0, 0}, 0, 1}};
+    }
+
+    /// 0 of a point on the surface; at most `most` is looked for.
+    double distance(const PosedMesh& mesh, const Point3d& point, double most) {
+        tree_.vertices[0] = tree_.origin = point;
+        const auto gap = surface_gap({tree_, pose_}, mesh, most);
+        return gap ? gap->distance : infinity;
+    }
+
+private:
+    MeshTree tree_;
+    Pose pose_;
+};
+
+Box3d world_box(const PosedMesh& mesh) {
+    Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (const auto& corners : mesh.tree.triangles) {
+        for (const std::uint32_t corner : corners) {
+            const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[corner]);
+            for (int axis = 0; axis < 3; ++axis) {
+                box.min[axis] = std::min(box.min[axis], place[axis]);
+                box.max[axis] = std::max(box.max[axis], place[axis]);
+            }
+        }
+    }
+    return box;
+}
+
+bool holds(const Box3d& box, const Point3d& point) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (point[axis] < box.min[axis] || point[axis] > box.max[axis]) return false;
+    }
+    return true;
+}
+
+/// How deep corners and middles of triangles of the one are inside the other.
+class DepthSearch {
+public:
+    explicit DepthSearch(const PosedMesh& outer) : outer_(outer), box_(world_box(outer)) {}
+
+    double deepest(const PosedMesh& inner) {
+        if (!outer_.tree.parts.any_closed) return 0;
+        std::vector<Point3d> places;
+        for (std::uint32_t i = 0; i < inner.tree.triangles.size(); ++i) {
+            const Triangle3d triangle = inner.tree.world_triangle(inner.pose, i);
+            for (const Point3d& corner : triangle) add(corner, places);
+            add(middle_of(triangle), places);
+        }
+        std::sort(places.begin(), places.end());
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+        for (const Point3d& place : places) look_at(place);
+        return deepest_;
+    }
+
+private:
+    void add(const Point3d& place, std::vector<Point3d>& places) const {
+        if (holds(box_, place)) places.push_back(place);
+    }
+
+    /// The distance is the cheaper question where it says no.
+    void look_at(const Point3d& place) {
+        const double distance = probe_.distance(outer_, place, infinity);
+        if (distance > deepest_ && encloses(outer_, place)) deepest_ = distance;
+    }
+
+    const PosedMesh& outer_;
+    Box3d box_;
+    Probe probe_;
+    double deepest_ = 0;
+};
+
+/// 1 if a mesh's triangles are counterclockwise from outside, in the world; -1 if clockwise.
+int facing_of(const Pose& pose) {
+    const Point3d x = {pose.rows[0][0], pose.rows[1][0], pose.rows[2][0]};
+    const Point3d y = {pose.rows[0][1], pose.rows[1][1], pose.rows[2][1]};
+    const Point3d z = {pose.rows[0][2], pose.rows[1][2], pose.rows[2][2]};
+    return plane_side({0, 0, 0}, x, y, z) < 0 ? -1 : 1;
+}
+
+/// Whether two triangles in one plane face the same side of it.
+bool face_alike(const Triangle3d& a, const Triangle3d& b) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const int side_a = line_side(a[0], a[1], a[2], axis);
+        if (side_a != 0) return side_a == line_side(b[0], b[1], b[2], axis);
+    }
+    return false;
+}
+
+/// Before others: the deeper, then the lesser numbers.
+bool comes_first(const Contact& a, const Contact& b) {
+    return std::tuple(-a.depth, a.feature_a, a.feature_b) < std::tuple(-b.depth, b.feature_a, b.feature_b);
+}
+
+class ContactSearch {
+public:
+    ContactSearch(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts)
+        : a_(a), b_(b), max_contacts_(max_contacts), same_handed_(facing_of(a.pose) == facing_of(b.pose)) {}
+
+    void run(Finding& finding) {
+        visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
+            add(at);
+            return true;
+        });
+        finding.depth = depth_of_meshes(a_, b_);
+        const bool inside = penetrating_ || finding.depth > 0;
+        finding.collision_class = inside ? CollisionClass::penetrating : CollisionClass::touching;
+        std::sort(contacts_.begin(), contacts_.end(), comes_first);
+        finding.more_contacts = more_;
+        finding.contacts = std::move(contacts_);
+    }
+
+private:
+    void add(const MeetingTriangles& at) {
+        const TriangleContact contact = triangle_contact(at.a, at.b);
+        penetrating_ |= contact.meeting == TriangleMeeting::crossing;
+        if (contact.meeting == TriangleMeeting::overlapping && at.both_oriented) {
+            penetrating_ |= face_alike(at.a, at.b) == same_handed_;
+        }
+        if (max_contacts_ == 0) return;
+        Contact made;
+        for (unsigned i = 0; i < contact.count; ++i) {
+            for (int axis = 0; axis < 3; ++axis) made.point[axis] += contact.points[i][axis] / contact.count;
+        }
+        const TriangleDepth out = triangle_depth(at.a, at.b);
+        made.normal = out.normal;
+        made.depth = out.depth;
+        made.feature_a = at.number_a;
+        made.feature_b = at.number_b;
+        keep(made);
+    }
+
+    /// A heap with the last one to be told in front.
+    void keep(const Contact& contact) {
+        if (contacts_.size() == max_contacts_) {
+            more_ = true;
+            if (!comes_first(contact, contacts_.front())) return;
+            std::pop_heap(contacts_.begin(), contacts_.end(), comes_first);
+            contacts_.pop_back();
+        }
+        contacts_.push_back(contact);
+        std::push_heap(contacts_.begin(), contacts_.end(), comes_first);
+    }
+
+    const PosedMesh &a_, &b_;
+    std::uint32_t max_contacts_;
+    bool same_handed_;
+    bool penetrating_ = false, more_ = false;
+    std::vector<Contact> contacts_;
+};
+
+}  // namespace
+
+double depth_of_meshes(const PosedMesh& a, const PosedMesh& b) {
+    if (a.tree.nodes.empty() || b.tree.nodes.empty()) return 0;
+    return std::max(DepthSearch(a).deepest(b), DepthSearch(b).deepest(a));
+}
+
+void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts, Finding& finding) {
+    ContactSearch(a, b, max_contacts).run(finding);
+}
+
+}  // namespace octopair

@@ -1,0 +1,25 @@
+// How two meshes that meet do so: class, depth and contacts.
+//
+// Class     penetrating where two triangles pass through each other; of closed meshes also where two triangles lie in one
+//           plane with both insides on one side of it, or where a corner or the middle of a triangle of the one is inside
+//           the other. Else touching.
+// Depth     of closed meshes: how far the deepest of those corners and middles is from the other's surface. So both have
+//           to be moved by that much, or more, to end it. 0 of open meshes.
+// Contacts  one for each two triangles that meet: in the middle of what they have in common, with the normal and the depth
+//           of these two alone. The deepest come first, then by the triangles' numbers.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/shape/mesh_pair.hpp"
+#include "octopair/pipeline.hpp"
+
+namespace octopair {
+
+/// Sets class, depth and contacts of a finding; at most so many contacts. For meshes whose surfaces meet.
+void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts, Finding& finding);
+
+/// How far the deepest corner or middle of a triangle of either is inside the other; 0 if none is.
+double depth_of_meshes(const PosedMesh& a, const PosedMesh& b);
+
+}  // namespace octopair
