@@ -76,15 +76,18 @@ void check_shape(const shape::Mesh& mesh) {
     }
 }
 
-/// The vertices that a triangle uses, each once.
-std::vector<Point3d> used_vertices(const shape::Mesh& mesh) {
-    std::vector<char> used(mesh.vertices.size(), 0);
-    for (const auto& triangle : mesh.triangles) {
+/// The points of a hull, or the vertices that a triangle uses, each once.
+std::vector<Point3d> vertices_of(const shape::Any& shape) {
+    if (const auto* hull = std::get_if<shape::ConvexHull>(&shape)) return hull->points;
+    const auto* mesh = std::get_if<shape::Mesh>(&shape);
+    if (!mesh) return {};
+    std::vector<char> used(mesh->vertices.size(), 0);
+    for (const auto& triangle : mesh->triangles) {
         for (const std::uint32_t vertex : triangle) used[vertex] = 1;
     }
     std::vector<Point3d> vertices;
     for (std::size_t i = 0; i < used.size(); ++i) {
-        if (used[i]) vertices.push_back(mesh.vertices[i]);
+        if (used[i]) vertices.push_back(mesh->vertices[i]);
     }
     return vertices;
 }
@@ -105,21 +108,16 @@ Box3d box_of(const ConvexSolid& solid) {
     return box;
 }
 
-template <typename Points>
-double farthest_from(const Point3d& centre, const Points& points) {
+double farthest_from(const Point3d& centre, const std::vector<Point3d>& points) {
     double most = 0;
     for (const Point3d& point : points) most = std::max(most, vector::length(vector::minus(point, centre)));
     return most;
 }
 
-/// How far from the box's centre the shape reaches, before rounding.
-double reach(const Geometry::Prepared& made) {
-    const Point3d& centre = made.bounds.centre;
-    if (const auto* mesh = std::get_if<shape::Mesh>(&made.shape)) return farthest_from(centre, mesh->vertices);
-    const Point3d& extents = made.convex.extents;
-    switch (made.convex.core) {
-        case ConvexSolid::Core::points:
-            return farthest_from(centre, made.convex.points) + made.convex.radius;
+/// How far a solid that is not made of points reaches from the middle of its box.
+double reach(const ConvexSolid& solid) {
+    const Point3d& extents = solid.extents;
+    switch (solid.core) {
         case ConvexSolid::Core::ellipsoid:
             return *std::max_element(extents.begin(), extents.end());
         case ConvexSolid::Core::box:
@@ -129,14 +127,21 @@ double reach(const Geometry::Prepared& made) {
     }
 }
 
-ShapeBounds bounds_of(const Geometry::Prepared& made) {
-    const bool mesh = !made.vertices.empty();
-    if (!mesh && !made.convex.exists()) return {};
+ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>& vertices) {
+    const ConvexSolid& solid = made.convex;
+    if (vertices.empty() && !solid.exists()) return {};
     ShapeBounds bounds;
     bounds.bounded = true;
-    bounds.box = mesh ? made.vertices.world_box(Pose{}) : box_of(made.convex);
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    bounds.box = vertices.empty() ? box_of(solid) : made.vertices.world_box(Pose{});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         bounds.centre[axis] = bounds.box.min[axis] / 2 + bounds.box.max[axis] / 2;
+    }
+    const bool points = solid.core == ConvexSolid::Core::points;
+    const double core =
+        points ? farthest_from(bounds.centre, vertices.empty() ? solid.points : vertices) : reach(solid);
+    // The centre is rounded, and so are differences, squares and their sum.
+    bounds.radius = (core + solid.radius) * (1 + 16 * std::numeric_limits<double>::epsilon());
+    if (!std::isfinite(bounds.radius)) refuse("a shape is larger than float64 can tell");
     return bounds;
 }
 
@@ -147,16 +152,10 @@ Geometry::Geometry(shape::Any shape) {
     auto made = std::make_shared<Prepared>();
     made->shape = std::move(shape);
     made->convex = make_convex_solid(made->shape);
-    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) {
-        made->vertices = VertexBlocks(used_vertices(*mesh));
-        made->tree = make_mesh_tree(*mesh);
-    }
-    made->bounds = bounds_of(*made);
-    if (made->bounds.bounded) {
-        // The centre is rounded, and so are differences, squares and their sum.
-        made->bounds.radius = reach(*made) * (1 + 16 * std::numeric_limits<double>::epsilon());
-        if (!std::isfinite(made->bounds.radius)) refuse("a shape is larger than float64 can tell");
-    }
+    const std::vector<Point3d> vertices = vertices_of(made->shape);
+    made->vertices = VertexBlocks(vertices);
+    made->bounds = bounds_of(*made, vertices);
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) made->tree = make_mesh_tree(*mesh);
     prepared_ = std::move(made);
 }
 

@@ -23,7 +23,7 @@ struct Geometry::Prepared {
     shape::Any shape;
     ShapeBounds bounds;
     ConvexSolid convex;                    ///< exists for all but planes and meshes
-    VertexBlocks vertices;                 ///< of meshes, of those vertices that a triangle uses
+    VertexBlocks vertices;                 ///< of hulls, and of meshes those that a triangle uses
     std::shared_ptr<const MeshTree> tree;  ///< of meshes
 };
 

@@ -1,0 +1,22 @@
+// A plane in the world: a point of it and its normal, of length 1. The normal is the pose's turn of the shape's; poses of
+// planes turn and move only.
+#pragma once
+
+#include "geometry/shape/vector.hpp"
+#include "octopair/shapes.hpp"
+
+namespace octopair {
+
+struct PosedPlane {
+    Point3d normal, point;
+};
+
+inline PosedPlane posed_plane(const shape::Plane& plane, const Pose& pose) {
+    const double length = vector::length(plane.normal);
+    const Point3d unit = {plane.normal[0] / length, plane.normal[1] / length, plane.normal[2] / length};
+    const Point3d turned = vector::turned(pose, unit);
+    const Point3d point = vector::turned(pose, vector::times(unit, plane.offset / length));
+    return {vector::times(turned, 1 / vector::length(turned)), vector::plus(point, vector::place(pose))};
+}
+
+}  // namespace octopair
