@@ -1,0 +1,28 @@
+// Two objects of any shapes: whether they meet, how far apart they are, how they meet.
+//
+// What has an inside contains what lies there: a mesh inside a closed mesh meets it, and so does a ball inside one.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/shape/prepared.hpp"
+#include "octopair/pipeline.hpp"
+
+namespace octopair {
+
+struct PosedObject {
+    const Geometry::Prepared& geometry;
+    const Pose& pose;
+};
+
+/// Whether two objects meet or are no further apart than `reach`. Then sets the class (collision, contained, clearance)
+/// and, of clearance, distance and nearest points.
+bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Finding& finding);
+
+/// The distance of two objects that are no further apart than `most`, 0 if they meet; infinite if they are.
+double object_distance(const PosedObject& a, const PosedObject& b, double most);
+
+/// Of two objects that meet, and whose class is known so far as judge_objects() finds it: sets class, depth and contacts.
+void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding);
+
+}  // namespace octopair
