@@ -7,6 +7,7 @@
 // A sum beyond these bounds has the right sign; the others are computed again, in integers.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "octopair/shapes.hpp"
@@ -28,19 +29,38 @@ inline int safe_sign(double sum, double error) { return int(sum > error) - int(s
 
 }  // namespace filter
 
-/// 1 where (b - a) x (c - a) points to the side of the plane that d is on: a, b, c are counterclockwise, seen from d.
-/// -1 on the other side; 0 if the four lie in one plane.
+/// The plane through three corners, for the sides of several points.
+class PlaneSides {
+public:
+    /// The corners must outlive it.
+    PlaneSides(const Point3d& a, const Point3d& b, const Point3d& c) : a_(a), b_(b), c_(c) {
+        const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
+        const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
+        const double bycz = by * cz, bzcy = bz * cy, bzcx = bz * cx, bxcz = bx * cz, bxcy = bx * cy, bycx = by * cx;
+        normal_ = {bycz - bzcy, bzcx - bxcz, bxcy - bycx};
+        largest_ = {std::abs(bycz) + std::abs(bzcy), std::abs(bzcx) + std::abs(bxcz), std::abs(bxcy) + std::abs(bycx)};
+    }
+    explicit PlaneSides(const std::array<Point3d, 3>& triangle) : PlaneSides(triangle[0], triangle[1], triangle[2]) {}
+
+    /// 1 where (b - a) x (c - a) points to the side that d is on: a, b, c are counterclockwise, seen from d. -1 on the
+    /// other side; 0 if the four lie in one plane.
+    int operator()(const Point3d& d) const {
+        const double dx = d[0] - a_[0], dy = d[1] - a_[1], dz = d[2] - a_[2];
+        const double sum = dx * normal_[0] + dy * normal_[1] + dz * normal_[2];
+        const double x = std::abs(dx), y = std::abs(dy), z = std::abs(dz);
+        const double permanent = x * largest_[0] + y * largest_[1] + z * largest_[2];
+        const int sign = filter::safe_sign(sum, filter::plane_error * permanent + filter::underflow * (1 + x + y + z));
+        return sign != 0 ? sign : exact_plane_side(a_, b_, c_, d);
+    }
+
+private:
+    const Point3d &a_, &b_, &c_;
+    Point3d normal_, largest_;
+};
+
+/// As PlaneSides, of one point.
 inline int plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d) {
-    const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
-    const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
-    const double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
-    const double bycz = by * cz, bzcy = bz * cy, bzcx = bz * cx, bxcz = bx * cz, bxcy = bx * cy, bycx = by * cx;
-    const double sum = dx * (bycz - bzcy) + dy * (bzcx - bxcz) + dz * (bxcy - bycx);
-    const double x = std::abs(dx), y = std::abs(dy), z = std::abs(dz);
-    const double permanent = x * (std::abs(bycz) + std::abs(bzcy)) + y * (std::abs(bzcx) + std::abs(bxcz)) +
-                             z * (std::abs(bxcy) + std::abs(bycx));
-    const int sign = filter::safe_sign(sum, filter::plane_error * permanent + filter::underflow * (1 + x + y + z));
-    return sign != 0 ? sign : exact_plane_side(a, b, c, d);
+    return PlaneSides(a, b, c)(d);
 }
 
 /// The sign of coordinate `axis` of (b - a) x (c - a): where c lies of the line from a to b, seen along that axis, which

@@ -1,0 +1,130 @@
+// The signs that float64 leaves open. Float64 are integers times a power of two: with the least such power of all that take
+// part they become integers, as wide as their exponents spread, and the determinant is computed in the narrowest type
+// that holds it. Most meshes have coordinates of one or two dozen bits, whose determinants are below 2^127.
+#include "geometry/exact/orientation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cstddef>
+#include <cstdint>
+
+namespace octopair {
+namespace {
+
+namespace mp = boost::multiprecision;
+template <unsigned bits>
+using Fixed = mp::number<mp::cpp_int_backend<bits, bits, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
+using Unbounded = mp::number<mp::cpp_int_backend<>, mp::et_off>;
+
+/// mantissa * 2^exponent; the mantissa is odd, or 0.
+struct Dyadic {
+    std::int64_t mantissa = 0;
+    int exponent = 0;
+
+    explicit Dyadic(double value) {
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        auto magnitude = bits & ((std::uint64_t(1) << 52) - 1);
+        const int biased = int(bits >> 52 & 0x7FF);
+        if (biased != 0) magnitude |= std::uint64_t(1) << 52;
+        if (magnitude == 0) return;
+        const int zeros = std::countr_zero(magnitude);
+        mantissa = std::int64_t(magnitude >> zeros);
+        if (bits >> 63 != 0) mantissa = -mantissa;
+        exponent = std::max(biased, 1) - 1075 + zeros;
+    }
+
+    int end() const { return exponent + int(std::bit_width(std::uint64_t(mantissa < 0 ? -mantissa : mantissa))); }
+};
+
+/// Numbers on their way to integers.
+template <std::size_t count>
+class Grid {
+public:
+    explicit Grid(const std::array<double, count>& values) : numbers_(make(values, std::make_index_sequence<count>())) {
+        int begin = 0, end = 0;
+        bool any = false;
+        for (const Dyadic& number : numbers_) {
+            if (number.mantissa == 0) continue;
+            begin = any ? std::min(begin, number.exponent) : number.exponent;
+            end = any ? std::max(end, number.end()) : number.end();
+            any = true;
+        }
+        begin_ = begin;
+        bits_ = unsigned(end - begin);
+    }
+
+    /// All integers are below 2^bits.
+    unsigned bits() const { return bits_; }
+
+    template <typename Integer>
+    Integer at(std::size_t i) const {
+        if (numbers_[i].mantissa == 0) return Integer(0);
+        return Integer(numbers_[i].mantissa) << unsigned(numbers_[i].exponent - begin_);
+    }
+
+private:
+    template <std::size_t... i>
+    static std::array<Dyadic, count> make(const std::array<double, count>& values, std::index_sequence<i...> /*of*/) {
+        return {Dyadic(values[i])...};
+    }
+
+    std::array<Dyadic, count> numbers_;
+    int begin_ = 0;
+    unsigned bits_ = 0;
+};
+
+/// Rows a, b, c, d of a plane's corners: the determinant of the rows less the first.
+template <typename Integer>
+int plane_sign(const Grid<12>& grid) {
+    std::array<Integer, 9> m;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto origin = grid.at<Integer>(axis);
+        for (std::size_t row = 0; row < 3; ++row) {
+            m[3 * row + axis] = grid.at<Integer>(3 * row + 3 + axis) - origin;
+        }
+    }
+    const Integer sum =
+        m[6] * (m[1] * m[5] - m[2] * m[4]) + m[7] * (m[2] * m[3] - m[0] * m[5]) + m[8] * (m[0] * m[4] - m[1] * m[3]);
+    return sum.sign();
+}
+
+template <typename Integer>
+int line_sign(const Grid<6>& grid) {
+    const auto au = grid.at<Integer>(0), av = grid.at<Integer>(1);
+    const Integer left = (grid.at<Integer>(2) - au) * (grid.at<Integer>(5) - av);
+    const Integer right = (grid.at<Integer>(3) - av) * (grid.at<Integer>(4) - au);
+    return left.compare(right);
+}
+
+int sign_of(int comparison) { return int(comparison > 0) - int(comparison < 0); }
+
+}  // namespace
+
+int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == d[axis]) return 0;
+    }
+    if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+    const Grid<12> grid({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]});
+    // Six products of three differences: 3 * (bits + 1) + 3 bits.
+    if (grid.bits() <= 40) return plane_sign<Fixed<128>>(grid);
+    if (grid.bits() <= 83) return plane_sign<Fixed<256>>(grid);
+    if (grid.bits() <= 168) return plane_sign<Fixed<512>>(grid);
+    return plane_sign<Unbounded>(grid);
+}
+
+int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis) {
+    const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+    for (const unsigned across : {u, v}) {
+        if (a[across] == b[across] && a[across] == c[across]) return 0;
+    }
+    const Grid<6> grid({a[u], a[v], b[u], b[v], c[u], c[v]});
+    // Products of two differences: 2 * (bits + 1) bits.
+    if (grid.bits() <= 62) return sign_of(line_sign<Fixed<128>>(grid));
+    if (grid.bits() <= 126) return sign_of(line_sign<Fixed<256>>(grid));
+    return sign_of(line_sign<Unbounded>(grid));
+}
+
+}  // namespace octopair
