@@ -92,8 +92,9 @@ public:
     /// For filters that take long over one pair.
     const std::stop_token& stop() const { return stop_; }
 
+    struct Access;  ///< what fills and empties batches (internal)
+
 private:
-    friend class Pipeline;
     [[noreturn]] static void cancel();
 
     std::vector<Pair> pairs_;
@@ -128,7 +129,9 @@ struct PipelineSummary {
     std::uint64_t collisions = 0;  ///< what came out
     bool truncated = false;        ///< `limit` was reached and at least one more collision exists
     double seconds = 0;            ///< wall clock
-    Summary search;                ///< of the all-pairs stage, as far as it went
+    /// Of the all-pairs stage, without what the calling thread did for filters and in the sink meanwhile. Where the limit
+    /// ended it early, its pairs and seconds alone are known.
+    Summary search;
     std::vector<FilterCounts> filters;
 };
 
@@ -140,6 +143,8 @@ class Pipeline {
 public:
     /// `threads`: for the filters; 0: one per core.
     explicit Pipeline(unsigned threads = 0);
+    Pipeline(Pipeline&&) noexcept;
+    Pipeline& operator=(Pipeline&&) noexcept;
     ~Pipeline();
 
     /// Behind those that are there.

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uint64_t least_buffer_bytes = 1 << 20;
 constexpr double built = 0.3;  // of the progress
+/// Of the progress of an ascending stream: what follows is the receiver's, who may take long over pairs.
+constexpr double collected = 0.6;
 
 }  // namespace
 
@@ -91,11 +93,11 @@ void Search::find_ascending(Call& call) {
     Receiver receiver(call.output, call.request.options.limit);
     held_.storage().reset();
     try {
-        passes_.list_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, 0.9);
+        passes_.list_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, collected);
     } catch (const OverBudget&) {
         return find_windows(call, receiver);
     }
-    hand_out_held(call, receiver);
+    hand_out_held(call, receiver, 1);
 }
 
 /// To `held_`, with room for pairs that were counted.
@@ -108,9 +110,18 @@ void Search::collect_counted(Call& call, const AscendingBounds& bounds, double p
     }
 }
 
-void Search::hand_out_held(Call& call, Receiver& receiver) {
+void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
+    constexpr std::size_t at_once = 1 << 16;  // pairs, so that progress is told in small steps
+    call.progress.stage(progress, held_.storage().size);
     receive(call, receiver, [&] {
-        for (const auto chunk : held_.storage().chunks) receiver.take(chunk);
+        for (auto chunk : held_.storage().chunks) {
+            while (!chunk.empty()) {
+                const auto some = chunk.first(std::min(chunk.size(), at_once));
+                receiver.take(some);
+                call.progress.add(some.size());
+                chunk = chunk.subspan(some.size());
+            }
+        }
     });
 }
 
@@ -133,8 +144,12 @@ void Search::find_windows(Call& call, Receiver& receiver) {
         // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
         const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs;
         const AscendingBounds bounds{window, objects, room, pairs};
-        collect_counted(call, bounds, 0.5 + 0.5 * double(window.end) / double(objects));
-        hand_out_held(call, receiver);
+        const auto done = [&](double of_window) {
+            const double covered = double(window.begin) + of_window * double(window.end - window.begin);
+            return 0.5 + 0.5 * covered / double(objects);
+        };
+        collect_counted(call, bounds, done(0.5));
+        hand_out_held(call, receiver, done(1));
     }
 }
 

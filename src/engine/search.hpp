@@ -72,7 +72,8 @@ private:
     void find_ascending(Call& call);
     void collect_counted(Call& call, const AscendingBounds& bounds, double progress);
     void find_windows(Call& call, Receiver& receiver);
-    void hand_out_held(Call& call, Receiver& receiver);
+    /// Takes the progress to the fraction.
+    void hand_out_held(Call& call, Receiver& receiver, double progress);
     template <typename Give>
     void receive(Call& call, Receiver& receiver, Give&& give);
 

@@ -1,0 +1,117 @@
+#include "pipeline/block_row.hpp"
+
+#include <system_error>
+#include <utility>
+
+namespace octopair {
+
+BlockRow::BlockRow(unsigned threads, Step work, Step deliver)
+    : threads_(threads), work_(std::move(work)), deliver_(std::move(deliver)), slots_(length(threads)) {
+    helpers_.reserve(threads_ - 1);
+}
+
+BlockRow::~BlockRow() {
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+        added_.notify_all();
+    }
+    for (std::thread& helper : helpers_) helper.join();
+}
+
+Block& BlockRow::room() {
+    while (filled_ == head_ + slots_.size()) advance();
+    return slot(filled_).block;
+}
+
+void BlockRow::add() {
+    bool others_wait = false;
+    {
+        const std::lock_guard lock(mutex_);
+        ++filled_;
+        if (idle_ > 0) {
+            added_.notify_one();
+        } else {
+            others_wait = filled_ > claimed_ + 1;  // the first is for this thread
+        }
+    }
+    if (others_wait && may_start_ && helpers_.size() + 1 < threads_) start_helper();
+}
+
+void BlockRow::start_helper() {
+    try {
+        helpers_.emplace_back([this] { help(); });
+    } catch (const std::system_error&) {
+        may_start_ = false;  // none to be had: those there are will do
+    }
+}
+
+void BlockRow::hand_out() {
+    while (head_ < filled_ && head_is_done()) hand_out_head();
+}
+
+void BlockRow::finish() {
+    while (head_ < filled_) advance();
+}
+
+bool BlockRow::head_is_done() {
+    const std::lock_guard lock(mutex_);
+    return slot(head_).done;
+}
+
+void BlockRow::hand_out_head() {
+    Slot& head = slot(head_);
+    if (head.failure) std::rethrow_exception(std::exchange(head.failure, nullptr));
+    deliver_(head.block);
+    head.done = false;  // nobody else looks at it before it is filled again
+    ++head_;
+}
+
+/// One step: hands out, works at a block, or waits.
+void BlockRow::advance() {
+    Slot* mine = nullptr;
+    {
+        std::unique_lock lock(mutex_);
+        if (!slot(head_).done) {
+            if (claimed_ < filled_) {
+                mine = &slot(claimed_++);
+            } else {
+                leading_waits_ = true;
+                done_.wait(lock, [&] { return slot(head_).done; });
+                leading_waits_ = false;
+            }
+        }
+    }
+    if (mine == nullptr) return hand_out_head();
+    work_at(*mine);
+    const std::lock_guard lock(mutex_);
+    mine->done = true;
+}
+
+void BlockRow::work_at(Slot& slot) noexcept {
+    try {
+        work_(slot.block);
+    } catch (...) {
+        slot.failure = std::current_exception();
+    }
+}
+
+void BlockRow::help() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        while (!ended_ && claimed_ == filled_) {
+            ++idle_;
+            added_.wait(lock);
+            --idle_;
+        }
+        if (ended_) return;
+        Slot& mine = slot(claimed_++);
+        lock.unlock();
+        work_at(mine);
+        lock.lock();
+        mine.done = true;
+        if (leading_waits_) done_.notify_one();
+    }
+}
+
+}  // namespace octopair

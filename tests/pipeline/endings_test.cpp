@@ -1,0 +1,164 @@
+// Calls that end before their time: what filters and sinks throw, and stop requests.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <new>
+#include <thread>
+
+#include "octopair/octopair.hpp"
+#include "pipeline/flow.hpp"
+#include "support/scale.hpp"
+
+namespace octopair::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+struct Ending {
+    unsigned threads;
+    Order order;
+};
+
+class Endings : public ::testing::TestWithParam<Ending> {
+protected:
+    Options options() const {
+        Options options;
+        options.order = GetParam().order;
+        options.buffer_bytes = 1 << 20;
+        return options;
+    }
+
+    const std::vector<Box3f> boxes_ = samples::make_scene("dense", 20'000, 1);
+    const std::unique_ptr<Engine> engine_ = make_local_engine(2);
+};
+
+std::string name_of(const ::testing::TestParamInfo<Ending>& info) {
+    return std::to_string(info.param.threads) + (info.param.order == Order::octal ? "Octal" : "Ascending");
+}
+
+INSTANTIATE_TEST_SUITE_P(, Endings,
+                         ::testing::Values(Ending{1, Order::octal}, Ending{1, Order::ascending},
+                                           Ending{2, Order::octal}, Ending{2, Order::ascending},
+                                           Ending{7, Order::octal}),
+                         name_of);
+
+/// What comes out before does not depend on threads.
+TEST_P(Endings, FiltersThrowWhereTheirPairIs) {
+    Options asked = options();
+    const std::vector<Pair> pairs = find_pairs(boxes_, asked);
+    for (const std::size_t place : {std::size_t(0), pairs.size() / 2, pairs.size() - 1}) {
+        Pipeline pipeline(GetParam().threads);
+        pipeline.add(make_filter("throwing", [bad = pairs[place]](Pair pair) {
+            if (pair == bad) throw Error(ErrorCode::bad_input, "a bad pair");
+            return true;
+        }));
+        Outcome found;
+        try {
+            pipeline.run(*engine_, all_of(boxes_), into(found), asked);
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const Error& error) {
+            EXPECT_STREQ(error.what(), "a bad pair");
+        }
+        EXPECT_LE(found.pairs.size(), place);
+        EXPECT_TRUE(std::equal(found.pairs.begin(), found.pairs.end(), pairs.begin()));
+        EXPECT_LT(place - found.pairs.size(), 4096u);  // no more than its block is lost
+    }
+}
+
+TEST_P(Endings, WhatTheSinkThrowsReachesTheCaller) {
+    Pipeline pipeline(GetParam().threads);
+    pipeline.add(std::make_unique<LotFilter>(5));
+    std::size_t calls = 0;
+    const CollisionSink sink = [&](const Batch&) {
+        if (++calls == 3) throw 3;
+    };
+    EXPECT_THROW(pipeline.run(*engine_, all_of(boxes_), sink, options()), int);
+    EXPECT_EQ(calls, 3u);
+    // Both are as good as new.
+    calls = 10;
+    EXPECT_EQ(pipeline.run(*engine_, all_of(boxes_), sink, options()).search.pairs,
+              engine_->count_pairs(all_of(boxes_)));
+}
+
+TEST_P(Endings, WantOfMemoryIsAnError) {
+    Pipeline pipeline(GetParam().threads);
+    pipeline.add(make_filter("hungry", [](Pair) -> bool { throw std::bad_alloc(); }));
+    try {
+        pipeline.run(*engine_, all_of(boxes_), {}, options());
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::resource_limit);
+    }
+}
+
+TEST_P(Endings, WhatTheEngineThrowsReachesTheCaller) {
+    std::vector<Box3f> boxes = boxes_;
+    boxes[77].min[1] = 1e30F;
+    Pipeline pipeline(GetParam().threads);
+    pipeline.add(std::make_unique<LotFilter>(5));
+    try {
+        pipeline.run(*engine_, all_of(boxes), {}, options());
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::bad_input);
+        EXPECT_NE(std::string(error.what()).find("77"), std::string::npos) << error.what();
+    }
+}
+
+/// How long after a stop request a call with a filter ends, that takes so long over a pair.
+Clock::duration time_to_cancel(const std::function<void(std::stop_token)>& call) {
+    std::stop_source source;
+    Clock::time_point asked;
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(milliseconds(100));
+        asked = Clock::now();
+        source.request_stop();
+    });
+    try {
+        call(source.get_token());
+        ADD_FAILURE() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+    }
+    const auto ended = Clock::now();
+    stopper.join();
+    return ended - asked;
+}
+
+TEST_P(Endings, StopRequestsAreHeardInTime) {
+    const auto patience = milliseconds(testing::sanitized ? 3000 : 200);
+    for (const auto of_a_pair : {milliseconds(0), milliseconds(10)}) {
+        Pipeline pipeline(GetParam().threads);
+        pipeline.add(make_filter("slow", [&](Pair) {
+            const auto end = Clock::now() + std::max<Clock::duration>(of_a_pair, std::chrono::microseconds(20));
+            of_a_pair.count() > 0 ? std::this_thread::sleep_until(end) : void(0);
+            while (Clock::now() < end) {
+            }
+            return true;
+        }));
+        Clock::duration took{};
+        for (int attempt = 0; attempt < 3; ++attempt) {  // a machine busy with other work delays any thread
+            took = time_to_cancel(
+                [&](std::stop_token stop) { pipeline.run(*engine_, all_of(boxes_), {}, options(), stop); });
+            if (took <= patience) break;
+        }
+        EXPECT_LE(took, patience) << std::chrono::duration<double>(took).count() << " s";
+    }
+}
+
+TEST_P(Endings, ARequestMadeBeforeTheCallHolds) {
+    std::stop_source source;
+    source.request_stop();
+    Pipeline pipeline(GetParam().threads);
+    pipeline.add(std::make_unique<LotFilter>(5));
+    try {
+        pipeline.run(*engine_, all_of(boxes_), {}, options(), source.get_token());
+        ADD_FAILURE() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,55 @@
+// What tests of pipelines share: a scene, filters that leave a trace, and what comes out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "octopair/filters.hpp"
+#include "octopair/pipeline.hpp"
+#include "samples/scenes.hpp"
+
+namespace octopair::test {
+
+/// A number that looks drawn by lot, of a pair alone.
+inline std::uint64_t lot(Pair pair) {
+    const std::uint64_t mixed = (std::uint64_t(pair.a) << 32 | pair.b) * 0x9E3779B97F4A7C15u;
+    return mixed ^ mixed >> 29;
+}
+
+/// Keeps every pair whose lot is not divisible by `divisor`, and learns its lot.
+class LotFilter final : public Filter {
+public:
+    explicit LotFilter(std::uint64_t divisor) : divisor_(divisor) {}
+    std::string_view name() const override { return "lot"; }
+    void apply(Batch& batch) const override {
+        batch.keep_if([&](std::size_t i) {
+            const std::uint64_t drawn = lot(batch.pairs()[i]);
+            if (drawn % divisor_ == 0) return false;
+            batch.finding(i).note = drawn;
+            return true;
+        });
+    }
+
+private:
+    std::uint64_t divisor_;
+};
+
+/// Pairs and what was learned of them, as they came out.
+struct Outcome {
+    std::vector<Pair> pairs;
+    std::vector<std::uint64_t> notes;
+    bool operator==(const Outcome&) const = default;
+};
+
+inline CollisionSink into(Outcome& outcome) {
+    return [&outcome](const Batch& batch) {
+        outcome.pairs.insert(outcome.pairs.end(), batch.pairs().begin(), batch.pairs().end());
+        for (const Finding& finding : batch.findings()) outcome.notes.push_back(finding.note);
+    };
+}
+
+inline Objects all_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
+
+}  // namespace octopair::test

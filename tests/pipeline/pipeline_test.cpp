@@ -1,0 +1,233 @@
+// Pipelines against plain loops over all pairs: what comes out, its order, its limit and what is counted.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "octopair/octopair.hpp"
+#include "pipeline/flow.hpp"
+
+namespace octopair::test {
+namespace {
+
+std::vector<Pair> engine_pairs(const std::vector<Box3f>& boxes, Order order) {
+    Options options;
+    options.order = order;
+    return find_pairs(boxes, options);
+}
+
+/// What two filters leave of the engine's pairs.
+Outcome expected_of(const std::vector<Pair>& pairs) {
+    Outcome outcome;
+    for (const Pair pair : pairs) {
+        if (pair.a % 7 == 3 || lot(pair) % 3 == 0) continue;
+        outcome.pairs.push_back(pair);
+        outcome.notes.push_back(lot(pair));
+    }
+    return outcome;
+}
+
+Pipeline two_filters(unsigned threads) {
+    Pipeline pipeline(threads);
+    pipeline.add(make_filter("sevenths", [](Pair pair) { return pair.a % 7 != 3; }));
+    pipeline.add(std::make_unique<LotFilter>(3));
+    return pipeline;
+}
+
+struct Arrangement {
+    unsigned threads;
+    Order order;
+    std::uint64_t buffer_bytes;
+};
+
+std::vector<Arrangement> arrangements() {
+    std::vector<Arrangement> all;
+    for (const unsigned threads : {1u, 2u, 7u}) {
+        for (const Order order : {Order::octal, Order::ascending}) {
+            for (const std::uint64_t buffer : {1u << 20, 1u << 30}) all.push_back({threads, order, buffer});
+        }
+    }
+    return all;
+}
+
+class AnyPipeline : public ::testing::TestWithParam<Arrangement> {
+protected:
+    Options options() const {
+        Options options;
+        options.order = GetParam().order;
+        options.buffer_bytes = GetParam().buffer_bytes;
+        return options;
+    }
+};
+
+std::string name_of(const ::testing::TestParamInfo<Arrangement>& info) {
+    return std::to_string(info.param.threads) + (info.param.order == Order::octal ? "Octal" : "Ascending") +
+           (info.param.buffer_bytes > 1 << 20 ? "Large" : "Small");
+}
+
+INSTANTIATE_TEST_SUITE_P(, AnyPipeline, ::testing::ValuesIn(arrangements()), name_of);
+
+TEST_P(AnyPipeline, LetsThroughWhatAPlainLoopDoes) {
+    const auto boxes = samples::make_scene("dense", 40'000, 1);  // pairs for more than a small buffer
+    const auto pairs = engine_pairs(boxes, GetParam().order);
+    const Outcome expected = expected_of(pairs);
+    const auto engine = make_local_engine(GetParam().threads);
+    Pipeline pipeline = two_filters(GetParam().threads);
+    for (int again = 0; again < 2; ++again) {
+        Outcome found;
+        const PipelineSummary summary = pipeline.run(*engine, all_of(boxes), into(found), options());
+        EXPECT_TRUE(found == expected);
+        EXPECT_EQ(summary.collisions, expected.pairs.size());
+        EXPECT_FALSE(summary.truncated);
+        EXPECT_EQ(summary.search.pairs, pairs.size());
+        ASSERT_EQ(summary.filters.size(), 2u);
+        EXPECT_EQ(summary.filters[0].name, "sevenths");
+        EXPECT_EQ(summary.filters[0].in, pairs.size());
+        EXPECT_EQ(summary.filters[1].in, summary.filters[0].out);
+        EXPECT_EQ(summary.filters[1].out, expected.pairs.size());
+        EXPECT_GT(summary.filters[1].seconds, 0);
+        EXPECT_EQ(pipeline.run(*engine, all_of(boxes), {}, options()).collisions, expected.pairs.size());
+    }
+}
+
+TEST_P(AnyPipeline, LimitsWhatComesOut) {
+    const auto boxes = samples::make_scene("dense", 60, 3);
+    const Outcome all = expected_of(engine_pairs(boxes, GetParam().order));
+    ASSERT_GT(all.pairs.size(), 20u);
+    const auto engine = make_local_engine(2);
+    Pipeline pipeline = two_filters(GetParam().threads);
+    for (std::size_t limit = 0; limit <= all.pairs.size() + 1; ++limit) {
+        SCOPED_TRACE(limit);
+        Options limited = options();
+        limited.limit = limit;
+        Outcome found;
+        const PipelineSummary summary = pipeline.run(*engine, all_of(boxes), into(found), limited);
+        const std::size_t kept = std::min(limit, all.pairs.size());
+        EXPECT_EQ(summary.truncated, limit < all.pairs.size());
+        EXPECT_EQ(summary.collisions, kept);
+        EXPECT_TRUE(std::ranges::equal(found.pairs, std::span(all.pairs).first(kept)));
+        EXPECT_TRUE(std::ranges::equal(found.notes, std::span(all.notes).first(kept)));
+    }
+}
+
+TEST_P(AnyPipeline, JoinsTwoSets) {
+    const auto first = samples::make_scene("dense", 3000, 1), second = samples::make_scene("dense", 2000, 2);
+    Options asked = options();
+    asked.margin = 0.01;
+    PairList list;
+    const auto engine = make_local_engine(2);
+    engine->find_pairs_between(all_of(first), all_of(second), list, asked);
+    const Outcome expected = expected_of(list.to_vector());
+    ASSERT_GT(expected.pairs.size(), 1000u);
+    Outcome found;
+    Pipeline pipeline = two_filters(GetParam().threads);
+    pipeline.run_between(*engine, all_of(first), all_of(second), into(found), asked);
+    EXPECT_TRUE(found == expected);
+}
+
+TEST_P(AnyPipeline, TellsItsProgress) {
+    const auto boxes = samples::make_scene("dense", 20'000, 1);
+    Options asked = options();
+    std::vector<double> told;
+    asked.progress = [&](double done) { told.push_back(done); };
+    Outcome found;
+    bool ended_early = false;
+    Pipeline pipeline = two_filters(GetParam().threads);
+    pipeline.run(
+        *make_local_engine(2), all_of(boxes), [&](const Batch&) { ended_early |= !told.empty() && told.back() >= 1; },
+        asked);
+    EXPECT_FALSE(ended_early);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    ASSERT_FALSE(told.empty());
+    EXPECT_EQ(told.back(), 1.0);
+    // Also while filters are at work.
+    EXPECT_GT(std::ranges::count_if(told, [](double done) { return done > 0.65 && done < 1; }), 3);
+}
+
+TEST(Pipeline, WithoutFiltersIsTheEngine) {
+    const auto boxes = samples::make_scene("dense", 2000, 1);
+    const auto pairs = engine_pairs(boxes, Order::ascending);
+    const auto engine = make_local_engine(2);
+    Pipeline pipeline(2);
+    Outcome found;
+    EXPECT_EQ(pipeline.run(*engine, all_of(boxes), into(found)).collisions, pairs.size());
+    EXPECT_TRUE(found.pairs == pairs);
+    EXPECT_TRUE(found.notes.empty());
+    Options limited;
+    limited.limit = 10;
+    const PipelineSummary counted = pipeline.run(*engine, all_of(boxes), {}, limited);
+    EXPECT_EQ(counted.collisions, 10u);
+    EXPECT_TRUE(counted.truncated);
+    EXPECT_THROW(pipeline.add(nullptr), Error);
+}
+
+TEST(Pipeline, BatchesAreNeverEmpty) {
+    const auto boxes = samples::make_scene("dense", 5000, 1);
+    Pipeline pipeline(2);
+    pipeline.add(make_filter("few", [](Pair pair) { return pair.a == 17; }));
+    std::size_t empty = 0, seen = 0;
+    pipeline.run(*make_local_engine(2), all_of(boxes), [&](const Batch& batch) {
+        empty += batch.pairs().empty();
+        seen += batch.pairs().size();
+    });
+    EXPECT_EQ(empty, 0u);
+    EXPECT_GT(seen, 0u);
+}
+
+TEST(Pipeline, SinkIsCalledOnTheCallingThread) {
+    const auto boxes = samples::make_scene("dense", 5000, 1);
+    Pipeline pipeline = two_filters(4);
+    std::set<std::thread::id> callers;
+    pipeline.run(*make_local_engine(4), all_of(boxes),
+                 [&](const Batch&) { callers.insert(std::this_thread::get_id()); });
+    EXPECT_EQ(callers, std::set{std::this_thread::get_id()});
+}
+
+/// Holds each pair until so many are held at once, or for long.
+class Meeting final : public Filter {
+public:
+    explicit Meeting(unsigned threads) : threads_(threads) {}
+    std::string_view name() const override { return "meeting"; }
+    void apply(Batch& batch) const override {
+        std::unique_lock lock(mutex_);
+        ++present_;
+        if (present_ >= threads_) met_ = true;
+        changed_.notify_all();
+        const auto over = [&] { return met_ || alone_; };
+        if (!changed_.wait_for(lock, std::chrono::seconds(60), over)) alone_ = true;
+        --present_;
+        batch.keep_if([](std::size_t) { return true; });
+    }
+    bool met() const { return met_; }
+
+private:
+    const unsigned threads_;
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    mutable unsigned present_ = 0;
+    mutable bool met_ = false, alone_ = false;
+};
+
+/// While an engine's threads are blocked in its search, behind a sink that takes its time, too.
+TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
+    const auto boxes = samples::make_scene("dense", 30'000, 1);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        Pipeline pipeline(3);
+        auto filter = std::make_unique<Meeting>(3);
+        const Meeting& meeting = *filter;
+        pipeline.add(std::move(filter));
+        Options options;
+        options.order = order;
+        options.buffer_bytes = 1 << 20;
+        pipeline.run(*make_local_engine(2), all_of(boxes), {}, options);
+        EXPECT_TRUE(meeting.met());
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test
