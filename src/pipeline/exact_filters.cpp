@@ -11,7 +11,8 @@ namespace {
 /// The objects of pairs: of one set, or of two.
 class PosedPairs {
 public:
-    PosedPairs(const ShapedObjects& first, const ShapedObjects* second) : first_(first), second_(second ? *second : first) {
+    PosedPairs(const ShapedObjects& first, const ShapedObjects* second)
+        : first_(first), second_(second ? *second : first) {
         check(first_);
         check(second_);
     }
@@ -41,7 +42,8 @@ public:
         batch.keep_if([&](std::size_t i) {
             const Pair pair = batch.pairs()[i];
             Finding found;
-            if (!judge_objects(objects_.a(pair), objects_.b(pair), margin_ + objects_.padding(pair), found)) return false;
+            if (!judge_objects(objects_.a(pair), objects_.b(pair), margin_ + objects_.padding(pair), found))
+                return false;
             Finding& finding = batch.finding(i);
             found.note = finding.note;
             finding = std::move(found);

@@ -126,7 +126,9 @@ TEST(MeshPair, GapIsTheLeastOfAllTriangles) {
         ASSERT_TRUE(gap);
         EXPECT_EQ(gap->distance, least);
         EXPECT_EQ(surface_gap(couple.a(), couple.b(), least)->distance, least);
-        if (least > 0) EXPECT_FALSE(surface_gap(couple.a(), couple.b(), std::nextafter(least, 0.0)));
+        if (least > 0) {
+            EXPECT_FALSE(surface_gap(couple.a(), couple.b(), std::nextafter(least, 0.0)));
+        }
     }
 }
 

@@ -8,7 +8,7 @@
 
 #include "geometry/exact/orientation.hpp"
 #include "geometry/exact/triangle_contact.hpp"
-#include "geometry/shape/mesh_traversal.hpp"
+#include "geometry/shape/mesh_leaves.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -32,7 +32,7 @@ public:
         tree_.vertices.resize(1);
         tree_.triangles = {{0, 0, 0}};
         tree_.numbers = {0};
-        tree_.nodes = {{{0, 0, 0}, {0, 0, 0}, 0, 1}};
+        tree_.nodes = {{{0, 0, 0}, 0, {0, 0, 0}, 1}};
     }
 
     /// 0 of a point on the surface; at most `most` is looked for.

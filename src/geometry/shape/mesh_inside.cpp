@@ -4,8 +4,8 @@
 
 #include "geometry/exact/orientation.hpp"
 #include "geometry/exact/ray_parity.hpp"
+#include "geometry/shape/mesh_leaves.hpp"
 #include "geometry/shape/mesh_pair.hpp"
-#include "geometry/shape/mesh_traversal.hpp"
 
 namespace octopair {
 

@@ -4,7 +4,7 @@
 
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
-#include "geometry/shape/mesh_traversal.hpp"
+#include "geometry/shape/mesh_leaves.hpp"
 
 namespace octopair {
 
@@ -33,13 +33,13 @@ public:
         waiting.push(weigh({0, 0}));
         while (!waiting.empty()) {
             const Waiting at = waiting.pop();
-            if (at.least > most_) continue;
+            if (double(at.least) > most_) continue;
             const MeshNode &node_a = a_.tree.nodes[at.nodes.a], &node_b = b_.tree.nodes[at.nodes.b];
             if (node_a.is_leaf() && node_b.is_leaf()) {
                 look_at(node_a, node_b);
                 continue;
             }
-            const auto children = children_of(at.nodes, a_, b_, separation_);
+            const auto children = children_of(at.nodes, node_a, node_b, separation_);
             const Waiting first = weigh(children[0]), second = weigh(children[1]);
             waiting.push(first.least <= second.least ? second : first);
             waiting.push(first.least <= second.least ? first : second);
@@ -50,7 +50,7 @@ public:
 private:
     struct Waiting {
         NodePair nodes;
-        double least;
+        float least;
     };
 
     Waiting weigh(const NodePair& nodes) const {

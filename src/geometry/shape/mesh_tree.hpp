@@ -17,10 +17,11 @@
 
 namespace octopair {
 
-struct MeshNode {
+/// Laid out so that four numbers can be fetched at once from `centre` and `half`.
+struct alignas(32) MeshNode {
     float centre[3];      ///< about MeshTree::origin
-    float half[3];        ///< half extents; infinite where float32 does not reach
     std::uint32_t first;  ///< of a leaf: its first triangle; of an inner node: its first child
+    float half[3];        ///< half extents; infinite where float32 does not reach
     std::uint32_t count;  ///< triangles of a leaf; 0 of an inner node
 
     bool is_leaf() const { return count > 0; }

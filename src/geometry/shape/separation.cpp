@@ -1,5 +1,7 @@
 #include "geometry/shape/separation.hpp"
 
+#include <limits>
+
 namespace octopair {
 
 namespace {
@@ -62,34 +64,69 @@ Point3d between_origins(const PosedBoxes& a, const PosedBoxes& b) {
 
 }  // namespace
 
+Separation::Map Separation::map_of(const Matrix& matrix) {
+    Map map;
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            map.column[column].at[row] = float(matrix[row][column]);
+            // Upward, so that half extents are.
+            map.magnitude[column].at[row] = std::abs(map.column[column].at[row]) * (1 + 0x1p-20F);
+        }
+    }
+    return map;
+}
+
+/// What float32 needs is added to the slack: a part of the largest numbers that meet along an axis.
+void Separation::round_to_lanes(const PosedBoxes& own, const PosedBoxes& other, double room, Axes& axes) {
+    const auto reach = [](const MeshNode& node, int axis) {
+        return double(std::abs(node.centre[axis])) + double(node.half[axis]);
+    };
+    for (int i = 0; i < 3; ++i) {
+        double largest = std::abs(double(axes.offset.at[i]));
+        for (int axis = 0; axis < 3; ++axis) {
+            largest += double(axes.other.magnitude[axis].at[i]) * reach(other.root, axis);
+        }
+        for (int axis = 0; axis < 3; ++axis) largest += reach(own.root, axis);
+        axes.slack.at[i] = float((room + 0x1p-19 * largest) * (1 + 0x1p-20));
+    }
+    axes.slack.at[3] = std::numeric_limits<float>::infinity();
+    axes.scale.at[3] = 1;
+}
+
 std::optional<Separation::OwnAxes> Separation::axes_of(const PosedBoxes& own, const PosedBoxes& other) {
     const Matrix pose = linear_part(own.pose), undo = inverse_of(pose), others = linear_part(other.pose);
     const double stretch = largest_row_sum(undo), condition = stretch * largest_row_sum(pose);
-    if (!(condition < 1e6)) return std::nullopt;
+    if (!(condition < 1e5)) return std::nullopt;
     const Point3d way = between_origins(own, other);
     const double world = reach_in_world(own) + reach_in_world(other);
     OwnAxes axes;
+    Matrix to_own;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
-            axes.other[i][j] = undo[i][0] * others[0][j] + undo[i][1] * others[1][j] + undo[i][2] * others[2][j];
+            to_own[i][j] = undo[i][0] * others[0][j] + undo[i][1] * others[1][j] + undo[i][2] * others[2][j];
         }
-        axes.offset[i] = undo[i][0] * way[0] + undo[i][1] * way[1] + undo[i][2] * way[2];
-        axes.slack[i] = roundings * unit * stretch * world * (1 + condition);
+        axes.offset.at[i] = float(undo[i][0] * way[0] + undo[i][1] * way[1] + undo[i][2] * way[2]);
         // A step of length 1 in the world is one of at most the row's length along this axis.
-        axes.scale[i] = (1 - roundings * unit * condition) /
-                        std::sqrt(undo[i][0] * undo[i][0] + undo[i][1] * undo[i][1] + undo[i][2] * undo[i][2]);
+        const double row = std::sqrt(undo[i][0] * undo[i][0] + undo[i][1] * undo[i][1] + undo[i][2] * undo[i][2]);
+        axes.scale.at[i] = float((1 - 0x1p-20) / row);
     }
+    axes.other = map_of(to_own);
+    round_to_lanes(own, other, roundings * unit * stretch * world * (1 + condition), axes);
     return axes;
 }
 
 Separation::WorldAxes Separation::axes_of_world(const PosedBoxes& a, const PosedBoxes& b) {
     WorldAxes axes;
-    axes.own = linear_part(a.pose);
-    axes.other = linear_part(b.pose);
-    axes.offset = between_origins(a, b);
-    const double slack = roundings * unit * (reach_in_world(a) + reach_in_world(b));
-    axes.slack = {slack, slack, slack};
-    axes.scale = {1, 1, 1};
+    axes.own = map_of(linear_part(a.pose));
+    axes.other = map_of(linear_part(b.pose));
+    const Point3d way = between_origins(a, b);
+    for (int i = 0; i < 3; ++i) {
+        axes.offset.at[i] = float(way[i]);
+        axes.scale.at[i] = 1 - 0x1p-20F;
+    }
+    // Here a is mapped as well: what it reaches to is at most that in the world.
+    const double world = reach_in_world(a) + reach_in_world(b);
+    round_to_lanes(a, b, (roundings * unit + 0x1p-19) * world, axes);
     return axes;
 }
 
