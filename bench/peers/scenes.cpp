@@ -48,7 +48,7 @@ Scene side_by_side(const std::vector<Scene>& scenes) {
 }
 
 Scene read(const std::string& path) {
-    return {path.substr(path.find_last_of('/') + 1), boxes_of(io::read_scene(path, io::MeshObjects::triangle))};
+    return {path.substr(path.find_last_of('/') + 1), boxes_of(io::read_scene(path, {io::MeshObjects::triangle}))};
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ public:
 private:
     void read() {
         progress_.show("reading", 0);
-        first_ = read_input_set(request_.inputs, request_.mesh_objects, stop_);
-        if (join()) second_ = read_input_set({request_.against}, request_.mesh_objects, stop_);
+        first_ = read_input_set(request_.inputs, {request_.mesh_objects}, stop_);
+        if (join()) second_ = read_input_set({request_.against}, {request_.mesh_objects}, stop_);
         const io::LoadedScene &a = first_.scene, &b = second_.scene;
         const io::FrameCount frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request_);
         report_.frames = frames.frames;

@@ -27,10 +27,11 @@ void copy_boxes(const Boxes& from, std::span<Box<Real>> to) {
 
 }  // namespace
 
-FrameSet::FrameSet(const std::vector<std::string>& paths, io::MeshObjects mesh_objects, const std::stop_token& stop) {
+FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent& content,
+                   const std::stop_token& stop) {
     open_moving(paths);
     if (!moving_.empty()) return;
-    still_ = read_input_set(paths, mesh_objects, stop);
+    still_ = read_input_set(paths, content, stop);
     objects_ = still_.scene.objects;
     wide_ = std::holds_alternative<Buffer<Box3d>>(still_.scene.boxes);
 }

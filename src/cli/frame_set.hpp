@@ -14,7 +14,7 @@ namespace octopair::cli {
 class FrameSet {
 public:
     /// Throws what read_input_set throws.
-    FrameSet(const std::vector<std::string>& paths, io::MeshObjects mesh_objects, const std::stop_token& stop);
+    FrameSet(const std::vector<std::string>& paths, const io::SceneContent& content, const std::stop_token& stop);
 
     std::uint64_t objects() const { return objects_; }  ///< in each frame
     const io::FrameCount& frames() const { return frames_; }

@@ -35,18 +35,18 @@ std::optional<std::uint64_t> InputSet::fault_position() const {
 
 namespace {
 
-io::LoadedScene read_part(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
-    return io::is_mesh_file(path) ? read_isolated(path, mesh_objects, stop) : io::read_scene(path, mesh_objects, stop);
+io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
+    return io::is_mesh_file(path) ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
 
 /// A file whose objects can be had in parts.
 class PartFile {
 public:
-    PartFile(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
+    PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
         if (io::is_npy_file(path)) {
             npy_.emplace(path);
         } else {
-            whole_ = read_part(path, mesh_objects, stop);
+            whole_ = read_part(path, content, stop);
         }
     }
 
@@ -78,12 +78,12 @@ private:
 
 }  // namespace
 
-InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop) {
     InputSet set;
     std::vector<io::LoadedScene> scenes;
     for (const std::string& path : paths) {
-        scenes.push_back(read_part(path, mesh_objects, stop));
+        scenes.push_back(read_part(path, content, stop));
         set.parts.push_back({path, scenes.back().objects});
     }
     set.scene = io::join_scenes(scenes, paths);
@@ -91,14 +91,14 @@ InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects m
     return set;
 }
 
-InputSet read_input_slice(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+InputSet read_input_slice(const std::vector<std::string>& paths, const io::SceneContent& content,
                           const SliceRequest& wanted, const std::stop_token& stop) {
     InputSet set;
     std::vector<PartFile> files;
     bool wide = false;
     std::vector<std::string> names;
     for (const std::string& path : paths) {
-        files.emplace_back(path, mesh_objects, stop);
+        files.emplace_back(path, content, stop);
         set.parts.push_back({path, files.back().objects()});
         wide |= files.back().wide();
         const std::vector<std::string> part_names = files.back().take_names();

@@ -47,7 +47,7 @@ private:
 };
 
 /// Throws what io::read_scene and io::join_scenes throw.
-InputSet read_input_set(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 
 /// The objects of a slice of the set; of .npy files no others are read. `names`: whether the scene gets the names of all
@@ -56,7 +56,7 @@ struct SliceRequest {
     SliceNumber number;
     bool names = false;
 };
-InputSet read_input_slice(const std::vector<std::string>& paths, io::MeshObjects mesh_objects,
+InputSet read_input_slice(const std::vector<std::string>& paths, const io::SceneContent& content,
                           const SliceRequest& wanted, const std::stop_token& stop);
 
 }  // namespace octopair::cli

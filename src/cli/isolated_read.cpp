@@ -1,5 +1,4 @@
-// Through the pipe go an Answer, then: the message of an error; or the boxes as they lie in memory, and the names, each
-// as its length (uint32) and its bytes.
+// Through the pipe go an Answer, then the message of an error, or the scene (scene_transfer.hpp).
 #include "cli/isolated_read.hpp"
 
 #include <fcntl.h>
@@ -18,8 +17,10 @@
 #include <limits>
 #include <new>
 #include <span>
+#include <vector>
 
 #include "base/descriptor.hpp"
+#include "cli/scene_transfer.hpp"
 #include "io/failure.hpp"
 #include "octopair/error.hpp"
 
@@ -30,38 +31,47 @@ namespace {
 struct Answer {
     bool failed;
     ErrorCode code;
-    bool wide;
-    std::uint64_t objects;
-    std::uint64_t names;
     std::uint64_t message_bytes;
 };
+
+/// Names and shapes are many small things, which go through the pipe in larger pieces.
+constexpr std::size_t piece_bytes = 65536;
 
 /// The child's side: it writes, and ends where nobody reads any more.
 class Sender {
 public:
-    explicit Sender(int pipe) : pipe_(pipe) {}
+    explicit Sender(int pipe) : pipe_(pipe) { waiting_.reserve(piece_bytes); }
 
-    void scene(const io::LoadedScene& scene) const {
-        const bool wide = std::holds_alternative<Buffer<Box3d>>(scene.boxes);
-        send(Answer{false, {}, wide, scene.objects, scene.names.size(), 0});
-        std::visit([&](const auto& boxes) { send_bytes(std::as_bytes(boxes.span())); }, scene.boxes);
-        for (const std::string& name : scene.names) {
-            send(std::uint32_t(name.size()));
-            send_bytes(std::as_bytes(std::span(name)));
-        }
+    void scene(const io::LoadedScene& scene) {
+        send(Answer{false, {}, 0});
+        send_scene(scene, [this](std::span<const std::byte> bytes) { send_bytes(bytes); });
+        flush();
     }
-    void error(ErrorCode code, const char* message) const {
+    void error(ErrorCode code, const char* message) {
         const std::span text(message, std::strlen(message));
-        send(Answer{true, code, false, 0, 0, text.size()});
+        send(Answer{true, code, text.size()});
         send_bytes(std::as_bytes(text));
+        flush();
     }
 
 private:
     template <typename T>
-    void send(const T& value) const {
+    void send(const T& value) {
         send_bytes(std::as_bytes(std::span(&value, 1)));
     }
-    void send_bytes(std::span<const std::byte> bytes) const {
+    void send_bytes(std::span<const std::byte> bytes) {
+        if (waiting_.size() + bytes.size() > piece_bytes) flush();
+        if (bytes.size() > piece_bytes) {
+            write(bytes);
+        } else {
+            waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+        }
+    }
+    void flush() {
+        write(waiting_);
+        waiting_.clear();
+    }
+    void write(std::span<const std::byte> bytes) const {
         while (!bytes.empty()) {
             const ssize_t written = ::write(pipe_, bytes.data(), bytes.size());
             if (written < 0 && errno == EINTR) continue;
@@ -71,6 +81,7 @@ private:
     }
 
     int pipe_;
+    std::vector<std::byte> waiting_;
 };
 
 /// The size of a file; of a glTF with all that lies beside it, as its numbers may be in further files.
@@ -99,7 +110,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
 #endif
 }
 
-[[noreturn]] void run_child(int pipe, const std::string& path, io::MeshObjects mesh_objects) {
+[[noreturn]] void run_child(int pipe, const std::string& path, const io::SceneContent& content) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -109,9 +120,9 @@ void limit_memory([[maybe_unused]] const std::string& path) {
         ::dup2(nowhere, STDOUT_FILENO);
         ::dup2(nowhere, STDERR_FILENO);
     }
-    const Sender sender(pipe);
+    Sender sender(pipe);
     try {
-        sender.scene(io::read_scene(path, mesh_objects));
+        sender.scene(io::read_scene(path, content));
     } catch (const Error& error) {
         sender.error(error.code(), error.what());
     } catch (const std::bad_alloc&) {
@@ -125,7 +136,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
 /// A child process with the reading end of the pipe it writes to; killed and waited for when its owner goes.
 class Child {
 public:
-    Child(const std::string& path, io::MeshObjects mesh_objects, std::stop_token stop)
+    Child(const std::string& path, const io::SceneContent& content, std::stop_token stop)
         : path_(path), stop_(std::move(stop)) {
         int ends[2];
         if (::pipe2(ends, O_CLOEXEC) != 0) fail_io(path, "cannot make a pipe", errno);
@@ -133,7 +144,7 @@ public:
         const Descriptor writing(ends[1]);
         id_ = ::fork();
         if (id_ < 0) throw Error(ErrorCode::resource_limit, fmt::format("{}: cannot start a process to read it", path));
-        if (id_ == 0) run_child(writing.number(), path, mesh_objects);
+        if (id_ == 0) run_child(writing.number(), path, content);
     }
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
@@ -151,17 +162,32 @@ public:
     }
     void receive_bytes(std::span<std::byte> bytes) {
         while (!bytes.empty()) {
+            if (arrived_.empty() && bytes.size() >= piece_.size()) {
+                bytes = bytes.subspan(read(bytes));
+                continue;
+            }
+            if (arrived_.empty()) arrived_ = std::span(piece_).first(read(piece_));
+            const std::size_t size = std::min(bytes.size(), arrived_.size());
+            std::copy_n(arrived_.begin(), size, bytes.begin());
+            arrived_ = arrived_.subspan(size);
+            bytes = bytes.subspan(size);
+        }
+    }
+
+private:
+    /// At least one byte.
+    std::size_t read(std::span<std::byte> bytes) {
+        for (;;) {
             if (stop_.stop_requested()) io::cancel();
             pollfd waiting{pipe_.number(), POLLIN, 0};
             if (::poll(&waiting, 1, 100) <= 0) continue;
             const ssize_t got = ::read(pipe_.number(), bytes.data(), bytes.size());
             if (got < 0 && errno == EINTR) continue;
             if (got <= 0) explain_end();
-            bytes = bytes.subspan(std::size_t(got));
+            return std::size_t(got);
         }
     }
 
-private:
     int wait() {
         int status = 0;
         while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -184,38 +210,19 @@ private:
     std::stop_token stop_;
     Descriptor pipe_;
     pid_t id_ = 0;
+    std::vector<std::byte> piece_ = std::vector<std::byte>(piece_bytes);
+    std::span<const std::byte> arrived_;  // of the piece, and not taken yet
 };
-
-template <typename Real>
-Buffer<Box<Real>> receive_boxes(Child& child, std::uint64_t objects) {
-    Buffer<Box<Real>> boxes{std::size_t(objects)};
-    child.receive_bytes(std::as_writable_bytes(boxes.span()));
-    return boxes;
-}
-
-std::string receive_text(Child& child, std::uint64_t bytes) {
-    std::string text(std::size_t(bytes), '\0');
-    child.receive_bytes(std::as_writable_bytes(std::span(text)));
-    return text;
-}
 
 }  // namespace
 
-io::LoadedScene read_isolated(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop) {
-    Child child(path, mesh_objects, stop);
+io::LoadedScene read_isolated(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
+    Child child(path, content, stop);
     const auto answer = child.receive<Answer>();
-    if (answer.failed) throw Error(answer.code, receive_text(child, answer.message_bytes));
-    io::LoadedScene scene;
-    scene.objects = answer.objects;
-    if (answer.wide) {
-        scene.boxes = receive_boxes<double>(child, answer.objects);
-    } else {
-        scene.boxes = receive_boxes<float>(child, answer.objects);
-    }
-    for (std::uint64_t i = 0; i < answer.names; ++i) {
-        scene.names.push_back(receive_text(child, child.receive<std::uint32_t>()));
-    }
-    return scene;
+    if (!answer.failed) return receive_scene([&](std::span<std::byte> bytes) { child.receive_bytes(bytes); });
+    std::string message(std::size_t(answer.message_bytes), '\0');
+    child.receive_bytes(std::as_writable_bytes(std::span(message)));
+    throw Error(answer.code, message);
 }
 
 }  // namespace octopair::cli

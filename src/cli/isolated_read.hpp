@@ -16,6 +16,6 @@ namespace octopair::cli {
 
 /// What io::read_scene gives or throws; also Error{bad_input} if the child crashed, Error{resource_limit} if it was
 /// killed, Error{cancelled} within 100 ms of a stop request.
-io::LoadedScene read_isolated(const std::string& path, io::MeshObjects mesh_objects, const std::stop_token& stop);
+io::LoadedScene read_isolated(const std::string& path, const io::SceneContent& content, const std::stop_token& stop);
 
 }  // namespace octopair::cli

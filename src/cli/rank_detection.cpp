@@ -55,8 +55,8 @@ private:
         const Timed timed(report_.seconds.read);
         progress_.show("reading", 0);
         const SliceRequest slice{{cluster_.rank(), cluster_.ranks()}, cluster_.first()};
-        first_ = read_input_slice(request_.inputs, request_.mesh_objects, slice, stop_);
-        if (join()) second_ = read_input_slice({request_.against}, request_.mesh_objects, slice, stop_);
+        first_ = read_input_slice(request_.inputs, {request_.mesh_objects}, slice, stop_);
+        if (join()) second_ = read_input_slice({request_.against}, {request_.mesh_objects}, slice, stop_);
         const io::FrameCount frames = joint_frames({first_.scene.frames, first_.scene.moving},
                                                    {second_.scene.frames, second_.scene.moving}, request_);
         report_.frames = frames.frames;

@@ -4,8 +4,10 @@
 //             among its parent's children. Its box is float64: it holds the vertices that faces of its meshes use (all
 //             vertices, where a mesh has no faces), posed by the transforms along the path, and is rounded outward.
 //   triangle  node by node, mesh by mesh, face by face; faces with more corners are cut into triangles, points and
-//   lines
-//             are left out. Its box is float32: posed vertices rounded once, then their min and max. No names.
+//             lines are left out. Its box is float32: posed vertices rounded once, then their min and max. No names.
+//
+// With shapes: nodes have theirs beside their boxes; triangles have no boxes, but their places in float64 and the names of
+// the nodes that own them.
 //
 // Vertices are taken as Assimp gives them: not merged, not reordered. Bones and animations are left out.
 #pragma once
@@ -23,6 +25,6 @@ bool is_mesh_ending(std::string_view ending);
 
 /// Throws Error{bad_input} with Assimp's words if it refuses the file, and for a vertex that is not finite;
 /// Error{io_failed, resource_limit}.
-LoadedScene read_mesh_scene(const std::string& path, MeshObjects objects);
+LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content);
 
 }  // namespace octopair::io

@@ -49,6 +49,34 @@ Buffer<To> join_boxes(std::span<LoadedScene> scenes, std::uint64_t objects) {
     return joined;
 }
 
+/// What a scene has beside boxes.
+const char* extent_of(const LoadedScene& scene) {
+    if (scene.shapes) return "shapes";
+    return scene.triangles ? "triangles" : "boxes alone";
+}
+
+void check_extents(std::span<const LoadedScene> scenes, std::span<const std::string> paths) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const std::string_view has = extent_of(scenes[i]), first_has = extent_of(scenes[0]);
+        if (has == first_has) continue;
+        refuse(paths[i],
+               fmt::format("{} beside {} in {}; what is one set has the same of each", has, first_has, paths[0]));
+    }
+}
+
+template <typename Part>
+void join_part(std::span<LoadedScene> scenes, std::optional<Part> LoadedScene::*part, LoadedScene& joined) {
+    if (!(scenes.front().*part)) return;
+    for (LoadedScene& scene : scenes) {
+        if (joined.*part) {
+            (joined.*part)->append(std::move(*(scene.*part)));
+        } else {
+            joined.*part = std::move(scene.*part);
+        }
+        (scene.*part).reset();
+    }
+}
+
 template <typename Real>
 std::optional<std::string> fault_of(const Box<Real>& box) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -79,15 +107,15 @@ bool is_mesh_file(const std::string& path) {
 
 bool is_npy_file(const std::string& path) { return lower_case_ending(path) == ".npy"; }
 
-LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop) {
+LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
     const std::string ending = lower_case_ending(path);
     if (is_npy_file(path)) return read_npy_scene(path, stop);
     if (ending == ".csv") return read_csv_scene(path, stop);
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_mesh_ending(ending)) return read_mesh_scene(path, mesh_objects);
+    if (is_mesh_ending(ending)) return read_mesh_scene(path, content);
     refuse(path, "not a kind of file that is known: its name ends neither in .npy nor .csv nor as a mesh file's");
 #else
-    (void)mesh_objects;
+    (void)content;
     refuse(path, "its name ends neither in .npy nor in .csv, and this build of octopair reads no mesh files");
 #endif
 }
@@ -102,7 +130,10 @@ void check_frame_counts(std::span<const FrameCount> counts, std::span<const std:
 
 LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths, bool wide) {
     const auto is_wide = [](const LoadedScene& scene) { return std::holds_alternative<Buffer<Box3d>>(scene.boxes); };
-    if (scenes.size() == 1 && is_wide(scenes.front()) >= wide) return std::move(scenes.front());
+    const bool boxless =
+        std::any_of(scenes.begin(), scenes.end(), [](const LoadedScene& scene) { return scene.lacks_boxes(); });
+    if (scenes.size() == 1 && (boxless || is_wide(scenes.front()) >= wide)) return std::move(scenes.front());
+    check_extents(scenes, paths);
     LoadedScene joined;
     joined.moving = scenes.front().moving;
     joined.frames = scenes.front().frames;
@@ -121,6 +152,9 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
             std::move(scene.names.begin(), scene.names.end(), std::back_inserter(joined.names));
         }
     }
+    join_part(scenes, &LoadedScene::shapes, joined);
+    join_part(scenes, &LoadedScene::triangles, joined);
+    if (boxless) return joined;
     if (wide) {
         joined.boxes = join_boxes<Box3d>(scenes, joined.objects);
     } else {

@@ -14,6 +14,12 @@ namespace octopair::io {
 /// What one object of a mesh file is: a node that shows a mesh, or a triangle.
 enum class MeshObjects : std::uint8_t { node, triangle };
 
+/// What is wanted of files that hold more than boxes.
+struct SceneContent {
+    MeshObjects objects = MeshObjects::node;
+    bool shapes = false;  ///< beside boxes, what the exact stages need: shapes, or triangles
+};
+
 /// True if read_scene would give the file to Assimp.
 bool is_mesh_file(const std::string& path);
 
@@ -21,10 +27,11 @@ bool is_mesh_file(const std::string& path);
 bool is_npy_file(const std::string& path);
 
 /// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
-LoadedScene read_scene(const std::string& path, MeshObjects mesh_objects, const std::stop_token& stop = {});
+LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop = {});
 
 /// Several scenes as one set: objects are numbered on, in each frame. Float32 beside float64 becomes float64, as all does
-/// if `wide`. Throws Error{bad_input} where their frames do not agree.
+/// if `wide`. Where one lacks boxes, the set does. Throws Error{bad_input} where their frames do not agree, or where some
+/// have shapes (or triangles) and others boxes alone.
 LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths, bool wide = false);
 
 /// How many frames a set has; one that stands still has the same one for ever.

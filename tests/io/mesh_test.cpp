@@ -19,9 +19,10 @@ const std::string tetrahedron_off =
 
 class Mesh : public testing::Test {
 protected:
-    LoadedScene read(const std::string& name, const std::string& content, MeshObjects objects) const {
+    LoadedScene read(const std::string& name, const std::string& content, MeshObjects objects,
+                     bool shapes = false) const {
         write_file(directory_.file(name), content);
-        return io::read_mesh_scene(directory_.file(name), objects);
+        return io::read_mesh_scene(directory_.file(name), {objects, shapes});
     }
 
     TemporaryDirectory directory_;
@@ -97,7 +98,67 @@ TEST_F(Mesh, InstancesArePosedAndNamedByPath) {
     const std::string unnamed = scene.names.back();
     EXPECT_LT(at(unnamed).max[0], 3.1000001);
     EXPECT_GE(at(unnamed).max[0], double(0.1f) + 3.0);
-    EXPECT_EQ(io::read_mesh_scene(directory_.file("i.gltf"), MeshObjects::triangle).objects, 4u);
+    EXPECT_EQ(io::read_mesh_scene(directory_.file("i.gltf"), {MeshObjects::triangle}).objects, 4u);
+}
+
+TEST_F(Mesh, InstancesShareShapes) {
+    write_file(directory_.file("triangle.bin"), bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    const LoadedScene scene = read("i.gltf", instances_gltf, MeshObjects::node, true);
+    ASSERT_TRUE(scene.shapes);
+    EXPECT_EQ(scene.names.size(), 4u);
+    EXPECT_EQ(scene.shapes->geometry, (std::vector<std::uint32_t>{0, 0, 0, 0}));
+    ASSERT_EQ(scene.shapes->shapes.size(), 1u);
+    const auto& mesh = std::get<shape::Mesh>(scene.shapes->shapes[0]);
+    EXPECT_EQ(mesh.vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+    // still, moved and the one without a name are children of the world; mirrored is one of moved.
+    const auto& parents = scene.shapes->parents;
+    EXPECT_EQ(parents, (std::vector<std::uint32_t>{0, 0, 1, 0}));
+    const Pose mirrored = scene.shapes->poses[2];
+    EXPECT_EQ(mirrored.rows[0], (std::array<double, 4>{-2, 0, 0, 10}));
+    EXPECT_EQ(mirrored.rows[2], (std::array<double, 4>{0, 0, 1, 30}));
+    EXPECT_EQ(std::get<Buffer<Box3d>>(scene.boxes).size(), 4u);
+}
+
+TEST_F(Mesh, AShapeHasTheTrianglesOfAllMeshesOfItsNode) {
+    const std::string obj =
+        "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\no quad\nf 2 3 4 5\nl 2 6\no line\nl 2 6\n";
+    const LoadedScene scene = read("q.obj", obj, MeshObjects::node, true);
+    ASSERT_EQ(scene.objects, 2u);
+    ASSERT_EQ(scene.shapes->shapes.size(), 2u);
+    const auto& quad = std::get<shape::Mesh>(scene.shapes->shapes[scene.shapes->geometry[0]]);
+    EXPECT_EQ(quad.triangles.size(), 2u);
+    EXPECT_EQ(quad.vertices.size(), 4u);
+    EXPECT_TRUE(std::get<shape::Mesh>(scene.shapes->shapes[scene.shapes->geometry[1]]).triangles.empty());
+    // The same objects and boxes as without shapes.
+    const LoadedScene plain = read("q.obj", obj, MeshObjects::node);
+    EXPECT_EQ(plain.names, scene.names);
+    EXPECT_FALSE(plain.shapes);
+    const auto &boxes = std::get<Buffer<Box3d>>(scene.boxes), &same = std::get<Buffer<Box3d>>(plain.boxes);
+    ASSERT_EQ(boxes.size(), same.size());
+    EXPECT_EQ(std::memcmp(boxes.data(), same.data(), 2 * sizeof(Box3d)), 0);
+}
+
+TEST_F(Mesh, TrianglesStandInTheWorldWithTheirOwners) {
+    write_file(directory_.file("triangle.bin"), bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    const LoadedScene nodes = read("i.gltf", instances_gltf, MeshObjects::node, true);
+    const LoadedScene scene = read("i.gltf", instances_gltf, MeshObjects::triangle, true);
+    ASSERT_TRUE(scene.triangles);
+    EXPECT_TRUE(scene.lacks_boxes());
+    EXPECT_EQ(scene.objects, 4u);
+    EXPECT_EQ(scene.triangles->owner_names, nodes.names);
+    EXPECT_EQ(scene.triangles->owners, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& rows = nodes.shapes->poses[i].rows;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const Point3d v = std::get<shape::Mesh>(nodes.shapes->shapes[0]).vertices[corner];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto& r = rows[axis];
+                EXPECT_EQ(scene.triangles->triangles[i][corner][axis],
+                          ((r[0] * v[0] + r[1] * v[1]) + r[2] * v[2]) + r[3]);
+            }
+        }
+    }
 }
 
 TEST_F(Mesh, RefusesVerticesThatAreNowhere) {
@@ -117,7 +178,7 @@ TEST_F(Mesh, RefusesFilesThatAssimpRefuses) {
         EXPECT_EQ(words.find('\n'), std::string::npos);
     }
     EXPECT_NE(error_of(ErrorCode::io_failed,
-                       [&] { (void)io::read_mesh_scene(directory_.file("none.obj"), MeshObjects::node); }),
+                       [&] { (void)io::read_mesh_scene(directory_.file("none.obj"), {MeshObjects::node}); }),
               "");
 }
 

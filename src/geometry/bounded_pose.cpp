@@ -1,9 +1,9 @@
-#include "io/pose.hpp"
+#include "geometry/bounded_pose.hpp"
 
 #include <cmath>
 #include <limits>
 
-namespace octopair::io {
+namespace octopair {
 
 namespace {
 
@@ -38,16 +38,16 @@ private:
 
 }  // namespace
 
-Pose::Pose() : Pose({{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}) {}
+BoundedPose::BoundedPose() : BoundedPose({{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}) {}
 
-Pose::Pose(const std::array<std::array<double, 4>, 3>& rows) {
+BoundedPose::BoundedPose(const std::array<std::array<double, 4>, 3>& rows) {
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) rows_[row][column] = {rows[row][column], 0};
     }
 }
 
-Pose Pose::operator*(const Pose& local) const {
-    Pose product;
+BoundedPose BoundedPose::operator*(const BoundedPose& local) const {
+    BoundedPose product;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
             Sum sum;
@@ -59,7 +59,7 @@ Pose Pose::operator*(const Pose& local) const {
     return product;
 }
 
-BoundedPoint Pose::apply(const std::array<double, 3>& point) const {
+BoundedPoint BoundedPose::apply(const Point3d& point) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     BoundedPoint posed;
     for (int row = 0; row < 3; ++row) {
@@ -74,4 +74,12 @@ BoundedPoint Pose::apply(const std::array<double, 3>& point) const {
     return posed;
 }
 
-}  // namespace octopair::io
+Pose BoundedPose::value() const {
+    Pose pose;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) pose.rows[row][column] = rows_[row][column].value;
+    }
+    return pose;
+}
+
+}  // namespace octopair
