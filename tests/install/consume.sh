@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI
+#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE
 #
 # installed: `cmake --install BUILD` to a fresh prefix, which is then moved, and found there by find_package; the program
 # too, if PROGRAM is ON. With PROCESSES also what uses octopair::processes: it must run the workers' program of that tree,
 # told by no environment. With SERVICE what uses octopair::client, of a server of that tree. With MPI what uses
-# octopair::mpi, on two ranks.
+# octopair::mpi, on two ranks. With PIPELINE what uses octopair::pipeline.
 set -euo pipefail
-how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8
+how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8 with_pipeline=$9
 work=$(mktemp -d)
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
@@ -99,5 +99,9 @@ fi
 if [ "$with_mpi" = ON ]; then
     build_consumer mpi mpi_consumer "${options[@]}" -DCONSUMER_WITH_MPI=ON
     mpirun -n 2 "$work/mpi/mpi_consumer"
+fi
+if [ "$with_pipeline" = ON ] && [ "$how" = installed ]; then
+    build_consumer pipeline pipeline_consumer "${options[@]}" -DCONSUMER_WITH_PIPELINE=ON
+    "$work/pipeline/pipeline_consumer"
 fi
 echo "a consumer of octopair ($how) finds its pairs"

@@ -1,0 +1,79 @@
+// Rules of .json files.
+#include "io/exclusion_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+std::string refusal(const std::string& text) {
+    return error_of(ErrorCode::bad_input, [&] { (void)io::parse_exclusion_rules(text, "r.json"); });
+}
+
+TEST(ExclusionRules, AreRead) {
+    const auto rules = io::parse_exclusion_rules(
+        R"({"exclude": [{"a": "*/bolt*", "b": "*/nut?"}, {"b": "", "a": "*"}],
+            "ignored_pairs": [["door", "hinge \u00e4"]], "same_parent": true})",
+        "r.json");
+    ASSERT_EQ(rules.exclude.size(), 2u);
+    EXPECT_EQ(rules.exclude[0].a, "*/bolt*");
+    EXPECT_EQ(rules.exclude[0].b, "*/nut?");
+    EXPECT_EQ(rules.exclude[1].a, "*");
+    EXPECT_EQ(rules.exclude[1].b, "");
+    ASSERT_EQ(rules.ignored_pairs.size(), 1u);
+    EXPECT_EQ(rules.ignored_pairs[0][0], "door");
+    EXPECT_EQ(rules.ignored_pairs[0][1], "hinge \xc3\xa4");
+    EXPECT_TRUE(rules.same_parent);
+}
+
+TEST(ExclusionRules, MayBeLeftOut) {
+    const auto rules = io::parse_exclusion_rules("{}", "r.json");
+    EXPECT_TRUE(rules.exclude.empty());
+    EXPECT_TRUE(rules.ignored_pairs.empty());
+    EXPECT_FALSE(rules.same_parent);
+    EXPECT_FALSE(io::parse_exclusion_rules(R"({"same_parent": false})", "r.json").same_parent);
+}
+
+TEST(ExclusionRules, NameThePlace) {
+    EXPECT_EQ(refusal("[]"), "r.json: not an object of JSON");
+    EXPECT_EQ(refusal(R"({"excludes": []})"),
+              "r.json: \"excludes\" is no key of exclusion rules; these are exclude, ignored_pairs, same_parent");
+    EXPECT_EQ(refusal(R"({"exclude": {}})"), "r.json: exclude: an array is wanted, not object");
+    EXPECT_EQ(refusal(R"({"exclude": ["*"]})"),
+              "r.json: exclude[0]: an object {\"a\": PATTERN, \"b\": PATTERN} is wanted, not string");
+    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"), "r.json: exclude[1]: has no \"b\"");
+    EXPECT_EQ(refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0].a: a string is wanted, not number");
+    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
+              "r.json: exclude[0]: \"c\" is no key of a rule");
+    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a"]]})"),
+              "r.json: ignored_pairs[0]: an array of two names is wanted, not array");
+    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a", null]]})"),
+              "r.json: ignored_pairs[0][1]: a string is wanted, not null");
+    EXPECT_EQ(refusal(R"({"same_parent": 1})"), "r.json: same_parent: true or false is wanted, not number");
+    EXPECT_EQ(refusal(R"({"same_parent": true, "same_parent": false})"),
+              "r.json: the key \"same_parent\" is there twice");
+}
+
+TEST(ExclusionRules, MustBeJson) {
+    for (const std::string text :
+         {"", "{", "{} {}", "{\"exclude\": [}", "{'exclude': []}", "{\"exclude\": [],}", "\xff"}) {
+        const std::string words = refusal(text);
+        EXPECT_TRUE(words.starts_with("r.json: parse error at line 1")) << words;
+        EXPECT_EQ(words.find('\n'), std::string::npos) << words;
+    }
+}
+
+TEST(ExclusionRules, AreReadFromFiles) {
+    const TemporaryDirectory folder;
+    const std::string path = folder.file("r.json");
+    write_file(path, R"({"same_parent": true})");
+    EXPECT_TRUE(io::read_exclusion_rules(path).same_parent);
+    EXPECT_TRUE(error_of(ErrorCode::io_failed, [&] {
+                    (void)io::read_exclusion_rules(folder.file("none.json"));
+                }).find("none.json") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace octopair::test
