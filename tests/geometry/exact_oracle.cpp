@@ -108,12 +108,22 @@ bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b) {
     return !std::all_of(common.begin(), common.end(), [&](const Place& place) { return is_within(place, halves); });
 }
 
-bool oracle_overlap(const Triangle3d& a, const Triangle3d& b) {
+OracleContact oracle_contact(const Triangle3d& a, const Triangle3d& b) {
     const Convex common = common_corners(a, b);
-    for (std::size_t i = 2; i < common.size(); ++i) {
-        if (!is_zero(cross(common[i - 1] - common[0], common[i] - common[0]))) return true;
+    const std::set<Place> corners(common.begin(), common.end());
+    OracleContact contact = {corners.size(), false, !common.empty()};
+    Place middle;
+    for (const Place& corner : common) {
+        contact.area |= !is_zero(cross(common[1 % common.size()] - common[0], corner - common[0]));
+        for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] += corner[axis] / int(common.size());
     }
-    return false;
+    for (const Triangle3d& triangle : {a, b}) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto edge = halves_of(exactly(triangle[i]), exactly(triangle[(i + 1) % 3]));
+            contact.inside &= !common.empty() && !is_within(middle, edge);
+        }
+    }
+    return contact;
 }
 
 namespace {

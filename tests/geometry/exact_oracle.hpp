@@ -18,8 +18,13 @@ int oracle_plane_side(const std::array<Point3d, 4>& corners);
 bool oracle_meet(const Triangle3d& a, const Triangle3d& b);
 /// Whether any of them are left outside of the shared corner, edge or edges.
 bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b);
-/// The area that they have in common is not 0; of triangles in one plane.
-bool oracle_overlap(const Triangle3d& a, const Triangle3d& b);
+/// What they have in common.
+struct OracleContact {
+    std::size_t corners;  ///< different ones
+    bool area;            ///< it is more than a segment
+    bool inside;          ///< its middle is inside of both: no point of their edges
+};
+OracleContact oracle_contact(const Triangle3d& a, const Triangle3d& b);
 
 using TrianglePair = std::array<Triangle3d, 2>;
 /// `kind`: 0 to pair_kinds - 1.

@@ -1,14 +1,12 @@
-// The signs that float64 leaves open. Float64 are integers times a power of two: with the least such power of all that take
-// part they become integers, as wide as their exponents spread, and the determinant is computed in the narrowest type
-// that holds it. Most meshes have coordinates of one or two dozen bits, whose determinants are below 2^127.
+// The signs that float64 leaves open: of integers, in the narrowest type that holds the determinant. Most meshes have
+// coordinates of one or two dozen bits, whose determinants are below 2^127.
 #include "geometry/exact/orientation.hpp"
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cstddef>
-#include <cstdint>
+
+#include "geometry/exact/dyadic_grid.hpp"
 
 namespace octopair {
 namespace {
@@ -17,63 +15,6 @@ namespace mp = boost::multiprecision;
 template <unsigned bits>
 using Fixed = mp::number<mp::cpp_int_backend<bits, bits, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
 using Unbounded = mp::number<mp::cpp_int_backend<>, mp::et_off>;
-
-/// mantissa * 2^exponent; the mantissa is odd, or 0.
-struct Dyadic {
-    std::int64_t mantissa = 0;
-    int exponent = 0;
-
-    explicit Dyadic(double value) {
-        const auto bits = std::bit_cast<std::uint64_t>(value);
-        auto magnitude = bits & ((std::uint64_t(1) << 52) - 1);
-        const int biased = int(bits >> 52 & 0x7FF);
-        if (biased != 0) magnitude |= std::uint64_t(1) << 52;
-        if (magnitude == 0) return;
-        const int zeros = std::countr_zero(magnitude);
-        mantissa = std::int64_t(magnitude >> zeros);
-        if (bits >> 63 != 0) mantissa = -mantissa;
-        exponent = std::max(biased, 1) - 1075 + zeros;
-    }
-
-    int end() const { return exponent + int(std::bit_width(std::uint64_t(mantissa < 0 ? -mantissa : mantissa))); }
-};
-
-/// Numbers on their way to integers.
-template <std::size_t count>
-class Grid {
-public:
-    explicit Grid(const std::array<double, count>& values) : numbers_(make(values, std::make_index_sequence<count>())) {
-        int begin = 0, end = 0;
-        bool any = false;
-        for (const Dyadic& number : numbers_) {
-            if (number.mantissa == 0) continue;
-            begin = any ? std::min(begin, number.exponent) : number.exponent;
-            end = any ? std::max(end, number.end()) : number.end();
-            any = true;
-        }
-        begin_ = begin;
-        bits_ = unsigned(end - begin);
-    }
-
-    /// All integers are below 2^bits.
-    unsigned bits() const { return bits_; }
-
-    template <typename Integer>
-    Integer at(std::size_t i) const {
-        if (numbers_[i].mantissa == 0) return Integer(0);
-        return Integer(numbers_[i].mantissa) << unsigned(numbers_[i].exponent - begin_);
-    }
-
-private:
-    template <std::size_t... i>
-    static std::array<Dyadic, count> make(const std::array<double, count>& values, std::index_sequence<i...> /*of*/) {
-        return {Dyadic(values[i])...};
-    }
-
-    std::array<Dyadic, count> numbers_;
-    int begin_ = 0;
-    unsigned bits_ = 0;
-};
 
 /// Rows a, b, c, d of a plane's corners: the determinant of the rows less the first.
 template <typename Integer>

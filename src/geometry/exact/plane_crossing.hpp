@@ -31,37 +31,41 @@ inline bool in_plane(const CornerSides& sides) { return sides[0] == 0 && sides[1
 class PlaneCrossing {
 public:
     /// Of sides that are neither on_one_side nor in_plane. The triangles must outlive it.
-    PlaneCrossing(const Triangle3d& a, const CornerSides& a_sides, const Triangle3d& b, const CornerSides& b_sides) {
-        const int a_up = turn(a, a_sides, a_);
-        const int b_up = turn(b, b_sides, b_);
-        if (a_up < 0) std::swap(b_[1], b_[2]);
-        if (b_up < 0) std::swap(a_[1], a_[2]);
+    PlaneCrossing(const Triangle3d& a, const CornerSides& a_sides, const Triangle3d& b, const CornerSides& b_sides)
+        : a_(a), b_(b), a_turn_(turn(a_sides)), b_turn_(turn(b_sides)) {
+        if (up(a_sides, a_turn_) < 0) std::swap(b_turn_[1], b_turn_[2]);
+        if (up(b_sides, b_turn_) < 0) std::swap(a_turn_[1], a_turn_[2]);
     }
 
     /// The sign of where edge 0i of the first crosses, less where edge 0j of the second does.
-    int order(unsigned i, unsigned j) const { return plane_side(*a_[0], *a_[i], *b_[0], *b_[j]); }
+    int order(unsigned i, unsigned j) const {
+        return plane_side(a_[a_turn_[0]], a_[a_turn_[i]], b_[b_turn_[0]], b_[b_turn_[j]]);
+    }
     bool meet() const { return order(1, 1) <= 0 && order(2, 2) >= 0; }
 
-    const Point3d& first(unsigned i) const { return *a_[i]; }
-    const Point3d& second(unsigned i) const { return *b_[i]; }
+    using Turn = std::array<unsigned, 3>;
+    /// Which corners are 0, 1 and 2.
+    const Turn& first() const { return a_turn_; }
+    const Turn& second() const { return b_turn_; }
 
 private:
-    using Corners = std::array<const Point3d*, 3>;
-
     /// Corner i is alone: all others are on the other side, or in the plane; or it is in the plane and no other is.
     static bool alone(const CornerSides& sides, unsigned i) {
         const int side = sides[i], next = sides[(i + 1) % 3], last = sides[(i + 2) % 3];
         return side != 0 ? side * next <= 0 && side * last <= 0 : next * last > 0;
     }
-
-    /// Returns the side on which the first corner counts as.
-    static int turn(const Triangle3d& triangle, const CornerSides& sides, Corners& corners) {
-        const unsigned i = alone(sides, 0) ? 0 : alone(sides, 1) ? 1 : 2;
-        corners = {&triangle[i], &triangle[(i + 1) % 3], &triangle[(i + 2) % 3]};
-        return sides[i] != 0 ? sides[i] : -sides[(i + 1) % 3];
+    static Turn turn(const CornerSides& sides) {
+        if (alone(sides, 0)) return {0, 1, 2};
+        if (alone(sides, 1)) return {1, 2, 0};
+        return {2, 0, 1};
+    }
+    /// The side that the lone corner counts as.
+    static int up(const CornerSides& sides, const Turn& turn) {
+        return sides[turn[0]] != 0 ? sides[turn[0]] : -sides[turn[1]];
     }
 
-    Corners a_, b_;
+    const Triangle3d &a_, &b_;
+    Turn a_turn_, b_turn_;
 };
 
 }  // namespace octopair

@@ -17,17 +17,6 @@ bool boxes_meet(const Segment3d& s, const Segment3d& t) {
     return true;
 }
 
-/// An axis along which some three of four points are seen with an area; 3 if all lie on a line. The plane of four points
-/// that lie in one is seen one to one along it.
-unsigned facing_axis(const Segment3d& s, const Segment3d& t) {
-    for (const auto& triple : {Triangle3d{s[0], s[1], t[0]}, Triangle3d{s[0], s[1], t[1]}, Triangle3d{s[0], t[0], t[1]},
-                               Triangle3d{s[1], t[0], t[1]}}) {
-        const unsigned axis = facing(triple).axis;
-        if (axis < 3) return axis;
-    }
-    return 3;
-}
-
 /// In a plane that is seen along the axis. Each straddles the other's line, or they lie apart; that all four sides are 0
 /// would take a common line.
 bool coplanar_segments_meet(const Segment3d& s, const Segment3d& t, unsigned axis) {
@@ -64,6 +53,15 @@ Segment3d hull_of_degenerate(const Triangle3d& triangle) {
     // Along a line, the order of the corners is that of their numbers.
     const auto [low, high] = std::minmax_element(triangle.begin(), triangle.end());
     return {*low, *high};
+}
+
+unsigned facing_axis(const Segment3d& s, const Segment3d& t) {
+    for (const auto& triple : {Triangle3d{s[0], s[1], t[0]}, Triangle3d{s[0], s[1], t[1]}, Triangle3d{s[0], t[0], t[1]},
+                               Triangle3d{s[1], t[0], t[1]}}) {
+        const unsigned axis = facing(triple).axis;
+        if (axis < 3) return axis;
+    }
+    return 3;
 }
 
 bool segments_meet(const Segment3d& s, const Segment3d& t) {

@@ -21,6 +21,9 @@ Facing facing(const Triangle3d& triangle);
 /// The two corners that are furthest apart, if it is degenerate.
 Segment3d hull_of_degenerate(const Triangle3d& triangle);
 
+/// An axis along which a plane that holds both is seen one to one; 3 if all lie on a line. Of segments in one plane.
+unsigned facing_axis(const Segment3d& s, const Segment3d& t);
+
 bool segments_meet(const Segment3d& s, const Segment3d& t);
 bool segment_meets_triangle(const Segment3d& segment, const Triangle3d& triangle);
 
