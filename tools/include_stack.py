@@ -40,7 +40,7 @@ THIRD_PARTY = {
     "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "engine", "scene"}, "assimp": {"io"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
-    "fcl": {"geometry"}, "Eigen": {"geometry"}, "boost": {"geometry"},
+    "ccd": {"geometry"}, "Eigen": {"geometry"}, "boost": {"geometry"},
     "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "service", "cli"},
     "nlohmann": {"io", "machine", "paper", "cluster", "scaling", "service", "cli"},
 }

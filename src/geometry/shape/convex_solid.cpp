@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
+#include <utility>
 
 #include "geometry/shape/vector.hpp"
 
@@ -11,23 +11,37 @@ namespace {
 
 using Core = ConvexSolid::Core;
 
-ConvexSolid solid_of(const shape::Sphere& sphere) { return {Core::points, {}, {{0, 0, 0}}, sphere.radius}; }
-ConvexSolid solid_of(const shape::Box& box) { return {Core::box, box.half_extents, {}, 0}; }
+ConvexSolid of_points(std::vector<Point3d> points, double radius) {
+    ConvexSolid solid;
+    for (const Point3d& point : points) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            solid.largest[axis] = std::max(solid.largest[axis], std::fabs(point[axis]));
+        }
+    }
+    solid.points = std::move(points);
+    solid.radius = radius;
+    return solid;
+}
+
+ConvexSolid within(Core core, const Point3d& extents) { return {core, extents, {}, 0, extents}; }
+
+ConvexSolid solid_of(const shape::Sphere& sphere) { return of_points({{0, 0, 0}}, sphere.radius); }
+ConvexSolid solid_of(const shape::Box& box) { return within(Core::box, box.half_extents); }
 ConvexSolid solid_of(const shape::Capsule& capsule) {
-    return {Core::points, {}, {{0, 0, -capsule.length / 2}, {0, 0, capsule.length / 2}}, capsule.radius};
+    return of_points({{0, 0, -capsule.length / 2}, {0, 0, capsule.length / 2}}, capsule.radius);
 }
 ConvexSolid solid_of(const shape::Cylinder& cylinder) {
-    return {Core::cylinder, {cylinder.radius, cylinder.radius, cylinder.length / 2}, {}, 0};
+    return within(Core::cylinder, {cylinder.radius, cylinder.radius, cylinder.length / 2});
 }
 ConvexSolid solid_of(const shape::Cone& cone) {
-    return {Core::cone, {cone.radius, cone.radius, cone.length / 2}, {}, 0};
+    return within(Core::cone, {cone.radius, cone.radius, cone.length / 2});
 }
-ConvexSolid solid_of(const shape::Ellipsoid& ellipsoid) { return {Core::ellipsoid, ellipsoid.radii, {}, 0}; }
-ConvexSolid solid_of(const shape::ConvexHull& hull) { return {Core::points, {}, hull.points, 0}; }
+ConvexSolid solid_of(const shape::Ellipsoid& ellipsoid) { return within(Core::ellipsoid, ellipsoid.radii); }
+ConvexSolid solid_of(const shape::ConvexHull& hull) { return of_points(hull.points, 0); }
 ConvexSolid solid_of(const shape::Plane&) { return {}; }
 ConvexSolid solid_of(const shape::Mesh&) { return {}; }
 
-Point3d farthest(std::span<const Point3d> points, const Point3d& direction) {
+Point3d farthest(const std::vector<Point3d>& points, const Point3d& direction) {
     return *std::max_element(points.begin(), points.end(), [&](const Point3d& a, const Point3d& b) {
         return vector::dot(a, direction) < vector::dot(b, direction);
     });

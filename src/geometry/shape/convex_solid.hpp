@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "octopair/shapes.hpp"
@@ -20,6 +19,7 @@ struct ConvexSolid {
     Point3d extents = {};         ///< of a box and an ellipsoid; of a cylinder and a cone: radius, radius, half length
     std::vector<Point3d> points;  ///< without any, of Core::points, there is no solid: planes and meshes have none
     double radius = 0;
+    Point3d largest = {};  ///< of each axis, the largest absolute coordinate of the core
 
     bool exists() const { return core != Core::points || !points.empty(); }
 };
