@@ -155,7 +155,11 @@ Geometry::Geometry(shape::Any shape) {
     const std::vector<Point3d> vertices = vertices_of(made->shape);
     made->vertices = VertexBlocks(vertices);
     made->bounds = bounds_of(*made, vertices);
-    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) made->tree = make_mesh_tree(*mesh);
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) {
+        made->tree = make_mesh_tree(*mesh);
+    } else if (made->convex.exists()) {
+        made->tree = std::make_shared<MeshTree>(make_box_tree(made->bounds.box));
+    }
     prepared_ = std::move(made);
 }
 

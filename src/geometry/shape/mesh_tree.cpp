@@ -41,6 +41,19 @@ struct Bounds {
     }
 };
 
+void set_node_box(MeshNode& node, const Bounds& bounds, const Point3d& origin) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = bounds.min[axis] - origin[axis], high = bounds.max[axis] - origin[axis];
+        node.centre[axis] = float(low / 2 + high / 2);
+        if (!std::isfinite(node.centre[axis])) node.centre[axis] = 0;
+        // What was rounded so far is far below one part in 2^40 of what it was made of.
+        const double centre = double(node.centre[axis]);
+        const double made_of = std::abs(low) + std::abs(high) + std::abs(origin[axis]) * 0x1p-8;
+        const double half = std::max(high - centre, centre - low) + made_of * 0x1p-44;
+        node.half[axis] = std::nextafter(float(half), std::numeric_limits<float>::infinity());
+    }
+}
+
 /// A triangle while the tree is made.
 struct Item {
     Bounds bounds;
@@ -104,17 +117,7 @@ private:
     void set_box(const Task& task) {
         Bounds bounds;
         for (std::uint32_t i = task.begin; i < task.end; ++i) bounds.add(items_[i].bounds);
-        MeshNode& node = tree_.nodes[task.node];
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = bounds.min[axis] - tree_.origin[axis], high = bounds.max[axis] - tree_.origin[axis];
-            node.centre[axis] = float(low / 2 + high / 2);
-            if (!std::isfinite(node.centre[axis])) node.centre[axis] = 0;
-            // What was rounded so far is far below one part in 2^40 of what it was made of.
-            const double centre = double(node.centre[axis]);
-            const double made_of = std::abs(low) + std::abs(high) + std::abs(tree_.origin[axis]) * 0x1p-8;
-            const double half = std::max(high - centre, centre - low) + made_of * 0x1p-44;
-            node.half[axis] = std::nextafter(float(half), std::numeric_limits<float>::infinity());
-        }
+        set_node_box(tree_.nodes[task.node], bounds, tree_.origin);
     }
 
     /// Where the items are cut, after they were put in order: each side gets at least one.
@@ -192,6 +195,17 @@ std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh) {
     auto tree = std::make_shared<MeshTree>();
     Builder(mesh, *tree).build();
     tree->parts = find_parts(*tree);
+    return tree;
+}
+
+MeshTree make_box_tree(const Box3d& box) {
+    Bounds bounds;
+    bounds.add(Point3d{box.min[0], box.min[1], box.min[2]});
+    bounds.add(Point3d{box.max[0], box.max[1], box.max[2]});
+    MeshTree tree;
+    tree.origin = bounds.centre();
+    tree.nodes = {{{}, 0, {}, 1}};
+    set_node_box(tree.nodes[0], bounds, tree.origin);
     return tree;
 }
 

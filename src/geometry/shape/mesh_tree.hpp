@@ -57,6 +57,9 @@ struct MeshTree {
 /// Indices must be in range, and vertices finite.
 std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh);
 
+/// One node that holds a box, and no triangles: what is not a mesh is met by one of these.
+MeshTree make_box_tree(const Box3d& box);
+
 /// Of a tree whose triangles are in order.
 MeshParts find_parts(const MeshTree& tree);
 

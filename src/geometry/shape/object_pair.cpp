@@ -1,24 +1,210 @@
 #include "geometry/shape/object_pair.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "geometry/shape/convex_pair.hpp"
 #include "geometry/shape/mesh_contacts.hpp"
+#include "geometry/shape/mesh_convex.hpp"
 #include "geometry/shape/mesh_pair.hpp"
+#include "geometry/shape/mesh_plane.hpp"
+#include "geometry/shape/vector.hpp"
 
 namespace octopair {
 
 namespace {
 
-bool judge_meshes(const PosedMesh& a, const PosedMesh& b, double reach, Finding& finding) {
-    if (surfaces_meet(a, b)) {
+/// What each kind of pair is asked.
+struct Distance {
+    double distance = 0, at_least = 0;  ///< as ConvexGap has them
+    std::array<Point3d, 2> nearest = {};
+};
+std::optional<Distance> from(const std::optional<SurfaceGap>& gap) {
+    if (!gap) return std::nullopt;
+    return Distance{gap->distance, gap->distance, gap->nearest};
+}
+std::optional<Distance> from(const std::optional<ConvexGap>& gap) {
+    if (!gap) return std::nullopt;
+    return Distance{gap->distance, gap->at_least, {gap->on_a, gap->on_b}};
+}
+
+/// A depth of less than this part of the smaller one's size is a touch: what is curved is known no better.
+constexpr double touching_depth = 1e-9;
+
+Contact from(const ConvexContact& contact) { return {contact.point, contact.normal, contact.depth}; }
+
+/// One contact says it all.
+void set_contact(const Contact& contact, std::uint32_t max_contacts, Finding& finding) {
+    finding.depth = contact.depth;
+    finding.more_contacts = max_contacts == 0;
+    if (max_contacts > 0) finding.contacts = {contact};
+}
+
+CollisionClass class_of(double depth, double size) {
+    return depth > touching_depth * size ? CollisionClass::penetrating : CollisionClass::touching;
+}
+
+// The kinds of pairs: each says whether the two meet, whether one contains the other, how far apart they are, and how they
+// meet. Those of a mesh have it first, those of a plane last.
+
+struct TwoMeshes {
+    PosedMesh a, b;
+
+    bool meet() const { return surfaces_meet(a, b); }
+    bool contained() const { return encloses_part(a, b) || encloses_part(b, a); }
+    std::optional<Distance> gap(double most) const { return from(surface_gap(a, b, most)); }
+    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+        find_mesh_contacts(a, b, max_contacts, finding);
+    }
+    double contained_depth() const { return depth_of_meshes(a, b); }
+};
+
+struct TwoSolids {
+    PosedConvex a, b;
+    double size;
+
+    bool meet() const { return convex_meet(a, b) && !contained(); }
+    bool contained() const { return convex_holds(a, b) || convex_holds(b, a); }
+    std::optional<Distance> gap(double) const { return from(std::optional(convex_gap(a, b))); }
+    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+        const ConvexContact contact = convex_contact(a, b);
+        set_contact(from(contact), max_contacts, finding);
+        finding.collision_class = class_of(contact.depth, size);
+    }
+    double contained_depth() const { return convex_contact(a, b).depth; }
+};
+
+struct MeshAndSolid {
+    PosedMesh mesh;
+    BoxedSolid solid;
+    double size;
+
+    bool meet() const { return surface_meets(mesh, solid) && !holds_mesh(solid, mesh); }
+    bool contained() const { return encloses_solid(mesh, solid) || holds_mesh(solid, mesh); }
+    std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
+    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+        visit_meeting_triangles(mesh, solid, [&](std::uint32_t number, const Triangle3d& triangle) {
+            Contact contact = from(convex_contact(PosedConvex(triangle), {solid.solid, solid.box.pose}));
+            contact.feature_a = number;
+            finding.depth = std::max(finding.depth, contact.depth);
+            finding.contacts.push_back(contact);
+        });
+        finding.collision_class = class_of(finding.depth, size);
+        auto& contacts = finding.contacts;
+        std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+            return a.depth != b.depth ? a.depth > b.depth : a.feature_a < b.feature_a;
+        });
+        finding.more_contacts = contacts.size() > max_contacts;
+        if (finding.more_contacts) contacts.resize(max_contacts);
+    }
+    /// Of the nearest way out for what is inside, as far as corners and a point of the solid tell.
+    double contained_depth() const {
+        const auto gap = surface_gap(mesh, solid, std::numeric_limits<double>::infinity());
+        return gap ? gap->distance : 0;
+    }
+};
+
+struct SolidAndPlane {
+    PosedConvex solid;
+    PosedPlane plane;
+    double size;
+
+    PlaneSpan span() const { return span_across(plane, solid); }
+    bool meet() const { return meets(span()); }
+    static bool contained() { return false; }
+    std::optional<Distance> gap(double) const {
+        auto found = from(std::optional(plane_gap(plane, span())));
+        std::swap(found->nearest[0], found->nearest[1]);
+        return found;
+    }
+    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+        set_plane_contact(plane, span(), max_contacts, finding);
+        finding.collision_class = class_of(finding.depth, size);
+    }
+    static double contained_depth() { return 0; }
+
+    static void set_plane_contact(const PosedPlane& plane, const PlaneSpan& span, std::uint32_t max_contacts,
+                                  Finding& finding) {
+        Contact contact = from(plane_contact(plane, span));
+        contact.normal = vector::times(contact.normal, -1);
+        set_contact(contact, max_contacts, finding);
+    }
+};
+
+struct MeshAndPlane {
+    PosedMesh mesh;
+    PosedPlane plane;
+    double size;
+
+    bool meet() const { return surface_meets(mesh, plane); }
+    static bool contained() { return false; }
+    std::optional<Distance> gap(double) const {
+        auto found = from(plane_gap(plane, mesh));
+        if (found) std::swap(found->nearest[0], found->nearest[1]);
+        return found;
+    }
+    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+        SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), max_contacts, finding);
+        finding.collision_class = class_of(finding.depth, size);
+    }
+    static double contained_depth() { return 0; }
+};
+
+PosedMesh mesh_of(const PosedObject& object) { return {*object.geometry.tree, object.pose}; }
+BoxedSolid boxed_solid_of(const PosedObject& object) { return {object.geometry.convex, mesh_of(object)}; }
+PosedConvex solid_of(const PosedObject& object) { return {object.geometry.convex, object.pose}; }
+PosedPlane plane_of(const PosedObject& object) {
+    return posed_plane(std::get<shape::Plane>(object.geometry.shape), object.pose);
+}
+
+enum class Kind : std::uint8_t { mesh, solid, plane };
+Kind kind_of(const PosedObject& object) {
+    if (std::holds_alternative<shape::Mesh>(object.geometry.shape)) return Kind::mesh;
+    return object.geometry.convex.exists() ? Kind::solid : Kind::plane;
+}
+
+/// Calls judge(pair) with the two as one of the kinds above, `first` being of no later kind than `second`. Planes are
+/// apart.
+template <typename Result, typename Judge>
+Result with_kind(const PosedObject& first, const PosedObject& second, Result of_planes, const Judge& judge) {
+    const double size = std::min(first.geometry.bounds.radius, second.geometry.bounds.radius);
+    const Kind a = kind_of(first), b = kind_of(second);
+    if (a == Kind::mesh && b == Kind::mesh) return judge(TwoMeshes{mesh_of(first), mesh_of(second)});
+    if (a == Kind::mesh && b == Kind::solid) return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), size});
+    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), first.geometry.bounds.radius});
+    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), size});
+    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), first.geometry.bounds.radius});
+    return of_planes;
+}
+
+/// Some more than `reach`: what is as far as that within rounding counts.
+double room_for_rounding(double reach) { return reach * (1 + 1e-12); }
+
+/// What was found with the objects in the other order.
+void turn_round(Finding& finding) {
+    std::swap(finding.nearest[0], finding.nearest[1]);
+    for (Contact& contact : finding.contacts) {
+        contact.normal = vector::times(contact.normal, -1);
+        std::swap(contact.feature_a, contact.feature_b);
+    }
+}
+
+template <typename Pair>
+bool judge_pair(const Pair& pair, double reach, Finding& finding) {
+    if (pair.meet()) {
         finding.collision_class = CollisionClass::collision;
         return true;
     }
-    if (encloses_part(a, b) || encloses_part(b, a)) {
+    if (pair.contained()) {
         finding.collision_class = CollisionClass::contained;
         return true;
     }
     if (!(reach > 0)) return false;
-    const auto gap = surface_gap(a, b, reach);
-    if (!gap) return false;
+    const double most = room_for_rounding(reach);
+    const std::optional<Distance> gap = pair.gap(most);
+    if (!gap || gap->at_least > most) return false;
     finding.collision_class = CollisionClass::clearance;
     finding.distance = gap->distance;
     finding.nearest = gap->nearest;
@@ -28,7 +214,35 @@ bool judge_meshes(const PosedMesh& a, const PosedMesh& b, double reach, Finding&
 }  // namespace
 
 bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Finding& finding) {
-    return judge_meshes({*a.geometry.tree, a.pose}, {*b.geometry.tree, b.pose}, reach, finding);
+    const bool in_order = kind_of(a) <= kind_of(b);
+    const bool counts = with_kind(in_order ? a : b, in_order ? b : a, false,
+                                  [&](const auto& pair) { return judge_pair(pair, reach, finding); });
+    if (!in_order) turn_round(finding);
+    return counts;
+}
+
+double object_distance(const PosedObject& a, const PosedObject& b, double most) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const bool in_order = kind_of(a) <= kind_of(b);
+    return with_kind(in_order ? a : b, in_order ? b : a, infinity, [&](const auto& pair) {
+        if (pair.meet() || pair.contained()) return 0.0;
+        const auto gap = pair.gap(most);
+        return gap && gap->at_least <= most ? gap->at_least : infinity;
+    });
+}
+
+void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding) {
+    const bool in_order = kind_of(a) <= kind_of(b);
+    if (!in_order) turn_round(finding);
+    with_kind(in_order ? a : b, in_order ? b : a, 0, [&](const auto& pair) {
+        if (finding.collision_class == CollisionClass::contained) {
+            finding.depth = pair.contained_depth();
+        } else {
+            pair.find_contacts(max_contacts, finding);
+        }
+        return 0;
+    });
+    if (!in_order) turn_round(finding);
 }
 
 }  // namespace octopair

@@ -22,9 +22,10 @@ struct ShapeBounds {
 struct Geometry::Prepared {
     shape::Any shape;
     ShapeBounds bounds;
-    ConvexSolid convex;                    ///< exists for all but planes and meshes
-    VertexBlocks vertices;                 ///< of hulls, and of meshes those that a triangle uses
-    std::shared_ptr<const MeshTree> tree;  ///< of meshes
+    ConvexSolid convex;     ///< exists for all but planes and meshes
+    VertexBlocks vertices;  ///< of hulls, and of meshes those that a triangle uses
+    /// Of meshes; of convex shapes, a tree of one node, their box; of planes none.
+    std::shared_ptr<const MeshTree> tree;
 };
 
 }  // namespace octopair
