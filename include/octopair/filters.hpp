@@ -77,7 +77,7 @@ enum class AdjacentTriangles : std::uint8_t { beyond_shared, exclude, include };
 struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
     double margin = 0;      ///< triangles that are not adjacent count up to this distance; finite, >= 0
-    bool features = false;  ///< learn contacts, not the class alone
+    bool features = false;  ///< learn contact and depth, and whether insides pass through each other or only touch
 };
 
 /// "exact triangle": lets through triangles that meet (closed, no epsilon), or are no further apart than the margin. In a

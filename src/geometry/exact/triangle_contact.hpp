@@ -22,10 +22,10 @@ struct TriangleContact {
 
 TriangleContact triangle_contact(const Triangle3d& a, const Triangle3d& b);
 
-/// The shortest way out of each other: b moved along `normal` (of length 1, or 0 if nothing has an extent) by `depth`
-/// does no more than touch a. For triangles that meet.
+/// The shortest way out of each other: b moved along `normal`, of length 1, by `depth` does no more than touch a. For
+/// triangles that meet.
 struct TriangleDepth {
-    Point3d normal = {};
+    Point3d normal = {0, 0, 1};  ///< any, for two points
     double depth = 0;
 };
 TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b);

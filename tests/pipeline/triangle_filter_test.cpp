@@ -1,0 +1,177 @@
+// Triangles as objects: engine and filter find what all pairs of triangles hold, and say how these meet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "geometry/exact/triangle_contact.hpp"
+#include "geometry/exact/triangle_gap.hpp"
+#include "geometry/exact/triangle_pair.hpp"
+#include "octopair/error.hpp"
+#include "octopair/filters.hpp"
+#include "octopair/octopair.hpp"
+
+namespace octopair::test {
+namespace {
+
+/// On a grid, so that many touch, overlap and share corners; of several owners.
+struct Soup {
+    std::vector<Triangle3d> triangles;
+    std::vector<std::uint32_t> owners;
+
+    Soup(std::uint32_t count, unsigned seed) : triangles(count), owners(count) {
+        std::mt19937 random(seed);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Point3d middle;
+            for (double& at : middle) at = double(random() % 16);
+            for (Point3d& corner : triangles[i]) {
+                for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = (middle[axis] + double(random() % 4)) / 3;
+            }
+            owners[i] = std::uint32_t(random() % 3);
+        }
+    }
+    TriangleSet set() const { return {triangles, owners}; }
+};
+
+struct Outcome {
+    std::vector<Pair> pairs;
+    std::vector<Finding> findings;
+};
+
+Outcome run(const Soup& first, const TriangleOptions& options, const Soup* second = nullptr) {
+    const auto engine = make_local_engine(2);
+    Pipeline pipeline(2);
+    const TriangleSet second_set = second != nullptr ? second->set() : TriangleSet{};
+    pipeline.add(make_triangle_filter(first.set(), options, second != nullptr ? &second_set : nullptr));
+    Outcome outcome;
+    const auto sink = [&](const Batch& batch) {
+        outcome.pairs.insert(outcome.pairs.end(), batch.pairs().begin(), batch.pairs().end());
+        outcome.findings.insert(outcome.findings.end(), batch.findings().begin(), batch.findings().end());
+    };
+    const auto boxes = boxes_of(first.triangles);
+    Options search;
+    search.margin = options.margin;
+    if (second != nullptr) {
+        const auto second_boxes = boxes_of(second->triangles);
+        pipeline.run_between(*engine, {std::span(boxes)}, {std::span(second_boxes)}, sink, search);
+    } else {
+        pipeline.run(*engine, {std::span(boxes)}, sink, search);
+    }
+    return outcome;
+}
+
+bool near(const Triangle3d& a, const Triangle3d& b, double margin) {
+    return triangles_meet(a, b) || (margin > 0 && triangle_gap(a, b).distance <= margin);
+}
+
+TEST(TriangleFilter, FindsWhatAllPairsHold) {
+    const Soup soup(700, 1);
+    for (const auto adjacent :
+         {AdjacentTriangles::beyond_shared, AdjacentTriangles::exclude, AdjacentTriangles::include}) {
+        for (const double margin : {0.0, 0.25}) {
+            std::vector<Pair> expected;
+            for (std::uint32_t i = 0; i < soup.triangles.size(); ++i) {
+                for (std::uint32_t j = i + 1; j < soup.triangles.size(); ++j) {
+                    const Triangle3d &a = soup.triangles[i], &b = soup.triangles[j];
+                    const bool are_adjacent = soup.owners[i] == soup.owners[j] && shared_corners(a, b) != 0;
+                    const bool counts = !are_adjacent || adjacent == AdjacentTriangles::include ? near(a, b, margin)
+                                        : adjacent == AdjacentTriangles::exclude                ? false
+                                                                                 : meet_beyond_shared(a, b);
+                    if (counts) expected.push_back({i, j});
+                }
+            }
+            TriangleOptions options;
+            options.adjacent = adjacent;
+            options.margin = margin;
+            const Outcome outcome = run(soup, options);
+            EXPECT_TRUE(outcome.pairs == expected) << int(adjacent) << " " << margin;
+            EXPECT_GT(expected.size(), 300U);
+            ASSERT_EQ(outcome.findings.size(), outcome.pairs.size());
+        }
+    }
+}
+
+TEST(TriangleFilter, JoinsKnowNoNeighbours) {
+    const Soup first(300, 2), second(500, 3);
+    std::vector<Pair> expected;
+    for (std::uint32_t i = 0; i < first.triangles.size(); ++i) {
+        for (std::uint32_t j = 0; j < second.triangles.size(); ++j) {
+            if (triangles_meet(first.triangles[i], second.triangles[j])) expected.push_back({i, j});
+        }
+    }
+    TriangleOptions options;
+    options.adjacent = AdjacentTriangles::exclude;
+    EXPECT_TRUE(run(first, options, &second).pairs == expected);
+    EXPECT_GT(expected.size(), 300U);
+}
+
+TEST(TriangleFilter, LearnsHowTheyMeetOrHowFarTheyAreApart) {
+    const Soup soup(700, 4);
+    TriangleOptions options;
+    options.margin = 0.2;
+    options.features = true;
+    const Outcome outcome = run(soup, options);
+    std::array<unsigned, 6> seen = {};
+    for (std::size_t k = 0; k < outcome.pairs.size(); ++k) {
+        const auto [i, j] = outcome.pairs[k];
+        const Triangle3d &a = soup.triangles[i], &b = soup.triangles[j];
+        const Finding& finding = outcome.findings[k];
+        ++seen[std::size_t(finding.collision_class)];
+        if (finding.collision_class == CollisionClass::clearance) {
+            EXPECT_FALSE(triangles_meet(a, b));
+            EXPECT_EQ(finding.distance, triangle_gap(a, b).distance);
+            EXPECT_LE(finding.distance, options.margin);
+            continue;
+        }
+        const bool cross = triangle_contact(a, b).meeting == TriangleMeeting::crossing;
+        EXPECT_EQ(finding.collision_class, cross ? CollisionClass::penetrating : CollisionClass::touching);
+        ASSERT_EQ(finding.contacts.size(), 1U);
+        const Contact& contact = finding.contacts[0];
+        const auto& [x, y, z] = contact.normal;
+        EXPECT_NEAR(std::hypot(x, y, z), 1, 1e-12);
+        const Triangle3d at_contact = {contact.point, contact.point, contact.point};
+        EXPECT_LT(triangle_gap(at_contact, a).distance, 1e-14);
+        EXPECT_LT(triangle_gap(at_contact, b).distance, 1e-14);
+    }
+    for (const auto expected : {CollisionClass::clearance, CollisionClass::touching, CollisionClass::penetrating}) {
+        EXPECT_GT(seen[std::size_t(expected)], 100U);
+    }
+}
+
+TEST(TriangleFilter, BoxesHoldTheirTriangles) {
+    constexpr double third = 1.0 / 3, huge = 1e300;
+    const std::vector<Triangle3d> triangles = {{{{third, -third, 1}, {0, 0, 2}, {0, 0, huge}}}};
+    const auto boxes = boxes_of(triangles);
+    EXPECT_GE(double(boxes[0].max[0]), third);
+    EXPECT_LT(double(std::nextafter(boxes[0].max[0], 0.0f)), third);
+    EXPECT_LE(double(boxes[0].min[1]), -third);
+    EXPECT_EQ(boxes[0].min[2], 1);
+    EXPECT_EQ(boxes[0].max[2], std::numeric_limits<float>::max());
+}
+
+template <typename Call>
+std::string message_of(const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::bad_input);
+        return error.what();
+    }
+    return "nothing";
+}
+
+TEST(TriangleFilter, NamesWhatIsWrong) {
+    std::vector<Triangle3d> triangles(3);
+    const std::vector<std::uint32_t> owners(2);
+    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles, owners}); }), "2 owners, but 3 triangles");
+    TriangleOptions options;
+    options.margin = -1;
+    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}, options); }),
+              "the margin must be finite and not below 0");
+    triangles[2][1][0] = std::nan("");
+    EXPECT_EQ(message_of([&] { boxes_of(triangles); }), "triangle 2 has a corner that is not finite");
+    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}); }), "triangle 2 has a corner that is not finite");
+}
+
+}  // namespace
+}  // namespace octopair::test
