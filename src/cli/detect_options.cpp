@@ -9,7 +9,7 @@
 namespace octopair::cli {
 
 void add_scene_options(CLI::App& command, DetectRequest& request) {
-    command.add_option("INPUT", request.inputs, "scene files: .npy, .csv or a mesh scene; several are one set")
+    command.add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or a mesh scene; several are one set")
         ->required();
     command.add_option("--against", request.against, "only pairs (a in INPUT, b in FILE)")->type_name("FILE");
     command

@@ -11,6 +11,9 @@
 #include "cli/progress_line.hpp"
 #include "io/pair_writer.hpp"
 #include "octopair/error.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/shaped_set.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -44,6 +47,9 @@ private:
         progress_.show("reading", 0);
         first_ = read_input_set(request_.inputs, {request_.mesh_objects}, stop_);
         if (join()) second_ = read_input_set({request_.against}, {request_.mesh_objects}, stop_);
+#ifdef OCTOPAIR_WITH_PIPELINE
+        make_join_boxes(first_, second_);
+#endif
         const io::LoadedScene &a = first_.scene, &b = second_.scene;
         const io::FrameCount frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request_);
         report_.frames = frames.frames;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "geometry/box_kernel.hpp"
+#include "io/failure.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -29,6 +30,9 @@ void copy_boxes(const Boxes& from, std::span<Box<Real>> to) {
 
 FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent& content,
                    const std::stop_token& stop) {
+    for (const std::string& path : paths) {
+        if (io::is_json_file(path)) io::refuse(path, "events are not told of JSON scenes yet");
+    }
     open_moving(paths);
     if (!moving_.empty()) return;
     still_ = read_input_set(paths, content, stop);

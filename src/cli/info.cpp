@@ -26,9 +26,15 @@ constexpr const char* checks = "with assertions";
 #endif
 
 #ifdef OCTOPAIR_WITH_MESHES
-constexpr const char* inputs = ".npy, .csv, mesh scenes (Assimp)";
+constexpr const char* meshes = ", mesh scenes (Assimp)";
 #else
-constexpr const char* inputs = ".npy, .csv";
+constexpr const char* meshes = "";
+#endif
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+constexpr const char* json_scenes = ", .json";
+#else
+constexpr const char* json_scenes = "";
 #endif
 
 #ifdef OCTOPAIR_WITH_SERVICE
@@ -43,7 +49,7 @@ int run_info() {
     out.write(fmt::format("build            {}, {}\n", compiler, checks));
     out.write(fmt::format("engines          {}{}\n", fmt::join(engine_names(), ", "), servers));
     out.write("stages           pairs\n");
-    out.write(fmt::format("inputs           {}\n", inputs));
+    out.write(fmt::format("inputs           .npy, .csv{}{}\n", json_scenes, meshes));
     out.write(fmt::format("instruction set  {}\n", sweep_instruction_set()));
     out.write(fmt::format("cores            {}\n", std::thread::hardware_concurrency()));
     out.commit();

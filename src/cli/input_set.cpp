@@ -5,7 +5,11 @@
 #include <algorithm>
 
 #include "cli/isolated_read.hpp"
+#include "io/failure.hpp"
 #include "io/npy.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/shaped_set.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -36,13 +40,16 @@ std::optional<std::uint64_t> InputSet::fault_position() const {
 namespace {
 
 io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
-    return io::is_mesh_file(path) ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
+    // What is a mesh file, or may name one, goes through importers.
+    const bool isolated = io::is_mesh_file(path) || io::is_json_file(path);
+    return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
 
 /// A file whose objects can be had in parts.
 class PartFile {
 public:
     PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
+        if (io::is_json_file(path)) io::refuse(path, "ranks read no JSON scenes yet; other engines do");
         if (io::is_npy_file(path)) {
             npy_.emplace(path);
         } else {
@@ -82,12 +89,17 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
                         const std::stop_token& stop) {
     InputSet set;
     std::vector<io::LoadedScene> scenes;
+    io::SceneContent wanted = content;
+    wanted.shapes |= std::any_of(paths.begin(), paths.end(), io::is_json_file);
     for (const std::string& path : paths) {
-        scenes.push_back(read_part(path, content, stop));
+        scenes.push_back(read_part(path, wanted, stop));
         set.parts.push_back({path, scenes.back().objects});
     }
     set.scene = io::join_scenes(scenes, paths);
     set.total = set.scene.objects;
+#ifdef OCTOPAIR_WITH_PIPELINE
+    make_boxes(set);
+#endif
     return set;
 }
 

@@ -46,7 +46,8 @@ private:
     }
 };
 
-/// Throws what io::read_scene and io::join_scenes throw.
+/// Boxes are there, but of triangles that were asked for with what the exact stages need (SceneContent::shapes); where there
+/// is a JSON scene, all are read with shapes. Throws what io::read_scene, io::join_scenes and make_boxes throw.
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 

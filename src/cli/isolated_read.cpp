@@ -84,10 +84,10 @@ private:
     std::vector<std::byte> waiting_;
 };
 
-/// The size of a file; of a glTF with all that lies beside it, as its numbers may be in further files.
+/// The size of a file; of a glTF or a JSON scene with all that lies beside it, as meshes may be in further files.
 [[maybe_unused]] std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
     std::error_code error;
-    if (path.extension() != ".gltf") return std::filesystem::file_size(path, error);
+    if (path.extension() != ".gltf" && path.extension() != ".json") return std::filesystem::file_size(path, error);
     std::uintmax_t bytes = 0;
     const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
     for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {

@@ -12,6 +12,9 @@
 #include "io/output_stream.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/shaped_set.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -35,6 +38,9 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     JobClient client(request.server.address, client_options(request.server));
     InputSet inputs = read_still_set(what.inputs, what, stop), against;
     if (!what.against.empty()) against = read_still_set({what.against}, what, stop);
+#ifdef OCTOPAIR_WITH_PIPELINE
+    make_join_boxes(inputs, against);
+#endif
     const Paddings padding(what, {inputs.scene.objects, against.scene.objects}, stop);
     inputs.padding = padding.inputs();
     against.padding = padding.against();

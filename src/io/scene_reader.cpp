@@ -8,6 +8,7 @@
 
 #include "io/csv.hpp"
 #include "io/failure.hpp"
+#include "io/json_scene_file.hpp"
 #include "io/mesh.hpp"
 #include "io/npy.hpp"
 
@@ -93,17 +94,30 @@ std::optional<std::string> fault_of(const Box<Real>& box) {
     return std::nullopt;
 }
 
+/// Its boxes are made of the shapes later, by the pipeline.
+LoadedScene read_shapes(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
+#ifdef OCTOPAIR_WITH_PIPELINE
+    if (content.objects == MeshObjects::triangle) refuse(path, "the objects of a JSON scene are shapes, not triangles");
+    return read_json_scene(path, stop);
+#else
+    (void)content, (void)stop;
+    refuse(path, "this build of octopair has no pipeline, and reads no JSON scenes");
+#endif
+}
+
 }  // namespace
 
 bool is_mesh_file(const std::string& path) {
 #ifdef OCTOPAIR_WITH_MESHES
     const std::string ending = lower_case_ending(path);
-    return ending != ".npy" && ending != ".csv" && is_mesh_ending(ending);
+    return ending != ".npy" && ending != ".csv" && ending != ".json" && is_mesh_ending(ending);
 #else
     (void)path;
     return false;
 #endif
 }
+
+bool is_json_file(const std::string& path) { return lower_case_ending(path) == ".json"; }
 
 bool is_npy_file(const std::string& path) { return lower_case_ending(path) == ".npy"; }
 
@@ -111,12 +125,13 @@ LoadedScene read_scene(const std::string& path, const SceneContent& content, con
     const std::string ending = lower_case_ending(path);
     if (is_npy_file(path)) return read_npy_scene(path, stop);
     if (ending == ".csv") return read_csv_scene(path, stop);
+    if (is_json_file(path)) return read_shapes(path, content, stop);
 #ifdef OCTOPAIR_WITH_MESHES
     if (is_mesh_ending(ending)) return read_mesh_scene(path, content);
-    refuse(path, "not a kind of file that is known: its name ends neither in .npy nor .csv nor as a mesh file's");
+    refuse(path, "not a kind of file that is known: its name ends neither in .npy, .csv or .json nor as a mesh file's");
 #else
     (void)content;
-    refuse(path, "its name ends neither in .npy nor in .csv, and this build of octopair reads no mesh files");
+    refuse(path, "its name ends neither in .npy, .csv nor .json, and this build of octopair reads no mesh files");
 #endif
 }
 

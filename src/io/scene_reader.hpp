@@ -1,4 +1,4 @@
-// Scene files of any kind, told apart by the ending of their names: .npy, .csv, and what Assimp reads.
+// Scene files of any kind, told apart by the ending of their names: .npy, .csv, .json, and what Assimp reads.
 #pragma once
 
 #include <optional>
@@ -22,6 +22,9 @@ struct SceneContent {
 
 /// True if read_scene would give the file to Assimp.
 bool is_mesh_file(const std::string& path);
+
+/// True if read_scene would read it as a JSON scene: it has shapes, asked for or not, and lacks boxes.
+bool is_json_file(const std::string& path);
 
 /// True if read_scene would read it as .npy.
 bool is_npy_file(const std::string& path);
