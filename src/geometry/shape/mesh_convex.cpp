@@ -55,8 +55,10 @@ bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
         const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[vertex]);
         return convex_holds(posed(solid), PosedConvex(place));
     };
-    return std::all_of(mesh.tree.triangles.begin(), mesh.tree.triangles.end(),
-                       [&](const auto& corners) { return std::all_of(corners.begin(), corners.end(), held); });
+    const auto& triangles = mesh.tree.triangles;
+    return !triangles.empty() && std::all_of(triangles.begin(), triangles.end(), [&](const auto& corners) {
+        return std::all_of(corners.begin(), corners.end(), held);
+    });
 }
 
 std::optional<ConvexGap> surface_gap(const PosedMesh& mesh, const BoxedSolid& solid, double most) {

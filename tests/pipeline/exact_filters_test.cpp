@@ -1,0 +1,301 @@
+// Exact stages for objects: what comes out of the pipeline is what testing all pairs of objects says; and cases that other
+// libraries are known to get wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "geometry/shape/object_pair.hpp"
+#include "octopair/error.hpp"
+#include "octopair/filters.hpp"
+#include "octopair/pipeline.hpp"
+#include "samples/meshes.hpp"
+#include "samples/random.hpp"
+
+namespace octopair::test {
+namespace {
+
+using samples::box_mesh;
+using samples::random_pose;
+using samples::RandomStream;
+
+/// Objects that own what ShapedObjects borrows.
+struct Scene {
+    std::vector<Geometry> geometries;
+    std::vector<std::uint32_t> geometry;
+    std::vector<Pose> poses;
+    std::vector<double> padding;
+
+    void add(shape::Any shape, const Pose& pose = {}) {
+        geometry.push_back(std::uint32_t(geometries.size()));
+        geometries.emplace_back(std::move(shape));
+        poses.push_back(pose);
+    }
+    ShapedObjects objects() const { return {geometries, geometry, poses, {}, padding}; }
+    PosedObject object(std::uint32_t i) const { return {geometries[geometry[i]].prepared(), poses[i]}; }
+};
+
+struct Collision {
+    Pair pair;
+    Finding finding;
+};
+
+std::vector<Collision> find(const Scene& scene, const ExactOptions& options = {}, unsigned threads = 2) {
+    const ShapedObjects objects = scene.objects();
+    const std::vector<Box3d> boxes = boxes_of(objects);
+    Pipeline pipeline(threads);
+    pipeline.add(make_exact_object_filter(objects, options));
+    pipeline.add(make_exact_feature_filter(objects, options));
+    std::vector<Collision> collisions;
+    Options search;
+    search.margin = options.margin;
+    pipeline.run(
+        *make_local_engine(threads), {std::span(boxes), scene.padding},
+        [&](const Batch& batch) {
+            for (std::size_t i = 0; i < batch.pairs().size(); ++i) {
+                collisions.push_back({batch.pairs()[i], batch.findings()[i]});
+            }
+        },
+        search);
+    return collisions;
+}
+
+std::vector<Pair> pairs_of(const std::vector<Collision>& collisions) {
+    std::vector<Pair> pairs;
+    for (const Collision& collision : collisions) pairs.push_back(collision.pair);
+    return pairs;
+}
+
+/// The one collision of two objects.
+Finding collision_of(const Scene& scene, const ExactOptions& options = {}) {
+    const std::vector<Collision> collisions = find(scene, options);
+    EXPECT_EQ(collisions.size(), 1u);
+    return collisions.empty() ? Finding{} : collisions[0].finding;
+}
+
+std::vector<Pair> all_that_count(const Scene& scene, double margin) {
+    std::vector<Pair> pairs;
+    for (std::uint32_t a = 0; a < scene.poses.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < scene.poses.size(); ++b) {
+            const double paddings = scene.padding.empty() ? 0 : scene.padding[a] + scene.padding[b];
+            Finding finding;
+            if (judge_objects(scene.object(a), scene.object(b), margin + paddings, finding)) pairs.push_back({a, b});
+        }
+    }
+    return pairs;
+}
+
+std::vector<shape::Any> every_shape() {
+    return {shape::Sphere{0.6},
+            shape::Box{{0.5, 0.3, 0.7}},
+            shape::Capsule{0.3, 1},
+            shape::Cylinder{0.4, 1},
+            shape::Cone{0.5, 1},
+            shape::Ellipsoid{{0.3, 0.5, 0.8}},
+            shape::ConvexHull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}},
+            samples::torus_mesh({12, 8, 0.2, 5}),
+            box_mesh({-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}),
+            shape::Mesh{}};
+}
+
+Scene mixed_scene(std::uint64_t seed, std::uint32_t objects) {
+    Scene scene;
+    RandomStream random(seed, 0);
+    for (const shape::Any& shape : every_shape()) scene.geometries.emplace_back(shape);
+    scene.geometries.emplace_back(shape::Plane{{0.3, 1, 0.1}, 1});
+    for (std::uint32_t i = 0; i < objects; ++i) {
+        const auto shape = std::uint32_t(i + 1 < objects ? random.below(every_shape().size()) : every_shape().size());
+        scene.geometry.push_back(shape);
+        scene.poses.push_back(random_pose(random, 6));
+    }
+    return scene;
+}
+
+TEST(ExactFilters, FindWhatTestingAllPairsFinds) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Scene scene = mixed_scene(seed, 70);
+        for (const double margin : {0.0, 0.25}) {
+            const std::vector<Pair> all = all_that_count(scene, margin);
+            EXPECT_GT(all.size(), 10u);
+            EXPECT_EQ(pairs_of(find(scene, {margin})), all) << seed;
+        }
+        RandomStream random(seed, 1);
+        for (std::size_t i = 0; i < scene.poses.size(); ++i) scene.padding.push_back(random.uniform(0, 0.3));
+        EXPECT_EQ(pairs_of(find(scene, {0.1})), all_that_count(scene, 0.1)) << seed;
+    }
+}
+
+TEST(ExactFilters, SameFindingsOnAnyNumberOfThreads) {
+    const Scene scene = mixed_scene(4, 100);
+    const std::vector<Collision> expected = find(scene, {0.1}, 1);
+    for (const unsigned threads : {2u, 5u}) {
+        const std::vector<Collision> found = find(scene, {0.1}, threads);
+        ASSERT_EQ(pairs_of(found), pairs_of(expected));
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_EQ(found[i].finding.collision_class, expected[i].finding.collision_class);
+            EXPECT_EQ(found[i].finding.distance, expected[i].finding.distance);
+            EXPECT_EQ(found[i].finding.depth, expected[i].finding.depth);
+            EXPECT_EQ(found[i].finding.contacts.size(), expected[i].finding.contacts.size());
+        }
+    }
+}
+
+TEST(ExactFilters, DistancesAreThoseOfTheNearestPoints) {
+    const Scene scene = mixed_scene(5, 60);
+    unsigned apart = 0;
+    for (const auto& [pair, finding] : find(scene, {0.5})) {
+        if (finding.collision_class != CollisionClass::clearance) continue;
+        ++apart;
+        const auto& [p, q] = finding.nearest;
+        EXPECT_NEAR(std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]), finding.distance, 1e-9);
+        EXPECT_LE(finding.distance, 0.5 * (1 + 1e-9));
+        // The gap of the boxes is no larger, along any axis.
+        EXPECT_GT(finding.distance, 0);
+    }
+    EXPECT_GT(apart, 20u);
+}
+
+/// Two boxes of triangles, the one at `place`.
+Scene two_boxes(const Point3d& size_a, const Point3d& size_b, const Point3d& place) {
+    Scene scene;
+    scene.add(box_mesh({0, 0, 0}, size_a));
+    scene.add(box_mesh({0, 0, 0}, size_b), make_pose(place));
+    return scene;
+}
+
+TEST(ExactFilters, MeshInMesh) {
+    const Finding inside = collision_of(two_boxes({10, 10, 10}, {1, 1, 1}, {2, 3, 4}));
+    EXPECT_EQ(inside.collision_class, CollisionClass::contained);
+    EXPECT_EQ(inside.depth, 3);  // of the corner at (3, 4, 5)
+    EXPECT_TRUE(inside.contacts.empty());
+}
+
+TEST(ExactFilters, MeshesOnTopOfEachOther) {
+    const Finding same = collision_of(two_boxes({1, 2, 3}, {1, 2, 3}, {0, 0, 0}));
+    EXPECT_EQ(same.collision_class, CollisionClass::penetrating);
+    EXPECT_FALSE(same.contacts.empty());
+}
+
+TEST(ExactFilters, FacesInOnePlane) {
+    // Side by side, and edge to edge, and corner to corner.
+    for (const Point3d& place : {Point3d{1, 0, 0}, Point3d{1, 0.5, 0.25}, Point3d{1, 1, 0}, Point3d{1, 1, 1}}) {
+        const Finding touch = collision_of(two_boxes({1, 1, 1}, {1, 1, 1}, place));
+        EXPECT_EQ(touch.collision_class, CollisionClass::touching);
+        EXPECT_EQ(touch.depth, 0);
+    }
+    EXPECT_TRUE(find(two_boxes({1, 1, 1}, {1, 1, 1}, {std::nextafter(1.0, 2.0), 0, 0})).empty());
+}
+
+TEST(ExactFilters, CoaxialWallsThatOverlap) {
+    // Two walls of one section in one line, 50 mm too long: no triangle passes through another.
+    const Finding walls = collision_of(two_boxes({4, 0.2, 2.5}, {4, 0.2, 2.5}, {3.95, 0, 0}));
+    EXPECT_EQ(walls.collision_class, CollisionClass::penetrating);
+    EXPECT_NEAR(walls.depth, 0.05, 1e-12);
+}
+
+TEST(ExactFilters, MirroredAndScaledMeshes) {
+    Scene scene = two_boxes({1, 1, 1}, {1, 1, 1}, {0, 0, 0});
+    scene.poses[1].rows = {{{-2, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};  // from -2 to 0
+    EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::touching);
+    scene.poses[1].rows[0][3] = 0.125;
+    EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::penetrating);
+    scene.poses[1].rows[0][3] = -0.125;
+    EXPECT_TRUE(find(scene).empty());
+    scene.poses[1].rows = {{{-0.5, 0, 0, 0.75}, {0, 0.5, 0, 0.25}, {0, 0, 0.5, 0.25}}};
+    EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::contained);
+}
+
+TEST(ExactFilters, FarFromTheOrigin) {
+    for (const double far : {1e6, 1e9}) {
+        Scene scene = two_boxes({4, 0.25, 2.5}, {4, 0.25, 2.5}, {3.9375, 0, 0});
+        for (Pose& pose : scene.poses) {
+            for (auto& row : pose.rows) row[3] += far;
+        }
+        const Finding walls = collision_of(scene);
+        EXPECT_EQ(walls.collision_class, CollisionClass::penetrating);
+        EXPECT_EQ(walls.depth, 0.0625);
+        scene.poses[1].rows[0][3] += 0.0625;
+        EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::touching);
+        scene.poses[1].rows[0][3] += 0.0625;
+        EXPECT_TRUE(find(scene).empty());
+        EXPECT_EQ(collision_of(scene, {0.0625}).distance, 0.0625);
+    }
+}
+
+TEST(ExactFilters, EmptyAndDegenerateMeshes) {
+    Scene scene;
+    scene.add(box_mesh({0, 0, 0}, {1, 1, 1}));
+    scene.add(shape::Mesh{});
+    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {}});           // a vertex that nothing uses
+    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {{0, 0, 0}}});  // a point
+    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}, {2, 0.5, 0.5}}, {{0, 1, 0}}});
+    EXPECT_EQ(pairs_of(find(scene)), (std::vector<Pair>{{0, 3}, {0, 4}, {3, 4}}));
+}
+
+TEST(ExactFilters, SolidsInSolids) {
+    const auto class_of = [](shape::Any a, shape::Any b, const Point3d& place) {
+        Scene scene;
+        scene.add(std::move(a));
+        scene.add(std::move(b), make_pose(place));
+        return collision_of(scene).collision_class;
+    };
+    const shape::Mesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
+    EXPECT_EQ(class_of(shape::Sphere{2}, shape::Sphere{0.5}, {1, 0, 0}), CollisionClass::contained);
+    EXPECT_EQ(class_of(shape::Sphere{2}, shape::Sphere{0.5}, {1.75, 0, 0}), CollisionClass::penetrating);
+    EXPECT_EQ(class_of(shape::Sphere{2}, shape::Sphere{0.5}, {2.5, 0, 0}), CollisionClass::touching);
+    EXPECT_EQ(class_of(cube, shape::Sphere{0.5}, {0.25, 0, 0}), CollisionClass::contained);
+    EXPECT_EQ(class_of(cube, shape::Sphere{0.5}, {1, 0, 0}), CollisionClass::penetrating);
+    EXPECT_EQ(class_of(cube, shape::Sphere{0.5}, {1.5, 0, 0}), CollisionClass::touching);
+    EXPECT_EQ(class_of(cube, shape::Sphere{5}, {0, 0, 0}), CollisionClass::contained);
+    EXPECT_EQ(class_of(shape::Sphere{5}, cube, {0, 0, 0}), CollisionClass::contained);
+    EXPECT_EQ(class_of(shape::Box{{1, 1, 1}}, cube, {0, 0, 2}), CollisionClass::touching);
+    EXPECT_EQ(class_of(shape::Plane{{0, 0, 2}, 2}, cube, {0, 0, 0}), CollisionClass::touching);
+    EXPECT_EQ(class_of(cube, shape::Plane{{0, 0, 1}, 0.5}, {0, 0, 0}), CollisionClass::penetrating);
+}
+
+TEST(ExactFilters, NormalsPointFromFirstToSecond) {
+    for (const bool mesh_first : {false, true}) {
+        Scene scene;
+        const shape::Mesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
+        if (mesh_first) scene.add(cube);
+        scene.add(shape::Sphere{0.5}, make_pose({0, 0, 1.375}));
+        if (!mesh_first) scene.add(cube);
+        const Finding finding = collision_of(scene);
+        ASSERT_FALSE(finding.contacts.empty());
+        EXPECT_NEAR(finding.contacts[0].normal[2], mesh_first ? 1 : -1, 1e-6);
+        EXPECT_NEAR(finding.contacts[0].depth, 0.125, 1e-6);
+        const Contact& contact = finding.contacts[0];
+        EXPECT_NE(mesh_first ? contact.feature_a : contact.feature_b, Contact::no_feature);
+        EXPECT_EQ(mesh_first ? contact.feature_b : contact.feature_a, Contact::no_feature);
+    }
+}
+
+TEST(ExactFilters, ContactsAreCutByTheLimitAndSaySo) {
+    Scene scene;
+    scene.add(samples::sphere_mesh(1, 3));
+    scene.add(samples::sphere_mesh(1, 3), make_pose({0.5, 0.25, 0.125}));
+    const Finding all = collision_of(scene, {0, 100'000});
+    ASSERT_GT(all.contacts.size(), 50u);
+    EXPECT_FALSE(all.more_contacts);
+    const Finding some = collision_of(scene, {0, 10});
+    EXPECT_TRUE(some.more_contacts);
+    ASSERT_EQ(some.contacts.size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) {
+        EXPECT_EQ(some.contacts[i].feature_a, all.contacts[i].feature_a);
+        EXPECT_EQ(some.contacts[i].depth, all.contacts[i].depth);
+    }
+    EXPECT_EQ(some.depth, all.depth);
+}
+
+TEST(ExactFilters, BadOptionsAndObjectsAreRefused) {
+    Scene scene = two_boxes({1, 1, 1}, {1, 1, 1}, {0, 0, 0});
+    EXPECT_THROW(find(scene, {-1}), Error);
+    EXPECT_THROW(find(scene, {std::numeric_limits<double>::quiet_NaN()}), Error);
+    scene.poses[1].rows[1][2] = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(find(scene), Error);
+}
+
+}  // namespace
+}  // namespace octopair::test
