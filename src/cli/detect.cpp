@@ -95,14 +95,7 @@ int run_detect(const DetectRequest& request) {
 
 void add_what(CLI::App& command, DetectRequest& request) {
     add_scene_options(command, request);
-    command
-        .add_option_function<std::string>(
-            "--stage",
-            [](const std::string& word) {
-                check_word({"--stage", {"pairs"}, {"objects", "features"}}, word);
-            },
-            "how far down the pipeline: pairs (the only one yet)")
-        ->type_name("STAGE");
+    add_pipeline_options(command, request.pipeline);
     command.add_flag("--events", request.events,
                      "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
 }
@@ -152,6 +145,7 @@ void add_detect(CLI::App& app, Action& action) {
         if (!request->output.empty()) (void)io::pair_format(request->output);
         if (request->events) check_event_options(*request);
         check_index_type(*request);
+        check_pipeline_options(*request);
         action = [request] { return run_detect(*request); };
     });
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "cli/filter_row.hpp"
 #include "cli/input_set.hpp"
 #include "cli/join.hpp"
 #include "cli/progress_line.hpp"
@@ -32,6 +33,7 @@ public:
         read();
         const auto engine = make_engine(request_.engine);
         if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
+        prepare();
         try {
             request_.count_only ? count(*engine) : stream(*engine);
         } catch (const Error& error) {
@@ -45,8 +47,9 @@ public:
 private:
     void read() {
         progress_.show("reading", 0);
-        first_ = read_input_set(request_.inputs, {request_.mesh_objects}, stop_);
-        if (join()) second_ = read_input_set({request_.against}, {request_.mesh_objects}, stop_);
+        const io::SceneContent content{request_.mesh_objects, has_filters(request_)};
+        first_ = read_input_set(request_.inputs, content, stop_);
+        if (join()) second_ = read_input_set({request_.against}, content, stop_);
 #ifdef OCTOPAIR_WITH_PIPELINE
         make_join_boxes(first_, second_);
 #endif
@@ -55,24 +58,45 @@ private:
         report_.frames = frames.frames;
         report_.moving = frames.moving;
         padding_.emplace(request_, SetSizes{a.objects, b.objects}, stop_);
-        first_.padding = padding_->inputs();
-        second_.padding = padding_->against();
+        if (!request_.padding.empty()) {
+            first_.padding = padding_->inputs();
+            second_.padding = padding_->against();
+        }
         report_.objects = a.objects + b.objects;
         report_.crew = crew_of(request_.engine);
         report_.seconds.read = seconds_since(start_);
     }
 
+    void prepare() {
+#ifdef OCTOPAIR_WITH_PIPELINE
+        if (!has_filters(request_)) return;
+        const auto start = Clock::now();
+        progress_.show("preparing", 0);
+        row_ = make_filter_row(request_, {first_, join() ? &second_ : nullptr}, stop_);
+        report_.seconds.prepare = seconds_since(start);
+#endif
+    }
+
     void count(Engine& engine) {
-        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) report_.add(search(engine, frame, {}), 0);
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search(engine, frame, {});
         progress_.clear();
     }
 
     /// An empty sink counts.
-    Summary search(Engine& engine, std::uint64_t frame, const PairSink& sink) {
+    void search(Engine& engine, std::uint64_t frame, const PairSink& sink) {
+        const Options options = call_options(request_, report_, frame, progress_);
+        const double written_before = report_.seconds.write;
+        const auto written = [&] { return report_.seconds.write - written_before; };
+        if (row_ != nullptr) {
+            const CollisionSink batches = [&](const Batch& batch) { sink(batch.pairs()); };
+            const PipelineSummary summary = row_->run(engine, frame, sink ? batches : CollisionSink(), options);
+            report_.add(summary, written());
+            return;
+        }
         const Objects first = first_.frame(frame), second = second_.frame(frame);
-        return join() ? engine.stream_pairs_between(first, second, sink,
-                                                    call_options(request_, report_, frame, progress_), stop_)
-                      : engine.stream_pairs(first, sink, call_options(request_, report_, frame, progress_), stop_);
+        const Summary summary = join() ? engine.stream_pairs_between(first, second, sink, options, stop_)
+                                       : engine.stream_pairs(first, sink, options, stop_);
+        report_.add(summary, written());
     }
 
     void stream(Engine& engine) {
@@ -80,9 +104,7 @@ private:
         const PairSink sink = [&](std::span<const Pair> pairs) { timed_write([&] { writer->write(pairs); }); };
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
             timed_write([&] { writer->begin_frame(frame); });
-            const double written_before = report_.seconds.write;
-            const Summary summary = search(engine, frame, sink);
-            report_.add(summary, report_.seconds.write - written_before);
+            search(engine, frame, sink);
             progress_.clear();
             timed_write([&] { writer->end_frame(); });
         }
@@ -117,20 +139,42 @@ private:
     Clock::time_point start_ = Clock::now();
     InputSet first_, second_;
     std::optional<Paddings> padding_;
+    std::unique_ptr<FilterRow> row_;  // none: pairs as they are
     DetectReport report_;
 };
 
 }  // namespace
 
+void DetectReport::add_search(const Summary& search) {
+    candidates += search.pairs;
+    entries += search.entries;
+    steps.encode += search.steps.encode;
+    steps.sort += search.steps.sort;
+    steps.merge += search.steps.merge;
+    steps.scan += search.steps.scan;
+}
+
 void DetectReport::add(const Summary& summary, double written) {
+    add_search(summary);
     pairs += summary.pairs;
     truncated |= summary.truncated;
-    entries += summary.entries;
-    steps.encode += summary.steps.encode;
-    steps.sort += summary.steps.sort;
-    steps.merge += summary.steps.merge;
-    steps.scan += summary.steps.scan;
     seconds.detect += std::max(0.0, summary.seconds - written);
+}
+
+void DetectReport::add(const PipelineSummary& summary, double written) {
+    add_search(summary.search);
+    pairs += summary.collisions;
+    truncated |= summary.truncated;
+    seconds.detect += summary.search.seconds;
+    seconds.filter += std::max(0.0, summary.seconds - summary.search.seconds - written);
+    filters.resize(summary.filters.size());
+    for (std::size_t i = 0; i < filters.size(); ++i) {
+        const FilterCounts& counts = summary.filters[i];
+        filters[i].name = counts.name;
+        filters[i].in += counts.in;
+        filters[i].out += counts.out;
+        filters[i].seconds += counts.seconds;
+    }
 }
 
 Options call_options(const DetectRequest& request, const DetectReport& report, std::uint64_t frame,

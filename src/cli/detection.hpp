@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "cli/engine_choice.hpp"
+#include "cli/stage.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
+#include "octopair/pipeline.hpp"
 
 namespace octopair::cli {
 
@@ -25,15 +27,18 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
+    PipelineRequest pipeline;
     bool wide_indices = false;  ///< uint64 in .npy files
     EngineChoice engine;
     std::string stats;  ///< a file, or empty
     bool quiet = false;
 };
 
-/// Wall-clock seconds; `detect` leaves out the time that writing took meanwhile.
+/// Wall-clock seconds; `detect` and `filter` leave out the time that each other and writing took meanwhile.
 struct DetectSeconds {
-    double total = 0, read = 0, detect = 0, write = 0;
+    double total = 0, read = 0;
+    double prepare = 0;  ///< of shapes and filters, before the first search
+    double detect = 0, filter = 0, write = 0;
 };
 
 /// Rows written.
@@ -45,8 +50,10 @@ struct DetectReport {
     std::uint64_t objects = 0;  ///< of both sets, in each frame
     std::uint64_t frames = 1;
     bool moving = false;
-    std::uint64_t pairs = 0;  ///< of all frames
+    std::uint64_t pairs = 0;  ///< what came out, of all frames
     bool truncated = false;
+    std::uint64_t candidates = 0;       ///< pairs of boxes, as far as they were looked for
+    std::vector<FilterCounts> filters;  ///< of all frames
     std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
@@ -55,6 +62,10 @@ struct DetectReport {
 
     /// What a frame's call did, beside `written` seconds that went by in writing.
     void add(const Summary& summary, double written);
+    void add(const PipelineSummary& summary, double written);
+
+private:
+    void add_search(const Summary& search);
 };
 
 class ProgressLine;

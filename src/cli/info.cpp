@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "cli/engine_choice.hpp"
+#include "cli/stage.hpp"
 #include "cli/subcommands.hpp"
 #include "io/output_stream.hpp"
 #include "octopair/version.hpp"
@@ -48,7 +49,7 @@ int run_info() {
     out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
     out.write(fmt::format("build            {}, {}\n", compiler, checks));
     out.write(fmt::format("engines          {}{}\n", fmt::join(engine_names(), ", "), servers));
-    out.write("stages           pairs\n");
+    out.write(fmt::format("stages           {}\n", fmt::join(stage_names(), ", ")));
     out.write(fmt::format("inputs           .npy, .csv{}{}\n", json_scenes, meshes));
     out.write(fmt::format("instruction set  {}\n", sweep_instruction_set()));
     out.write(fmt::format("cores            {}\n", std::thread::hardware_concurrency()));

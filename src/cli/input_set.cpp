@@ -98,7 +98,7 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
     set.scene = io::join_scenes(scenes, paths);
     set.total = set.scene.objects;
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_boxes(set);
+    make_shaped(set, stop);
 #endif
     return set;
 }

@@ -1,6 +1,7 @@
 // The files named on the command line, as one set of objects.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -17,8 +18,11 @@ struct Part {
     std::uint64_t objects;
 };
 
+class ShapedSet;
+
 struct InputSet {
     io::LoadedScene scene;
+    std::shared_ptr<ShapedSet> shaped;  ///< what became of the scene's shapes, in a program with a pipeline
     std::vector<Part> parts;
     std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
     std::uint64_t total = 0;               ///< objects of all parts
@@ -47,7 +51,7 @@ private:
 };
 
 /// Boxes are there, but of triangles that were asked for with what the exact stages need (SceneContent::shapes); where there
-/// is a JSON scene, all are read with shapes. Throws what io::read_scene, io::join_scenes and make_boxes throw.
+/// is a JSON scene, all are read with shapes. Throws what io::read_scene, io::join_scenes and make_shaped throw.
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 

@@ -45,10 +45,40 @@ nlohmann::ordered_json seconds_json(const DetectReport& report) {
         seconds["sort"] = report.steps.sort;
         seconds["merge"] = report.steps.merge;
         seconds["scan"] = report.steps.scan;
-        seconds["filter"] = 0.0;
+        seconds["prepare"] = report.seconds.prepare;
+        seconds["filter"] = report.seconds.filter;
     }
     seconds["write"] = report.seconds.write;
     return seconds;
+}
+
+nlohmann::ordered_json filters_json(const DetectReport& report) {
+    auto filters = nlohmann::ordered_json::array();
+    for (const FilterCounts& filter : report.filters) {
+        filters.push_back({{"name", filter.name}, {"in", filter.in}, {"out", filter.out}, {"seconds", filter.seconds}});
+    }
+    return filters;
+}
+
+/// Where time went.
+std::string time_text(const DetectReport& report) {
+    const DetectSeconds& seconds = report.seconds;
+    std::string text = fmt::format("time        {} = read {}", duration(seconds.total), duration(seconds.read));
+    if (!report.filters.empty()) text += fmt::format(" + prepare {}", duration(seconds.prepare));
+    text += fmt::format(" + detect {}", duration(seconds.detect));
+    if (!report.filters.empty()) text += fmt::format(" + filter {}", duration(seconds.filter));
+    return text + fmt::format(" + write {} + other\n", duration(seconds.write));
+}
+
+/// What each filter let through, and how long it took, on all threads together.
+std::string filters_text(const DetectReport& report) {
+    if (report.filters.empty()) return {};
+    std::string text = fmt::format("candidates  {}\n", grouped(report.candidates));
+    for (const FilterCounts& filter : report.filters) {
+        text += fmt::format("filter      {}: {} of {} in {}\n", filter.name, grouped(filter.out), grouped(filter.in),
+                            duration(filter.seconds));
+    }
+    return text;
 }
 
 }  // namespace
@@ -64,8 +94,7 @@ std::string summary_text(const DetectReport& report) {
                             grouped(report.events->ended));
     }
     text += report.truncated ? " (the limit was reached; more exist)\n" : "\n";
-    text += fmt::format("time        {} = read {} + detect {} + write {} + other\n", duration(seconds.total),
-                        duration(seconds.read), duration(seconds.detect), duration(seconds.write));
+    text += filters_text(report) + time_text(report);
     if (!report.events) {
         text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
                             duration(steps.sort), duration(steps.merge), duration(steps.scan));
@@ -88,6 +117,7 @@ std::string stats_json(const DetectReport& report) {
         {"seconds", seconds_json(report)}};
     if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
     if (!report.crew.server.empty()) stats["server"] = report.crew.server;
+    if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }

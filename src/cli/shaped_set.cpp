@@ -5,20 +5,54 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "octopair/error.hpp"
+#include "parallel/team.hpp"
 
 namespace octopair::cli {
+
+ShapedSet::ShapedSet(io::LoadedShapes loaded, const std::stop_token& stop) : loaded_(std::move(loaded)) {
+    prepare(std::exchange(loaded_.shapes, {}), stop);
+}
+
+void ShapedSet::prepare(std::vector<shape::Any> shapes, const std::stop_token& stop) {
+    std::vector<std::optional<Geometry>> ready(shapes.size());
+    Team(0).for_each(shapes.size(), [&](std::size_t i, unsigned) {
+        if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        ready[i].emplace(std::move(shapes[i]));
+    });
+    geometries_.reserve(ready.size());
+    for (auto& geometry : ready) geometries_.push_back(std::move(*geometry));
+}
+
+ShapedObjects ShapedSet::objects(std::span<const double> padding) const {
+    return {geometries_, loaded_.geometry, loaded_.poses, loaded_.end_poses, padding};
+}
+
+bool ShapedSet::has_planes() const {
+    return std::any_of(geometries_.begin(), geometries_.end(), [](const Geometry& geometry) {
+        return std::holds_alternative<shape::Plane>(geometry.shape());
+    });
+}
+
+GroupMasks ShapedSet::group_masks() {
+    loaded_.groups.resize(loaded_.poses.size(), io::LoadedShapes::default_groups);
+    loaded_.masks.resize(loaded_.poses.size(), io::LoadedShapes::default_mask);
+    return {loaded_.groups, loaded_.masks};
+}
 
 namespace {
 
 /// Says the file as well, where it is known.
 template <typename Call>
-auto with_file(const InputSet& set, const Call& call) {
+void with_file(const InputSet& set, const Call& call) {
     try {
-        return call();
+        call();
     } catch (const Error& error) {
-        if (set.parts.size() != 1) throw;
+        if (error.code() != ErrorCode::bad_input || set.parts.size() != 1) throw;
         throw Error(error.code(), fmt::format("{}: {}", set.parts.front().path, error.what()));
     }
 }
@@ -29,8 +63,8 @@ Buffer<Box3d> copy_of(const std::vector<Box3d>& boxes) {
     return copy;
 }
 
-/// What is around all boxes of a set, as a set with a shape.
-InputSet bounds_of(const InputSet& set) {
+/// What is around all boxes of a set, as a shape; none where there are no boxes, or some that the engine refuses.
+io::LoadedShapes bounds_of(const InputSet& set) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Point3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
     std::visit(
@@ -43,49 +77,34 @@ InputSet bounds_of(const InputSet& set) {
             }
         },
         set.scene.boxes);
-    InputSet bounds;
-    bounds.scene.shapes.emplace();
+    io::LoadedShapes bounds;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        // No boxes, or some that the engine refuses.
         if (!(std::isfinite(low[axis]) && std::isfinite(high[axis]))) return bounds;
     }
-    bounds.scene.shapes->shapes = {shape::ConvexHull{{low, high}}};
-    bounds.scene.shapes->geometry = {0};
-    bounds.scene.shapes->poses.resize(1);
+    bounds.shapes = {shape::ConvexHull{{low, high}}};
+    bounds.geometry = {0};
+    bounds.poses.resize(1);
     return bounds;
 }
 
-bool has_planes(const InputSet& set) {
-    if (!set.scene.shapes) return false;
-    const auto& shapes = set.scene.shapes->shapes;
-    return std::any_of(shapes.begin(), shapes.end(),
-                       [](const shape::Any& shape) { return std::holds_alternative<shape::Plane>(shape); });
-}
+bool has_planes(const InputSet& set) { return set.shaped != nullptr && set.shaped->has_planes(); }
 
 }  // namespace
 
-ShapedSet::ShapedSet(const InputSet& set) : loaded_(*set.scene.shapes) {
-    geometries_.reserve(loaded_.shapes.size());
+void make_shaped(InputSet& set, const std::stop_token& stop) {
+    if (!set.scene.shapes) return;
     with_file(set, [&] {
-        for (const shape::Any& shape : loaded_.shapes) geometries_.emplace_back(shape);
+        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), stop);
+        set.padding = set.shaped->padding();
+        if (set.scene.lacks_boxes()) set.scene.boxes = copy_of(boxes_of(set.shaped->objects()));
     });
-}
-
-ShapedObjects ShapedSet::objects() const {
-    return {geometries_, loaded_.geometry, loaded_.poses, loaded_.end_poses, loaded_.padding};
-}
-
-void make_boxes(InputSet& set) {
-    if (!set.scene.lacks_boxes() || !set.scene.shapes) return;
-    const ShapedSet shapes(set);
-    set.scene.boxes = copy_of(with_file(set, [&] { return boxes_of(shapes.objects()); }));
 }
 
 void make_join_boxes(InputSet& first, InputSet& second) {
     if (!has_planes(first) && !has_planes(second)) return;
-    const InputSet around_first = bounds_of(first), around_second = bounds_of(second);
-    const ShapedSet first_shapes(first.scene.shapes ? first : around_first);
-    const ShapedSet second_shapes(second.scene.shapes ? second : around_second);
+    const ShapedSet around_first(bounds_of(first), {}), around_second(bounds_of(second), {});
+    const ShapedSet& first_shapes = first.shaped != nullptr ? *first.shaped : around_first;
+    const ShapedSet& second_shapes = second.shaped != nullptr ? *second.shaped : around_second;
     const JoinBoxes boxes = boxes_of(first_shapes.objects(), second_shapes.objects());
     if (has_planes(first)) first.scene.boxes = copy_of(boxes.first);
     if (has_planes(second)) second.scene.boxes = copy_of(boxes.second);

@@ -1,29 +1,42 @@
 // The shapes of an input set, made ready for the pipeline.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "cli/input_set.hpp"
-#include "octopair/shapes.hpp"
+#include "octopair/filters.hpp"
 
 namespace octopair::cli {
 
-/// Borrows the shapes of a set that has them.
 class ShapedSet {
 public:
-    /// Throws Error{bad_input} for a shape that is none, with the file where there is but one.
-    explicit ShapedSet(const InputSet& set);
+    /// Makes shapes ready on several threads. Throws what Geometry throws, and Error{cancelled}.
+    ShapedSet(io::LoadedShapes loaded, const std::stop_token& stop);
+    ShapedSet(const ShapedSet&) = delete;
+    ShapedSet& operator=(const ShapedSet&) = delete;
 
-    /// Borrowed. The padding is that of the shapes alone.
-    ShapedObjects objects() const;
+    // All borrowed.
+
+    ShapedObjects objects(std::span<const double> padding = {}) const;
+    /// Empty, or what the files say.
+    std::span<const double> padding() const { return loaded_.padding; }
+    std::span<const std::uint32_t> parents() const { return loaded_.parents; }
+    bool has_planes() const;
+    bool has_groups() const { return !loaded_.groups.empty() || !loaded_.masks.empty(); }
+    /// With the defaults where the files say nothing.
+    GroupMasks group_masks();
 
 private:
-    const io::LoadedShapes& loaded_;
+    void prepare(std::vector<shape::Any> shapes, const std::stop_token& stop);
+
+    io::LoadedShapes loaded_;
     std::vector<Geometry> geometries_;
 };
 
-/// Gives a set its boxes, if it lacks them. Throws as ShapedSet does, and for poses that do not fit their shapes.
-void make_boxes(InputSet& set);
+/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Throws as ShapedSet
+/// does, and Error{bad_input} for poses that do not fit their shapes, with the file where there is but one.
+void make_shaped(InputSet& set, const std::stop_token& stop);
 
 /// Both sets of a join anew, where they have shapes that boxes are made of: a plane has to reach as far as the other set.
 void make_join_boxes(InputSet& first, InputSet& second);

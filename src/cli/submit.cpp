@@ -42,8 +42,10 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     make_join_boxes(inputs, against);
 #endif
     const Paddings padding(what, {inputs.scene.objects, against.scene.objects}, stop);
-    inputs.padding = padding.inputs();
-    against.padding = padding.against();
+    if (!what.padding.empty()) {
+        inputs.padding = padding.inputs();
+        against.padding = padding.against();
+    }
     for (const InputSet* set : {&inputs, &against}) {
         if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, *fault);
     }

@@ -132,6 +132,7 @@ TEST_F(Engines, SameBytesOfAMeshScene) {
     write_file(file("cube.obj"), "o a\nv 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\no b\nv 1 0 0\nv 2 0 0\nv 1 1 1\nf 4 5 6\n");
     compare("strip.obj --objects triangle --margin 0.5");
     compare("cube.obj");
+    compare("cube.obj --stage pairs");
 }
 
 TEST_F(Engines, StatsSayWhereItRan) {

@@ -17,7 +17,7 @@ const std::string balls_on_a_floor = R"({
 
 TEST_F(JsonSceneProgram, PairsOfBoxes) {
     write_file(file("s.json"), balls_on_a_floor);
-    ASSERT_EQ(run("detect s.json --quiet --output p.jsonl").status, 0);
+    ASSERT_EQ(run("detect s.json --stage pairs --quiet --output p.jsonl").status, 0);
     EXPECT_EQ(content("p.jsonl"), R"({"a":0,"b":1,"a_name":"left","b_name":"right"}
 {"a":0,"b":3,"a_name":"left","b_name":"floor"}
 {"a":1,"b":3,"a_name":"right","b_name":"floor"}

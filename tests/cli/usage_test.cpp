@@ -44,6 +44,9 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "detect a.npy --objects edge",
         "detect a.npy --stage objects",
         "detect a.npy --stage features",
+        "detect a.npy --stage objects --engine mpi",
+        "detect a.npy --same-parent maybe",
+        "detect a.npy --same-parent exclude --events",
         "detect a.npy --engine mpi --workers 2",
         "detect a.npy --engine unix:",
         "detect a.npy --engine localhost:70000",
@@ -108,8 +111,8 @@ TEST_F(Usage, WrongOptionsAreRefused) {
 
 TEST_F(Usage, WhatIsNotThereYetIsSaid) {
     save_boxes("a.npy", {0});
-    EXPECT_EQ(run("detect a.npy --stage objects").err,
-              "octopair: --stage: 'objects' does not exist yet; this version has: pairs\n");
+    EXPECT_EQ(run("detect a.npy --stage features").err,
+              "octopair: --stage: 'features' does not exist yet; this version has: pairs, objects\n");
     EXPECT_EQ(run("detect a.npy --stage pairs --engine local --quiet").status, 0);
 }
 

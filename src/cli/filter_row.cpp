@@ -1,0 +1,56 @@
+#include "cli/filter_row.hpp"
+
+#include <optional>
+
+#include "cli/exclusions.hpp"
+#include "cli/shaped_set.hpp"
+#include "octopair/filters.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// Filters have as many threads as were asked for, for whatever.
+unsigned filter_threads(const EngineChoice& engine) {
+    return engine.threads ? *engine.threads : engine.workers.value_or(0);
+}
+
+class Row final : public FilterRow {
+public:
+    Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
+        : sets_(sets), stop_(stop), pipeline_(filter_threads(request.engine)) {
+        add_exclusions(pipeline_, request, sets);
+        if (stage_of(request) != Stage::pairs) add_exact(request);
+    }
+
+    PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
+                        const Options& options) override {
+        const Objects first = sets_.first.frame(frame);
+        return sets_.second != nullptr
+                   ? pipeline_.run_between(engine, first, sets_.second->frame(frame), sink, options, stop_)
+                   : pipeline_.run(engine, first, sink, options, stop_);
+    }
+
+private:
+    void add_exact(const DetectRequest& request) {
+        const ExactOptions options{.margin = request.margin, .max_contacts = 0};
+        const ShapedObjects first = shaped(sets_.first);
+        const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
+        pipeline_.add(make_exact_object_filter(first, options, second ? &*second : nullptr));
+    }
+
+    static ShapedObjects shaped(const InputSet& set) { return set.shaped->objects(set.padding); }
+
+    SetPair sets_;
+    std::stop_token stop_;
+    Pipeline pipeline_;
+};
+
+}  // namespace
+
+std::unique_ptr<FilterRow> make_filter_row(const DetectRequest& request, const SetPair& sets,
+                                           const std::stop_token& stop) {
+    return std::make_unique<Row>(request, sets, stop);
+}
+
+}  // namespace octopair::cli

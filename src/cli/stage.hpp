@@ -1,0 +1,43 @@
+// How far down the pipeline a run goes, and which of its options go with that.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+class App;
+}
+
+namespace octopair::cli {
+
+struct DetectRequest;
+
+enum class Stage : std::uint8_t { pairs, objects, features };
+
+/// What is asked of the pipeline; left out where the default is meant.
+struct PipelineRequest {
+    std::optional<Stage> stage;
+    std::string exclude;  ///< a file of exclusion rules, or empty
+    std::optional<bool> same_parent;
+};
+
+/// Those of this program, as --stage names them.
+std::vector<std::string_view> stage_names();
+
+/// --stage, --exclude, --same-parent.
+void add_pipeline_options(CLI::App& command, PipelineRequest& request);
+
+/// The one that was asked for; else `objects` where all inputs have shapes and this program has a pipeline for them, and
+/// `pairs` where not.
+Stage stage_of(const DetectRequest& request);
+
+/// Whether pairs are to go through filters.
+bool has_filters(const DetectRequest& request);
+
+/// Throws Error{usage} for what does not go together.
+void check_pipeline_options(const DetectRequest& request);
+
+}  // namespace octopair::cli

@@ -1,0 +1,150 @@
+// --stage and what goes with it: objects that meet, rules that leave pairs out, and what is said of filters.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+#if defined(OCTOPAIR_WITH_MESHES) && defined(OCTOPAIR_WITH_PIPELINE)
+
+/// Three triangles whose boxes overlap but for those of 1 and 2. 0 and 2 meet; 0 and 1 are 0.424 apart, 1 and 2 0.813.
+class Stages : public ProgramTest {
+protected:
+    void SetUp() override {
+        write_file(file("t.obj"),
+                   "o flat\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+                   "o beside\nv 1 1 0\nv 0.6 1 0\nv 1 0.6 0\nf 4 5 6\n"
+                   "o through\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\nf 7 8 9\n");
+    }
+
+    std::string rows(const std::string& arguments) const {
+        const Outcome outcome = run("detect " + arguments + " --quiet");
+        EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
+        return outcome.out;
+    }
+    std::string refusal(const std::string& arguments) const {
+        const Outcome outcome = run("detect " + arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+        return outcome.err;
+    }
+    void rules(const std::string& text) const { write_file(file("r.json"), text); }
+    nlohmann::json stats(const std::string& arguments) const {
+        (void)rows(arguments + " --count-only --stats s.json");
+        return nlohmann::json::parse(content("s.json"));
+    }
+};
+
+TEST_F(Stages, ObjectsOfMeshesMeet) {
+    EXPECT_EQ(rows("t.obj --stage pairs"), "a,b\n0,1\n0,2\n");
+    EXPECT_EQ(rows("t.obj --stage objects"), "a,b\n0,2\n");
+    EXPECT_EQ(rows("t.obj"), rows("t.obj --stage objects"));
+    EXPECT_EQ(rows("t.obj --order octal"), "a,b\n0,2\n");
+    EXPECT_EQ(rows("t.obj --count-only"), "1\n");
+    EXPECT_EQ(rows("t.obj t.obj --count-only"),
+              "7\n");  // each of the first with itself in the second, and 0 with 2 twice
+    EXPECT_EQ(rows("t.obj --against t.obj"), "a,b\n0,0\n0,2\n1,1\n2,0\n2,2\n");
+}
+
+TEST_F(Stages, MarginsAreEuclidean) {
+    EXPECT_EQ(rows("t.obj --margin 0.42"), "a,b\n0,2\n");
+    EXPECT_EQ(rows("t.obj --margin 0.43"), "a,b\n0,1\n0,2\n");
+    EXPECT_EQ(rows("t.obj --margin 0.81"), "a,b\n0,1\n0,2\n");
+    EXPECT_EQ(rows("t.obj --margin 0.82"), "a,b\n0,1\n0,2\n1,2\n");
+    write_file(file("p.npy"), npy_of<double>(io::NpyType::float64, {3}, {0.23, 0.1, 0}));
+    EXPECT_EQ(rows("t.obj --padding p.npy --margin 0.09"), "a,b\n0,2\n");
+    EXPECT_EQ(rows("t.obj --padding p.npy --margin 0.1"), "a,b\n0,1\n0,2\n");
+}
+
+TEST_F(Stages, RulesLeavePairsOut) {
+    const std::string with = "t.obj t.obj --exclude r.json";
+    rules(R"({"exclude": [{"a": "*flat", "b": "*through"}]})");
+    EXPECT_EQ(rows(with), "a,b\n0,3\n1,4\n2,5\n");
+    EXPECT_EQ(rows("t.obj --stage pairs --exclude r.json"), "a,b\n0,1\n");
+    EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n0,0\n1,1\n2,2\n");
+    rules(R"({"ignored_pairs": [["t.obj/flat", "t.obj/flat"], ["t.obj/through", "t.obj/flat"]]})");
+    EXPECT_EQ(rows(with), "a,b\n1,4\n2,5\n");
+    EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n1,1\n2,2\n");
+    rules(R"({"same_parent": true})");
+    EXPECT_EQ(rows(with), "a,b\n0,3\n0,5\n1,4\n2,3\n2,5\n");  // parents are those of one file
+    EXPECT_EQ(rows(with + " --same-parent include"), rows("t.obj t.obj"));
+    EXPECT_EQ(rows("t.obj t.obj --same-parent exclude"), rows(with));
+    EXPECT_EQ(rows("t.obj --same-parent exclude --stage pairs"), "a,b\n");
+}
+
+TEST_F(Stages, WrongRulesAreRefused) {
+    const auto refused = [&](const std::string& text) {
+        rules(text);
+        const Outcome outcome = run("detect t.obj --exclude r.json");
+        EXPECT_EQ(outcome.status, 3) << text;
+        return outcome.err;
+    };
+    EXPECT_EQ(refused(R"({"ignored_pairs": [["t.obj/flat", "t.obj/none"]]})"),
+              "octopair: r.json: ignored_pairs[0]: no object has the name 't.obj/none'\n");
+    EXPECT_EQ(refused(R"({"exclude": 7})"), "octopair: r.json: exclude: an array is wanted, not number\n");
+    EXPECT_EQ(run("detect t.obj --exclude none.json").status, 4);
+    save_boxes("a.npy", {0, 0.5});
+    rules(R"({"exclude": [{"a": "*", "b": "*"}]})");
+    EXPECT_EQ(refusal("a.npy --exclude r.json"), "octopair: --exclude: a.npy has objects without names\n");
+}
+
+TEST_F(Stages, LimitsCountWhatCameOut) {
+    EXPECT_EQ(rows("t.obj t.obj --limit 2"), "a,b\n0,2\n0,3\n");
+    const nlohmann::json limited = stats("t.obj t.obj --limit 2");
+    EXPECT_EQ(limited["pairs"], 2);
+    EXPECT_EQ(limited["truncated"], true);
+    const nlohmann::json all = stats("t.obj t.obj --limit 7");
+    EXPECT_EQ(all["pairs"], 7);
+    EXPECT_EQ(all["truncated"], false);
+}
+
+TEST_F(Stages, FiltersAreTold) {
+    rules(R"({"exclude": [{"a": "*flat", "b": "*through"}]})");
+    const nlohmann::json told = stats("t.obj --exclude r.json");
+    EXPECT_EQ(told["pairs"], 0);
+    EXPECT_EQ(told["candidates"], 2);
+    EXPECT_GE(told["seconds"]["filter"], 0.0);
+    ASSERT_EQ(told["filters"].size(), 2u);
+    EXPECT_EQ(told["filters"][0]["name"], "name rules");
+    EXPECT_EQ(told["filters"][0]["in"], 2);
+    EXPECT_EQ(told["filters"][0]["out"], 1);
+    EXPECT_EQ(told["filters"][1]["name"], "exact object");
+    EXPECT_EQ(told["filters"][1]["in"], 1);
+    EXPECT_EQ(told["filters"][1]["out"], 0);
+    const std::string summary = run("detect t.obj --output p.npy").err;
+    EXPECT_NE(summary.find("pairs       1\ncandidates  2\nfilter      exact object: 1 of 2 in "), std::string::npos)
+        << summary;
+    EXPECT_FALSE(stats("t.obj --stage pairs").contains("filters"));
+}
+
+TEST_F(Stages, ExitStatusIsOfWhatCameOut) {
+    rules(R"({"exclude": [{"a": "*flat", "b": "*"}]})");
+    EXPECT_EQ(run("detect t.obj --fail-on-collision --quiet").status, 1);
+    EXPECT_EQ(run("detect t.obj --fail-on-collision --quiet --exclude r.json").status, 0);
+}
+
+TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
+    save_boxes("a.npy", {0, 0.5});
+    EXPECT_EQ(refusal("a.npy --stage objects"),
+              "octopair: --stage objects: a.npy has boxes, not shapes; --stage pairs is for these\n");
+    EXPECT_EQ(refusal("t.obj --against a.npy --stage objects"),
+              "octopair: --stage objects: a.npy has boxes, not shapes; --stage pairs is for these\n");
+    EXPECT_EQ(refusal("t.obj --events --stage objects"), "octopair: --stage objects: not with --events\n");
+    EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not known"), std::string::npos);
+    EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not known"), std::string::npos);
+    // Sets of both: their boxes.
+    EXPECT_EQ(rows("t.obj a.npy --count-only"), rows("t.obj a.npy --count-only --stage pairs"));
+}
+
+#ifdef OCTOPAIR_WITH_PROCESSES
+TEST_F(Stages, SameBytesFromWorkers) {
+    EXPECT_EQ(rows("t.obj t.obj --engine processes --workers 2"), rows("t.obj t.obj"));
+    EXPECT_EQ(rows("t.obj t.obj --engine processes --workers 3 --limit 3"), rows("t.obj t.obj --limit 3 --threads 1"));
+}
+#endif
+
+#endif
+
+}  // namespace
+}  // namespace octopair::test
