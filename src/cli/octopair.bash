@@ -27,7 +27,8 @@ _octopair() {
     fi
     case $previous in
         --scene) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current"); return ;;
-        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs" -- "$current"); return ;;
+        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects" -- "$current"); return ;;
+        --same-parent) mapfile -t COMPREPLY < <(compgen -W "include exclude" -- "$current"); return ;;
         --objects)
             if [[ $subcommand == detect || $subcommand == submit ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "node triangle" -- "$current")
@@ -49,7 +50,7 @@ _octopair() {
                 return
             fi ;;
         --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
-        --against | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+        --against | --exclude | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
         bench)
@@ -65,7 +66,7 @@ _octopair() {
             fi ;;
         detect)
             if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --objects --margin --padding --output --order
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --exclude --same-parent --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else
