@@ -5,18 +5,14 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "io/json_text.hpp"
 
 namespace octopair::io {
 
 namespace {
 
 char* put_number(char* at, std::uint32_t number) { return std::to_chars(at, at + 10, number).ptr; }
-
-/// The name as a JSON string; what is not UTF-8 in it becomes U+FFFD.
-std::string json_string(const std::string& name) {
-    return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 }  // namespace
 

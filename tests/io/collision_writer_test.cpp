@@ -1,0 +1,180 @@
+// Result files of collisions, and how they stand to older ones.
+#include "io/collision_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "io/baseline.hpp"
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+using io::CollisionForm;
+
+const std::vector<std::string> names = {"left, \"l\"", "", "r\xFFight"};
+const std::vector<Pair> pairs = {{0, 1}, {0, 2}, {1, 2}};
+
+std::vector<Finding> findings() {
+    std::vector<Finding> findings(3);
+    findings[0].collision_class = CollisionClass::clearance;
+    findings[0].distance = 0.1;
+    findings[0].nearest = {{{1, 2, 3}, {1, 2, 3.1}}};
+    findings[1].collision_class = CollisionClass::penetrating;
+    findings[1].depth = 1.0 / 3;
+    findings[1].time = 0.5;
+    findings[1].contacts = {{{0, 1e300, -0.0}, {0, 0, 1}, 1.0 / 3, 7, Contact::no_feature}};
+    findings[1].more_contacts = true;
+    findings[2].collision_class = CollisionClass::touching;
+    return findings;
+}
+
+/// What a file of that ending has after all rows, and the gone ones.
+std::string written(const std::string& ending, const CollisionForm& form, const io::CollisionRows& rows,
+                    const std::vector<std::string_view>& gone = {}) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("c" + ending);
+    const auto writer = io::make_collision_file_writer(path, form);
+    writer->write(rows);
+    writer->write_gone(gone);
+    EXPECT_TRUE(directory.names().empty() || directory.names()[0].starts_with(".octopair"));
+    writer->finish();
+    return read_file(path);
+}
+
+TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
+    const auto found = findings();
+    EXPECT_EQ(written(".jsonl", {{{names}, {names}}, true, true}, {pairs, found}),
+              R"({"a":0,"b":1,"a_name":"left, \"l\"","class":"clearance","time":0,"distance":0.1,)"
+              R"("nearest":[[1,2,3],[1,2,3.1]]}
+{"a":0,"b":2,"a_name":"left, \"l\"","b_name":"r)"
+              "\xEF\xBF\xBD"
+              R"(ight","class":"penetrating","time":0.5,"depth":0.3333333333333333,)"
+              R"("contacts":[{"point":[0,1e+300,-0],"normal":[0,0,1],"depth":0.3333333333333333,"a_feature":7}],)"
+              R"("more_contacts":true}
+{"a":1,"b":2,"b_name":"r)"
+              "\xEF\xBF\xBD"
+              R"(ight","class":"touching","time":0,"depth":0,"contacts":[]}
+)");
+    EXPECT_EQ(written(".jsonl", {}, {pairs, {}}), "{\"a\":0,\"b\":1}\n{\"a\":0,\"b\":2}\n{\"a\":1,\"b\":2}\n");
+}
+
+TEST(CollisionWriter, CsvLeavesEmptyWhatIsNotKnown) {
+    const auto found = findings();
+    const std::string header = "a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts";
+    EXPECT_EQ(written(".csv", {{{names}, {names}}, true, true}, {pairs, found}),
+              header +
+                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,\n"
+                  "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,true\n"
+                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,\n");
+    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,\n");
+}
+
+TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
+    const std::vector<std::string> owners_names = {"box", "lid"};
+    const std::vector<std::uint32_t> owners = {0, 0, 1};
+    const std::vector<Pair> pair = {{1, 2}};
+    const io::ObjectNames triangles{owners_names, owners};
+    EXPECT_EQ(written(".jsonl", {{triangles, triangles}}, {pair, {}}),
+              R"({"a":1,"b":2,"a_name":"box","a_triangle":1,"b_name":"lid","b_triangle":0})"
+              "\n");
+}
+
+TEST(CollisionWriter, NpyHoldsPairsAlone) {
+    EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)io::make_collision_file_writer("c.npy", {}); }),
+              "c.npy: .npy holds pairs alone; collisions go to .csv or .jsonl");
+}
+
+TEST(CollisionWriter, OldRowsThatAreGone) {
+    const std::vector<io::Change> changes = {io::Change::begun};
+    const std::vector<Pair> pair = {{0, 1}};
+    const std::string_view old =
+        R"({"a":4,"b":5,"a_name":"x,y","class":"penetrating","depth":0.1,"contacts":[{},{}],"more_contacts":true})";
+    const CollisionForm form{.changes = true};
+    EXPECT_EQ(written(".jsonl", form, {pair, {}, changes}, {old}), R"({"a":0,"b":1,"change":"new"})"
+                                                                   "\n" +
+                                                                       std::string(old.substr(0, old.size() - 1)) +
+                                                                       ",\"change\":\"gone\"}\n");
+    EXPECT_EQ(written(".csv", form, {pair, {}, changes}, {old}),
+              "a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts,change\n0,1,,,,,,,,,new\n"
+              "4,5,\"x,y\",,penetrating,,0.1,,2,true,gone\n");
+}
+
+class BaselineTest : public ::testing::Test {
+protected:
+    static std::string words(io::Baseline& baseline, const std::vector<Pair>& news, const io::CollisionNames& all) {
+        std::string text;
+        for (const io::Change change : baseline.compare(news, all)) text += std::string(io::word_of(change)) + ' ';
+        return text + std::to_string(baseline.gone().size()) + " gone";
+    }
+    static io::Baseline read(const std::string& text, bool join = false) {
+        return io::Baseline::of_text(text, "old.jsonl", join);
+    }
+};
+
+TEST_F(BaselineTest, NamesAreKnownInAnyOrderAndNumber) {
+    const std::vector<std::string> objects = {"bolt", "nut", "plate"};
+    io::Baseline baseline = read(R"({"a":7,"b":9,"a_name":"nut","b_name":"bolt"}
+{"a":1,"b":2,"a_name":"nut","b_name":"rod","class":"touching"}
+
+{"a":1,"b":3,"a_name":"rod","b_name":"bolt","change":"gone"}
+)");
+    EXPECT_EQ(words(baseline, {{0, 1}, {0, 2}}, {{objects}, {objects}}), "same new 1 gone");
+    EXPECT_EQ(baseline.gone()[0], R"({"a":1,"b":2,"a_name":"nut","b_name":"rod","class":"touching"})");
+    EXPECT_EQ(baseline.counts().begun, 1u);
+    EXPECT_EQ(baseline.counts().same, 1u);
+    EXPECT_EQ(baseline.counts().gone, 1u);
+}
+
+TEST_F(BaselineTest, TheSameNamesAreCounted) {
+    const std::vector<std::string> objects = {"bolt", "bolt", "bolt", "plate"};
+    io::Baseline baseline = read(R"({"a":0,"b":3,"a_name":"bolt","b_name":"plate"}
+{"a":1,"b":3,"a_name":"bolt","b_name":"plate"})");
+    EXPECT_EQ(words(baseline, {{0, 3}, {1, 3}, {2, 3}}, {{objects}, {objects}}), "same same new 0 gone");
+}
+
+TEST_F(BaselineTest, ObjectsWithoutNamesAreKnownByNumber) {
+    io::Baseline one_set = read(R"({"a":3,"b":5})");
+    EXPECT_EQ(words(one_set, {{3, 5}, {3, 6}}, {}), "same new 0 gone");
+    io::Baseline join = read(R"({"a":3,"b":5})", true);
+    EXPECT_EQ(words(join, {{5, 3}}, {}), "new 1 gone");
+    // A name that looks like a number is none.
+    const std::vector<std::string> objects = {"", "", "", "#5"};
+    io::Baseline named = read(R"({"a":3,"b":5,"a_name":"#5"})");
+    EXPECT_EQ(words(named, {{3, 5}}, {{objects}, {objects}}), "same 0 gone");
+    io::Baseline nameless = read(R"({"a":3,"b":5})");
+    EXPECT_EQ(words(nameless, {{3, 5}}, {{objects}, {objects}}), "new 1 gone");
+}
+
+TEST_F(BaselineTest, TrianglesAreKnownWithinTheirOwner) {
+    const std::vector<std::string> owner_names = {"box", "lid"};
+    const std::vector<std::uint32_t> owners = {0, 0, 1};
+    const io::ObjectNames triangles{owner_names, owners};
+    io::Baseline baseline = read(R"({"a":11,"b":12,"a_name":"lid","a_triangle":0,"b_name":"box","b_triangle":1})");
+    EXPECT_EQ(words(baseline, {{0, 2}, {1, 2}}, {triangles, triangles}), "new same 0 gone");
+}
+
+TEST_F(BaselineTest, WhatIsWrittenIsReadAgain) {
+    const auto found = findings();
+    const CollisionForm form{{{names}, {names}}, true};
+    io::Baseline baseline = read(written(".jsonl", form, {pairs, found}));
+    EXPECT_EQ(words(baseline, pairs, form.names), "same same same 0 gone");
+}
+
+TEST_F(BaselineTest, RefusesOtherFiles) {
+    const std::pair<std::string, std::string> cases[] = {
+        {"{\"a\":0,\"b\":1}\n{\"a\":0}", "old.jsonl: line 2: the key 'b' is missing"},
+        {"[]", "old.jsonl: line 1: an array, not an object"},
+        {"{\"a\":0,\"b\":-1}", "old.jsonl: line 1: b: -1 is not a whole number from 0 to 4294967295"},
+        {"{\"frame\":0,\"a\":0,\"b\":1}", "old.jsonl: line 1: frame: results of moving scenes cannot be compared"},
+    };
+    for (const auto& [text, words] : cases) {
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&, &old = text] { (void)read(old); }), words);
+    }
+    EXPECT_TRUE(error_of(ErrorCode::bad_input, [] { (void)read("a,b\n0,1\n"); }).starts_with("old.jsonl: line 1: "));
+}
+
+}  // namespace
+}  // namespace octopair::test
