@@ -1,0 +1,120 @@
+// The report: one page, whose data is what was written, and whose names are text.
+#include "io/html_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string> names = {"car/wheel", "</script><script>alert('x')</script>", "r\xFFight", "alone"};
+const std::vector<Box3d> boxes = {
+    {{0, 0, 0}, {1, 1, 1}}, {{0.5, 0, 0}, {2, 1, 1}}, {{0.1, 0, 0}, {1, 1, 1}}, {{9, 9, 9}, {9, 9, 9}}};
+const std::vector<Pair> pairs = {{0, 1}, {1, 2}};
+
+std::vector<Finding> findings() {
+    std::vector<Finding> findings(2);
+    findings[0].collision_class = CollisionClass::penetrating;
+    findings[0].depth = 0.5;
+    findings[0].contacts = {{{0.75, 0.5, 0.5}, {1, 0, 0}, 0.5}};
+    findings[1].collision_class = CollisionClass::clearance;
+    findings[1].distance = 0.25;
+    return findings;
+}
+
+std::size_t count(const std::string& text, std::string_view what) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+    return found;
+}
+
+/// What a script of the page holds.
+json data_of(const std::string& page, const std::string& id) {
+    const std::string begin = "<script type=\"application/json\" id=\"" + id + "\">";
+    const std::size_t at = page.find(begin) + begin.size();
+    return json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+class HtmlReport : public ::testing::Test {
+protected:
+    /// The page of some rows.
+    std::string page(const io::ReportScene& scene, const io::CollisionRows& rows,
+                     const std::vector<std::string_view>& gone = {}) const {
+        io::HtmlReport report(std::make_unique<io::AtomicFile>(directory_.file("r.html")), scene);
+        report.write(rows);
+        if (!gone.empty()) report.write_gone(gone);
+        report.add_fact("time", "3 s");
+        report.finish();
+        return read_file(directory_.file("r.html"));
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(HtmlReport, HoldsWhatWasWritten) {
+    const auto found = findings();
+    io::ReportScene scene{"car.glb", {{{names}, {names}}, true}, std::span(boxes), {}};
+    const std::string text = page(scene, {pairs, found, {}});
+    EXPECT_EQ(
+        data_of(text, "rows"),
+        json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5]],[1,2,1,null,0.25,null,null,null,0,[0,0,0]]]"));
+    const json objects = data_of(text, "objects");
+    ASSERT_EQ(objects.size(), 1u);
+    EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1]"));
+    EXPECT_EQ(objects[0][1][1], names[1]);
+    EXPECT_EQ(objects[0][2][1], "r\xEF\xBF\xBDight");
+    EXPECT_EQ(data_of(text, "others"), json::parse("[[9,9,9,9,9,9]]"));
+    EXPECT_EQ(data_of(text, "gone"), json::array());
+    EXPECT_EQ(data_of(text, "summary"), json::parse(R"({"title":"car.glb","join":false,"notes":[],
+        "facts":[["collisions","2"],["clearance","1"],["penetrating","1"],["time","3 s"]]})"));
+    EXPECT_TRUE(text.starts_with("<!DOCTYPE html>"));
+    EXPECT_TRUE(text.ends_with("</html>\n"));
+}
+
+TEST_F(HtmlReport, NamesAreTextAndNothingIsFetched) {
+    const io::ReportScene scene{"<b>car</b>", {{{names}, {names}}}, std::span(boxes), {}};
+    const std::string text = page(scene, {pairs, {}, {}});
+    EXPECT_EQ(count(text, "<script"), 6u);  // five with data, one with the page's own
+    EXPECT_EQ(count(text, "</script"), 6u);
+    EXPECT_EQ(count(text, "<b>"), 0u);
+    EXPECT_EQ(count(text, "http:") + count(text, "https:") + count(text, "src="), 0u);
+    EXPECT_EQ(data_of(text, "summary")["title"], "<b>car</b>");
+}
+
+TEST_F(HtmlReport, ChangesAndTheOtherSet) {
+    const std::vector<Pair> pair = {{0, 3}};
+    const std::vector<io::Change> changes = {io::Change::same};
+    const std::vector<Box3f> others = {{{0, 0, 0}, {1, 1, 1}}, {}, {}, {{0, 0, 0}, {0.5f, 1, 1}}};
+    const io::ReportScene scene{"t", {{{names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
+    const std::string text =
+        page(scene, {pair, {}, changes}, {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"contacts":[{}]})"});
+    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null]]"));
+    EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1]])"));
+    const json objects = data_of(text, "objects");
+    ASSERT_EQ(objects.size(), 2u);
+    EXPECT_EQ(objects[1], json::parse("[[3,\"\",0,0,0,0.5,1,1]]"));
+    EXPECT_EQ(data_of(text, "others").size(), 6u);
+    EXPECT_EQ(data_of(text, "summary")["facts"],
+              json::parse(R"([["collisions","1"],["new","0"],["same","1"],["gone","1"],["time","3 s"]])"));
+}
+
+TEST_F(HtmlReport, SaysWhatItLeavesOut) {
+    const std::vector<Box3f> many(50'000);
+    const std::vector<Pair> rows(io::HtmlReport::most_rows + 1, Pair{0, 1});
+    const std::string text = page({"t", {}, std::span(many), {}}, {rows, {}, {}});
+    EXPECT_EQ(data_of(text, "rows").size(), io::HtmlReport::most_rows);
+    EXPECT_EQ(data_of(text, "others").size(), 16'666u);
+    const json summary = data_of(text, "summary");
+    EXPECT_EQ(summary["facts"][0][1], "200001");
+    EXPECT_EQ(summary["notes"], json::parse(R"(["The table has the first 200000 rows of 200001.",
+        "Of 49998 objects that the table does not name, 16666 are drawn."])"));
+}
+
+}  // namespace
+}  // namespace octopair::test
