@@ -1,0 +1,111 @@
+// Self-intersections of a closed mesh: the pipeline, from vertices to pairs, beside CGAL's self_intersections.
+//
+//     octopair_self_intersections [--triangles N] [--threads K] [--rounds N] [--seed S]
+//
+// All take turns, round by round; the first round is not counted. Ours starts from vertices and triangles, as a user does:
+// triangles' places and boxes are in its time. Pairs other than ours make the exit status 1.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "octopair/filters.hpp"
+#include "octopair/octopair.hpp"
+#include "self_intersections/cgal.hpp"
+#include "self_intersections/surface.hpp"
+
+namespace {
+
+using namespace octopair;
+
+struct Request {
+    std::uint32_t triangles = 1'000'000;
+    std::uint32_t seed = 1;
+    unsigned threads = 2;
+    unsigned rounds = 5;
+};
+
+struct Contender {
+    std::string name;
+    std::function<std::vector<Pair>()> run;
+    std::vector<Pair> pairs = {};
+    std::vector<double> seconds = {};
+
+    double median() const {
+        auto sorted = seconds;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[sorted.size() / 2];
+    }
+};
+
+std::vector<Pair> self_intersections(const shape::Mesh& mesh, Engine& engine, unsigned threads) {
+    std::vector<Triangle3d> triangles(mesh.triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) triangles[i][k] = mesh.vertices[mesh.triangles[i][k]];
+    }
+    const auto boxes = boxes_of(triangles);
+    Pipeline pipeline(threads);
+    pipeline.add(make_triangle_filter({triangles}));
+    Options options;
+    options.order = Order::octal;
+    std::vector<Pair> pairs;
+    pipeline.run(
+        engine, {std::span(boxes)},
+        [&](const Batch& batch) { pairs.insert(pairs.end(), batch.pairs().begin(), batch.pairs().end()); }, options);
+    return pairs;
+}
+
+void run_round(std::vector<Contender>& contenders, bool counts) {
+    for (Contender& contender : contenders) {
+        const auto begin = std::chrono::steady_clock::now();
+        contender.pairs = contender.run();
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        if (counts) contender.seconds.push_back(taken.count());
+    }
+}
+
+void sort_pairs(std::vector<Pair>& pairs) {
+    for (Pair& pair : pairs) pair = {std::min(pair.a, pair.b), std::max(pair.a, pair.b)};
+    std::sort(pairs.begin(), pairs.end());
+}
+
+int compare(const Request& request) {
+    const shape::Mesh mesh = bench::make_surface(request.triangles, request.seed);
+    const auto engine = make_local_engine(request.threads);
+    const bench::CgalSelfIntersections cgal(mesh);
+    std::vector<Contender> contenders;
+    contenders.push_back({"octopair", [&] { return self_intersections(mesh, *engine, request.threads); }});
+    contenders.push_back({"CGAL, sequential", [&] { return cgal.run(1); }});
+    if (request.threads > 1) contenders.push_back({"CGAL, parallel", [&] { return cgal.run(request.threads); }});
+    for (unsigned round = 0; round <= request.rounds; ++round) run_round(contenders, round > 0);
+    for (Contender& contender : contenders) sort_pairs(contender.pairs);
+
+    const Contender& ours = contenders.front();
+    fmt::print("{} triangles, {} pairs, {} threads, {} rounds\n", mesh.triangles.size(), ours.pairs.size(),
+               request.threads, request.rounds);
+    bool all_agree = true;
+    for (const Contender& contender : contenders) {
+        const bool agrees = contender.pairs == ours.pairs;
+        all_agree &= agrees;
+        fmt::print("  {:<20} {:>10.1f} ms {:>8.2f}{}\n", contender.name, contender.median() * 1e3,
+                   contender.median() / ours.median(),
+                   agrees ? "" : fmt::format("  DIFFERS: {} pairs", contender.pairs.size()));
+    }
+    return all_agree ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Request request;
+    CLI::App app("Self-intersections of a closed mesh, beside CGAL");
+    app.add_option("--triangles", request.triangles)->check(CLI::Range(24, 100'000'000));
+    app.add_option("--threads", request.threads)->check(CLI::Range(1, 1024));
+    app.add_option("--rounds", request.rounds)->check(CLI::Range(1, 1000));
+    app.add_option("--seed", request.seed);
+    CLI11_PARSE(app, argc, argv);
+    return compare(request);
+}
