@@ -93,7 +93,9 @@ struct ShapedObjects {
     std::span<const Geometry> geometries;
     std::span<const std::uint32_t> geometry;
     std::span<const Pose> poses;
-    std::span<const Pose> end_poses = {};  ///< empty, or where each object is at time 1: it turns and moves evenly
+    /// Empty, or where each object is at time 1: until then it moves straight, and turns evenly about its own origin, the
+    /// short way. Planes do not turn.
+    std::span<const Pose> end_poses = {};
     std::span<const double> padding = {};  ///< empty, or one clearance per object; finite, >= 0
 
     std::uint64_t size() const noexcept { return poses.size(); }

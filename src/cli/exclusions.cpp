@@ -56,17 +56,15 @@ public:
 private:
     bool join() const { return sets_.second != nullptr; }
     static Names names(const InputSet& set) { return set.scene.names; }
-    std::optional<Names> second_names() const {
-        return join() ? std::optional(names(*sets_.second)) : std::nullopt;
-    }
+    std::optional<Names> second_names() const { return join() ? std::optional(names(*sets_.second)) : std::nullopt; }
 
     /// Of objects with shapes, which all have beyond the pairs.
     void add_groups() const {
         ShapedSet& first = *sets_.first.shaped;
         ShapedSet* const second = join() ? sets_.second->shaped.get() : nullptr;
         if (!first.has_groups() && (second == nullptr || !second->has_groups())) return;
-        pipeline_.add(make_group_filter(
-            first.group_masks(), second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
+        pipeline_.add(make_group_filter(first.group_masks(),
+                                        second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
     }
 
     /// Objects of two files have no parent in common.

@@ -33,9 +33,8 @@ ShapedObjects ShapedSet::objects(std::span<const double> padding) const {
 }
 
 bool ShapedSet::has_planes() const {
-    return std::any_of(geometries_.begin(), geometries_.end(), [](const Geometry& geometry) {
-        return std::holds_alternative<shape::Plane>(geometry.shape());
-    });
+    return std::any_of(geometries_.begin(), geometries_.end(),
+                       [](const Geometry& geometry) { return std::holds_alternative<shape::Plane>(geometry.shape()); });
 }
 
 GroupMasks ShapedSet::group_masks() {

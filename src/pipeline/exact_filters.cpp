@@ -1,7 +1,10 @@
 // The exact stages for objects: "exact object" and "exact feature".
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
+#include "geometry/shape/object_impact.hpp"
 #include "geometry/shape/object_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
@@ -14,30 +17,101 @@ namespace {
 class PosedPairs {
 public:
     PosedPairs(const ShapedObjects& first, const ShapedObjects* second)
-        : first_(first), second_(second ? *second : first) {
+        : first_(first),
+          second_(second ? *second : first),
+          moving_(!first_.end_poses.empty() || !second_.end_poses.empty()) {
         check(first_);
         check(second_);
     }
 
-    PosedObject a(const Pair& pair) const { return posed(first_, pair.a); }
-    PosedObject b(const Pair& pair) const { return posed(second_, pair.b); }
+    /// Whether any of them moves.
+    bool moving() const { return moving_; }
+    PosedObject a(const Pair& pair) const { return {prepared(first_, pair.a), first_.poses[pair.a]}; }
+    PosedObject b(const Pair& pair) const { return {prepared(second_, pair.b), second_.poses[pair.b]}; }
+    MovingObject moving_a(const Pair& pair) const { return moving(first_, pair.a); }
+    MovingObject moving_b(const Pair& pair) const { return moving(second_, pair.b); }
     double padding(const Pair& pair) const { return padding_of(first_, pair.a) + padding_of(second_, pair.b); }
 
 private:
-    static PosedObject posed(const ShapedObjects& objects, std::uint32_t i) {
-        return {objects.geometries[objects.geometry[i]].prepared(), objects.poses[i]};
+    static const Geometry::Prepared& prepared(const ShapedObjects& objects, std::uint32_t i) {
+        return objects.geometries[objects.geometry[i]].prepared();
+    }
+    static MovingObject moving(const ShapedObjects& objects, std::uint32_t i) {
+        const Pose& begin = objects.poses[i];
+        return {prepared(objects, i),
+                *Motion::between(begin, objects.end_poses.empty() ? begin : objects.end_poses[i])};
     }
     static double padding_of(const ShapedObjects& objects, std::uint32_t i) {
         return objects.padding.empty() ? 0 : objects.padding[i];
     }
 
     ShapedObjects first_, second_;
+    bool moving_;
 };
+
+/// Two objects as they are at a time.
+struct Moment {
+    Moment(const MovingObject& first, const MovingObject& second, double at)
+        : time(at),
+          pose_a(first.motion.at(at)),
+          pose_b(second.motion.at(at)),
+          geometry_a(first.geometry),
+          geometry_b(second.geometry) {}
+
+    PosedObject a() const { return {geometry_a, pose_a}; }
+    PosedObject b() const { return {geometry_b, pose_b}; }
+
+    double time;
+    Pose pose_a, pose_b;
+    const Geometry::Prepared &geometry_a, &geometry_b;
+};
+
+/// Whether moving objects meet, or else come within reach; as they are at the first such moment. When they meet there is a
+/// gap left, of the search's tolerance, unless they met from the beginning.
+bool judge_moving(const MovingObject& a, const MovingObject& b, double reach, Finding& finding,
+                  const std::stop_token& stop) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto meeting = first_time_within(a, b, 0, stop);
+    const auto time = meeting || !(reach > 0) ? meeting : first_time_within(a, b, reach, stop);
+    if (!time) return false;
+    const Moment moment(a, b, *time);
+    judge_objects(moment.a(), moment.b(), infinity, finding);
+    if (meeting && finding.collision_class == CollisionClass::clearance) {
+        finding.collision_class = CollisionClass::collision;
+        finding.distance = 0;
+    }
+    finding.time = *time;
+    return true;
+}
+
+/// Where the gap of the moment of impact is, there they touch.
+void find_impact(const Moment& moment, std::uint32_t max_contacts, Finding& finding) {
+    Finding at_moment;
+    judge_objects(moment.a(), moment.b(), std::numeric_limits<double>::infinity(), at_moment);
+    if (at_moment.collision_class != CollisionClass::clearance) {
+        find_contacts(moment.a(), moment.b(), max_contacts, finding);
+        return;
+    }
+    finding.collision_class = CollisionClass::touching;
+    finding.more_contacts = max_contacts == 0;
+    if (max_contacts == 0) return;
+    const auto& [on_a, on_b] = at_moment.nearest;
+    Contact contact;
+    for (int axis = 0; axis < 3; ++axis) {
+        contact.point[axis] = on_a[axis] / 2 + on_b[axis] / 2;
+        contact.normal[axis] = (on_b[axis] - on_a[axis]) / at_moment.distance;
+    }
+    finding.contacts = {contact};
+}
 
 /// Whether a pair counts; what was learned of it so far is replaced, but for the note.
 bool judge(const PosedPairs& objects, const Pair& pair, double margin, Batch& batch, std::size_t i) {
+    const double reach = margin + objects.padding(pair);
     Finding found;
-    if (!judge_objects(objects.a(pair), objects.b(pair), margin + objects.padding(pair), found)) return false;
+    const bool counts = objects.moving()
+                            ? judge_moving(objects.moving_a(pair), objects.moving_b(pair), reach, found, batch.stop())
+                            : judge_objects(objects.a(pair), objects.b(pair), reach, found);
+    if (!counts) return false;
     Finding& finding = batch.finding(i);
     found.note = finding.note;
     finding = std::move(found);
@@ -73,7 +147,12 @@ public:
             if (!judged && !judge(objects_, pair, options_.margin, batch, i)) return false;
             Finding& finding = batch.finding(i);
             if (finding.collision_class == CollisionClass::clearance) return true;
-            find_contacts(objects_.a(pair), objects_.b(pair), options_.max_contacts, finding);
+            if (objects_.moving()) {
+                find_impact({objects_.moving_a(pair), objects_.moving_b(pair), finding.time}, options_.max_contacts,
+                            finding);
+            } else {
+                find_contacts(objects_.a(pair), objects_.b(pair), options_.max_contacts, finding);
+            }
             return true;
         });
     }

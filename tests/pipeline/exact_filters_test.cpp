@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/shape/motion.hpp"
 #include "geometry/shape/object_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
@@ -25,7 +26,7 @@ using samples::RandomStream;
 struct Scene {
     std::vector<Geometry> geometries;
     std::vector<std::uint32_t> geometry;
-    std::vector<Pose> poses;
+    std::vector<Pose> poses, end_poses;
     std::vector<double> padding;
 
     void add(shape::Any shape, const Pose& pose = {}) {
@@ -33,7 +34,7 @@ struct Scene {
         geometries.emplace_back(std::move(shape));
         poses.push_back(pose);
     }
-    ShapedObjects objects() const { return {geometries, geometry, poses, {}, padding}; }
+    ShapedObjects objects() const { return {geometries, geometry, poses, end_poses, padding}; }
     PosedObject object(std::uint32_t i) const { return {geometries[geometry[i]].prepared(), poses[i]}; }
 };
 
@@ -287,6 +288,68 @@ TEST(ExactFilters, ContactsAreCutByTheLimitAndSaySo) {
         EXPECT_EQ(some.contacts[i].depth, all.contacts[i].depth);
     }
     EXPECT_EQ(some.depth, all.depth);
+}
+
+TEST(MovingObjects, FastOnesDoNotPassThroughThinOnes) {
+    Scene scene;
+    scene.add(box_mesh({0, -5, -5}, {0.001, 5, 5}));
+    scene.add(shape::Sphere{0.01}, make_pose({-100, 0, 0}));
+    scene.end_poses = {Pose{}, make_pose({300, 0, 0})};
+    const Finding hit = collision_of(scene);
+    EXPECT_NEAR(hit.time, (100 - 0.01) / 400, 1e-9);
+    EXPECT_EQ(hit.collision_class, CollisionClass::touching);
+    ASSERT_EQ(hit.contacts.size(), 1u);
+    EXPECT_NEAR(hit.contacts[0].normal[0], -1, 1e-6);  // from the wall to the ball
+    scene.end_poses[1] = make_pose({-0.02, 0, 0});
+    EXPECT_TRUE(find(scene).empty());
+    const Finding near = collision_of(scene, {0.02});
+    EXPECT_EQ(near.collision_class, CollisionClass::clearance);
+    EXPECT_NEAR(near.distance, 0.02, 1e-6);
+}
+
+TEST(MovingObjects, BladesTurnIntoWhatTheyReach) {
+    for (const bool mesh : {false, true}) {
+        Scene scene;
+        if (mesh) {
+            scene.add(box_mesh({-2, -0.1, -0.1}, {2, 0.1, 0.1}));
+        } else {
+            scene.add(shape::Box{{2, 0.1, 0.1}});
+        }
+        scene.add(shape::Sphere{0.25}, make_pose({0, 1.5, 0}));
+        scene.end_poses = {make_pose({0, 0, 0}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}), scene.poses[1]};
+        // The blade's side reaches the ball when it is as far from the blade's axis as both are thick.
+        const double angle = std::acos(-1.0) / 2 - std::asin(0.35 / 1.5);
+        EXPECT_NEAR(collision_of(scene).time, angle / (std::acos(-1.0) / 2), 1e-5);
+        scene.end_poses[0] = make_pose({0, 0, 0}, {std::cos(0.5), 0, 0, std::sin(0.5)});
+        EXPECT_TRUE(find(scene).empty());
+    }
+}
+
+TEST(MovingObjects, NoMomentIsMissed) {
+    Scene scene = mixed_scene(6, 40);
+    RandomStream random(6, 2);
+    for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+        Pose end = random_pose(random, 6);
+        if (i + 1 == scene.poses.size()) end = scene.poses[i];
+        scene.end_poses.push_back(end);
+    }
+    const std::vector<Collision> collisions = find(scene);
+    std::vector<Pair> at_moments;
+    Scene frozen = scene;
+    frozen.end_poses.clear();
+    for (int step = 0; step <= 64; ++step) {
+        for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+            frozen.poses[i] = Motion::between(scene.poses[i], scene.end_poses[i])->at(step / 64.0);
+        }
+        for (const Pair& pair : all_that_count(frozen, 0)) {
+            const auto found = std::find_if(collisions.begin(), collisions.end(),
+                                            [&](const Collision& collision) { return collision.pair == pair; });
+            ASSERT_NE(found, collisions.end()) << pair.a << " and " << pair.b << " at " << step / 64.0;
+            EXPECT_LE(found->finding.time, step / 64.0);
+            at_moments.push_back(pair);
+        }
+    }
+    EXPECT_GT(at_moments.size(), 1000u);
 }
 
 TEST(ExactFilters, BadOptionsAndObjectsAreRefused) {

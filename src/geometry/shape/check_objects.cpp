@@ -58,8 +58,10 @@ void check_object(const ShapedObjects& objects, std::size_t i) {
     check_pose(objects.poses[i], geometry, "the pose of object " + number);
     if (!objects.end_poses.empty()) {
         check_pose(objects.end_poses[i], geometry, "the end pose of object " + number);
-        if (!Motion::between(objects.poses[i], objects.end_poses[i])) {
-            refuse("object " + number + " does not get to its end pose by turning and moving alone");
+        const auto motion = Motion::between(objects.poses[i], objects.end_poses[i]);
+        if (!motion) refuse("object " + number + " does not get to its end pose by turning and moving alone");
+        if (motion->angle() > 0 && std::holds_alternative<shape::Plane>(geometry.shape())) {
+            refuse("object " + number + " is a plane that turns; planes may only be moved");
         }
     }
     if (objects.padding.empty()) return;

@@ -1,0 +1,26 @@
+// When two moving objects first meet: conservative advancement (Mirtich 1996). From where they are, both go on for as long
+// as they cannot possibly meet: their distance over the most that their speeds can add up to.
+//
+// Never too late: what is said not to meet does not, at any time. Tolerance: two that come closer than a millionth of the
+// smaller one's size are taken to meet. Two that pass each other at little more than that for long would take too many
+// steps; after each 256 the tolerance grows fourfold.
+#pragma once
+
+#include <optional>
+
+#include "geometry/shape/motion.hpp"
+#include "geometry/shape/object_pair.hpp"
+
+namespace octopair {
+
+struct MovingObject {
+    const Geometry::Prepared& geometry;
+    Motion motion;
+};
+
+/// The first time, 0 to 1, at which they are no further apart than `reach`; nothing if they never are. `stop` is looked at
+/// between steps: after a request there is nothing, too.
+std::optional<double> first_time_within(const MovingObject& a, const MovingObject& b, double reach,
+                                        const std::stop_token& stop);
+
+}  // namespace octopair
