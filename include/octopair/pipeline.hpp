@@ -39,8 +39,8 @@ enum class CollisionClass : std::uint8_t {
 struct Contact {
     static constexpr std::uint32_t no_feature = 0xFFFFFFFF;
 
-    Point3d point;
-    Point3d normal;
+    Point3d point = {};
+    Point3d normal = {};
     double depth = 0;                      ///< >= 0
     std::uint32_t feature_a = no_feature;  ///< the triangle of a mesh
     std::uint32_t feature_b = no_feature;

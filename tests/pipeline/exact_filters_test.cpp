@@ -280,6 +280,11 @@ TEST(ExactFilters, ContactsAreCutByTheLimitAndSaySo) {
     const Finding all = collision_of(scene, {0, 100'000});
     ASSERT_GT(all.contacts.size(), 50u);
     EXPECT_FALSE(all.more_contacts);
+    for (const Contact& contact : all.contacts) {
+        // Where both are.
+        EXPECT_LE(std::hypot(contact.point[0], contact.point[1], contact.point[2]), 1 + 1e-9);
+        EXPECT_LE(std::hypot(contact.point[0] - 0.5, contact.point[1] - 0.25, contact.point[2] - 0.125), 1 + 1e-9);
+    }
     const Finding some = collision_of(scene, {0, 10});
     EXPECT_TRUE(some.more_contacts);
     ASSERT_EQ(some.contacts.size(), 10u);
