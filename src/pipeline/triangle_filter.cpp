@@ -2,11 +2,14 @@
 //
 // Pairs are judged first and described afterwards: few of those that come in are left, and only these need findings.
 #include <algorithm>
+#include <bit>
+#include <cfloat>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 
-#include "geometry/box_kernel.hpp"
 #include "geometry/exact/triangle_contact.hpp"
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
@@ -17,6 +20,15 @@
 namespace octopair {
 
 namespace {
+
+/// round_up, without a branch or a call.
+float float_above(double value) {
+    const float nearest = float(std::clamp(value, -double(FLT_MAX), double(FLT_MAX))) + 0.0f;
+    // The next float is the next integer, or the one before where floats are below 0.
+    const auto bits = std::bit_cast<std::uint32_t>(nearest);
+    const std::uint32_t step = nearest < 0 ? ~std::uint32_t(0) : 1;
+    return std::bit_cast<float>(bits + (double(nearest) < value && nearest < FLT_MAX ? step : 0)) + 0.0f;
+}
 
 bool is_finite(const Triangle3d& triangle) {
     bool finite = true;
@@ -92,10 +104,11 @@ private:
     bool counts(const Pair& pair) const {
         const Triangle3d &a = triangles_.first(pair.a), &b = triangles_.second(pair.b);
         if (may_be_adjacent(pair)) {
-            // Of triangles that share no corner, this is whether they meet.
-            if (options_.adjacent == AdjacentTriangles::beyond_shared && meet_beyond_shared(a, b)) return true;
-            if (options_.adjacent != AdjacentTriangles::include && shared_corners(a, b) != 0) return false;
-            if (options_.adjacent == AdjacentTriangles::beyond_shared) return within_margin(a, b);
+            if (options_.adjacent == AdjacentTriangles::beyond_shared) {
+                return meet_beyond_shared(a, b) ||
+                       (options_.margin > 0 && shared_corners(a, b) == 0 && within_margin(a, b));
+            }
+            if (options_.adjacent == AdjacentTriangles::exclude && shared_corners(a, b) != 0) return false;
         }
         return triangles_meet(a, b) || within_margin(a, b);
     }
@@ -143,15 +156,17 @@ std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const Tri
 }
 
 std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles) {
-    check_finite(triangles);
     std::vector<Box3f> boxes(triangles.size());
+    bool all_finite = true;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const auto& [a, b, c] = triangles[i];
+        all_finite &= is_finite(triangles[i]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            boxes[i].min[axis] = -round_up(-std::min({a[axis], b[axis], c[axis]}));
-            boxes[i].max[axis] = round_up(std::max({a[axis], b[axis], c[axis]}));
+            boxes[i].min[axis] = 0.0f - float_above(-std::min(std::min(a[axis], b[axis]), c[axis]));
+            boxes[i].max[axis] = float_above(std::max(std::max(a[axis], b[axis]), c[axis]));
         }
     }
+    if (!all_finite) check_finite(triangles);
     return boxes;
 }
 

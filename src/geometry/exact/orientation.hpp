@@ -45,12 +45,17 @@ public:
     /// 1 where (b - a) x (c - a) points to the side that d is on: a, b, c are counterclockwise, seen from d. -1 on the
     /// other side; 0 if the four lie in one plane.
     int operator()(const Point3d& d) const {
+        const int sign = rounded(d);
+        return sign != 0 ? sign : exact_plane_side(a_, b_, c_, d);
+    }
+
+    /// The same, or 0 where float64 does not know.
+    int rounded(const Point3d& d) const {
         const double dx = d[0] - a_[0], dy = d[1] - a_[1], dz = d[2] - a_[2];
         const double sum = dx * normal_[0] + dy * normal_[1] + dz * normal_[2];
         const double x = std::abs(dx), y = std::abs(dy), z = std::abs(dz);
         const double permanent = x * largest_[0] + y * largest_[1] + z * largest_[2];
-        const int sign = filter::safe_sign(sum, filter::plane_error * permanent + filter::underflow * (1 + x + y + z));
-        return sign != 0 ? sign : exact_plane_side(a_, b_, c_, d);
+        return filter::safe_sign(sum, filter::plane_error * permanent + filter::underflow * (1 + x + y + z));
     }
 
 private:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cfloat>
 #include <cmath>
 
 #include "geometry/exact/orientation.hpp"
@@ -19,39 +18,40 @@ public:
     Direction(const Point3d& origin, const Point3d& direction) : origin_(origin), direction_(direction) {}
 
     double operator()(const Point3d& place) {
-        double sum = 0, size = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double part = direction_[axis] * (place[axis] - origin_[axis]);
-            sum += part;
-            size += std::abs(part);
-        }
-        largest_ = std::max(largest_, size);
-        finite_ &= size <= DBL_MAX;
-        return sum;
+        const double x = direction_[0] * (place[0] - origin_[0]);
+        const double y = direction_[1] * (place[1] - origin_[1]);
+        const double z = direction_[2] * (place[2] - origin_[2]);
+        sizes_ += std::abs(x) + std::abs(y) + std::abs(z);
+        return x + y + z;
     }
 
-    /// Whether a difference of two distances asked for is above 0 without doubt.
-    bool clear(double difference) const { return finite_ && difference > 0x1p-49 * largest_ + filter::underflow; }
+    /// Whether a difference of two distances asked for is above 0 without doubt; never where one was not finite.
+    bool clear(double difference) const { return difference > 0x1p-49 * sizes_ + filter::underflow; }
 
 private:
     const Point3d& origin_;
     Point3d direction_;
-    double largest_ = 0;
-    bool finite_ = true;
+    double sizes_ = 0;
 };
 
-/// True if float64 sees a plane across the line between their middles that separates them: quick, and the only test
-/// that neighbours in a flat part of a mesh need.
+/// True if float64 sees a plane across the line between their middles that separates them: what spares neighbours in a
+/// flat part of a mesh all exact arithmetic.
 bool clearly_apart(const Triangle3d& a, const Triangle3d& b) {
     Point3d between;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         between[axis] = (a[0][axis] + a[1][axis] + a[2][axis]) - (b[0][axis] + b[1][axis] + b[2][axis]);
     }
     Direction along(a[0], between);
-    const double low = std::min({0.0, along(a[1]), along(a[2])});
-    const double high = std::max({along(b[0]), along(b[1]), along(b[2])});
+    const double low = std::min(0.0, std::min(along(a[1]), along(a[2])));
+    const double high = std::max(along(b[0]), std::max(along(b[1]), along(b[2])));
     return along.clear(low - high);
 }
+
+/// 0 where float64 does not know.
+CornerSides rounded_sides(const PlaneSides& plane, const Triangle3d& triangle) {
+    return {plane.rounded(triangle[0]), plane.rounded(triangle[1]), plane.rounded(triangle[2])};
+}
+bool are_sure(const CornerSides& sides) { return sides[0] != 0 && sides[1] != 0 && sides[2] != 0; }
 
 /// Of triangles in one plane: some edge has the other triangle on its outer side.
 bool edge_separates(const Triangle3d& a, const Facing& seen, const Triangle3d& b) {
@@ -170,9 +170,12 @@ unsigned equal_corners(const Triangle3d& a, const Triangle3d& b) {
     for (unsigned i = 0; i < 3; ++i) {
         for (unsigned j = 0; j < 3; ++j) equal |= unsigned(a[i][0] == b[j][0]) << (3 * i + j);
     }
-    for (unsigned rest = equal; rest != 0; rest &= rest - 1) {
-        const unsigned bit = unsigned(std::countr_zero(rest));
-        if (a[bit / 3] != b[bit % 3]) equal &= ~(1U << bit);
+    if (equal == 0) return 0;
+    for (unsigned i = 0; i < 3; ++i) {
+        for (unsigned j = 0; j < 3; ++j) {
+            const bool same = (a[i][1] == b[j][1]) & (a[i][2] == b[j][2]);
+            equal &= ~(unsigned(!same) << (3 * i + j));
+        }
     }
     return equal;
 }
@@ -209,12 +212,20 @@ bool any_meet_beyond_shared(const Triangle3d& a, const Triangle3d& b) {
 }  // namespace
 
 bool triangles_meet(const Triangle3d& a, const Triangle3d& b) {
-    if (clearly_apart(a, b)) return false;
-    const auto a_sides = corner_sides(PlaneSides(b), a);
+    const PlaneSides b_plane(b);
+    CornerSides a_sides = rounded_sides(b_plane, a);
     if (on_one_side(a_sides)) return false;
-    const auto b_sides = corner_sides(PlaneSides(a), b);
+    const PlaneSides a_plane(a);
+    CornerSides b_sides = rounded_sides(a_plane, b);
     if (on_one_side(b_sides)) return false;
-    if (in_plane(a_sides) || in_plane(b_sides)) return flat_triangles_meet(a, b);
+    if (!are_sure(a_sides) || !are_sure(b_sides)) {
+        if (clearly_apart(a, b)) return false;
+        a_sides = corner_sides(b_plane, a);
+        if (on_one_side(a_sides)) return false;
+        b_sides = corner_sides(a_plane, b);
+        if (on_one_side(b_sides)) return false;
+        if (in_plane(a_sides) || in_plane(b_sides)) return flat_triangles_meet(a, b);
+    }
     return PlaneCrossing(a, a_sides, b, b_sides).meet();
 }
 
