@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "geometry/shape/convex_frame.hpp"
 #include "geometry/shape/vector.hpp"
@@ -47,6 +48,7 @@ public:
     /// The nearest point is inside: the origin, but for rounding.
     bool encloses() const { return count_ == 4; }
     const Point3d& nearest() const { return nearest_; }
+    std::span<const Vertex> vertices() const { return {vertices_.data(), count_}; }
     /// From the origin to the nearest point, of length 1. Where this is shorter than the simplex, it is known less well
     /// than what it is perpendicular to.
     Point3d direction() const {
@@ -149,6 +151,37 @@ Vertex support(const ConvexFrame& frame, const Point3d& direction) {
     return vertex;
 }
 
+/// The greatest lower bound by a face around the nearest point, or the one there is. Of two faces that lie close to each
+/// other, the way between them is too short to tell their normal, if it meets a face's edge or corner.
+double prove_by_faces(const ConvexFrame& frame, const Simplex& simplex, double at_least) {
+    constexpr double aside = 1e-5, alike = 0.999;
+    const Point3d direction = simplex.direction();
+    std::array<Vertex, 8> around = {};
+    std::size_t count = 0;
+    for (const Vertex& vertex : simplex.vertices()) around[count++] = vertex;
+    const Point3d axis = std::fabs(direction[0]) < 0.6 ? Point3d{1, 0, 0} : Point3d{0, 1, 0};
+    const Point3d first = vector::cross(direction, axis), second = vector::cross(direction, first);
+    for (const Point3d& way : {first, second}) {
+        for (const double by : {aside, -aside}) {
+            around[count++] = support(frame, vector::times(vector::plus(direction, vector::times(way, by)), -1));
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const Point3d edge = vector::minus(around[j].apart, around[i].apart);
+            for (std::size_t k = 0; k < j; ++k) {
+                const Point3d normal = vector::cross(edge, vector::minus(around[k].apart, around[i].apart));
+                const double along = vector::dot(normal, direction);
+                if (!(std::fabs(along) > alike * vector::length(normal))) continue;
+                const Point3d unit = vector::times(normal, std::copysign(1 / vector::length(normal), along));
+                const Vertex next = support(frame, vector::times(unit, -1));
+                at_least = std::max(at_least, vector::dot(next.apart, unit) - frame.slack());
+            }
+        }
+    }
+    return at_least;
+}
+
 CoreGap gap_of(const Simplex& simplex, double at_least) {
     CoreGap gap;
     gap.on_a = simplex.mix(&Vertex::on_a), gap.on_b = simplex.mix(&Vertex::on_b);
@@ -164,24 +197,26 @@ CoreGap core_gap(const ConvexFrame& frame, std::optional<double> enough) {
     constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
     const double slack = frame.slack();
     double at_least = 0;
+    bool decided = false;
     Simplex simplex;
     simplex.add(support(frame, vector::minus(frame.b().middle(), frame.a().middle())));
     simplex.reduce();
     for (int step = 0; step < most_steps; ++step) {
         const double at_most = vector::length(simplex.nearest());
-        if (simplex.encloses() || at_most <= slack || (enough && at_most <= *enough)) break;
+        decided = simplex.encloses() || at_most <= slack || (enough && at_most <= *enough);
+        if (decided) break;
         const Point3d direction = simplex.direction();
         const Vertex next = support(frame, vector::times(direction, -1));
         at_least = std::max(at_least, vector::dot(next.apart, direction) - slack);
-        if (enough && at_least > *enough) break;
-        if (at_most - at_least <= 2 * slack + relative * at_most || simplex.has(next)) break;
+        decided = (enough && at_least > *enough) || at_most - at_least <= 2 * slack + relative * at_most;
+        if (decided || simplex.has(next)) break;
         Simplex larger = simplex;
         larger.add(next);
         larger.reduce();
         if (!(vector::length(larger.nearest()) < at_most)) break;
         simplex = larger;
     }
-    return gap_of(simplex, at_least);
+    return gap_of(simplex, decided ? at_least : prove_by_faces(frame, simplex, at_least));
 }
 
 }  // namespace octopair
