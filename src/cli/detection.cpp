@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "cli/filter_row.hpp"
+#include "cli/found_writer.hpp"
 #include "cli/input_set.hpp"
 #include "cli/join.hpp"
 #include "cli/progress_line.hpp"
-#include "io/pair_writer.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/shaped_set.hpp"
@@ -78,21 +78,26 @@ private:
     }
 
     void count(Engine& engine) {
-        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search(engine, frame, {});
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search(engine, frame, nullptr);
         progress_.clear();
     }
 
-    /// An empty sink counts.
-    void search(Engine& engine, std::uint64_t frame, const PairSink& sink) {
+    /// Without a writer: counts.
+    void search(Engine& engine, std::uint64_t frame, FoundWriter* writer) {
         const Options options = call_options(request_, report_, frame, progress_);
         const double written_before = report_.seconds.write;
         const auto written = [&] { return report_.seconds.write - written_before; };
         if (row_ != nullptr) {
-            const CollisionSink batches = [&](const Batch& batch) { sink(batch.pairs()); };
-            const PipelineSummary summary = row_->run(engine, frame, sink ? batches : CollisionSink(), options);
+            const CollisionSink sink = [&](const Batch& batch) {
+                timed_write([&] { writer->write(batch.pairs(), batch.findings()); });
+            };
+            const PipelineSummary summary =
+                row_->run(engine, frame, writer != nullptr ? sink : CollisionSink(), options);
             report_.add(summary, written());
             return;
         }
+        const PairSink pairs = [&](std::span<const Pair> batch) { timed_write([&] { writer->write(batch, {}); }); };
+        const PairSink sink = writer != nullptr ? pairs : PairSink();
         const Objects first = first_.frame(frame), second = second_.frame(frame);
         const Summary summary = join() ? engine.stream_pairs_between(first, second, sink, options, stop_)
                                        : engine.stream_pairs(first, sink, options, stop_);
@@ -100,11 +105,10 @@ private:
     }
 
     void stream(Engine& engine) {
-        const auto writer = make_writer();
-        const PairSink sink = [&](std::span<const Pair> pairs) { timed_write([&] { writer->write(pairs); }); };
+        const auto writer = make_found_writer(request_, {first_, join() ? second_ : first_, report_.moving}, stop_);
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
             timed_write([&] { writer->begin_frame(frame); });
-            search(engine, frame, sink);
+            search(engine, frame, writer.get());
             progress_.clear();
             timed_write([&] { writer->end_frame(); });
         }
@@ -116,12 +120,6 @@ private:
         const auto start = Clock::now();
         write();
         report_.seconds.write += seconds_since(start);
-    }
-
-    std::unique_ptr<io::PairWriter> make_writer() const {
-        const io::PairNames names{&first_.scene.names, join() ? &second_.scene.names : &first_.scene.names};
-        if (!request_.output.empty()) return io::make_file_writer(request_.output, report_.moving, names);
-        return io::make_csv_writer(std::make_unique<io::StandardOutput>(stop_), report_.moving);
     }
 
     /// Says again what the engine found wrong with a box, with the file.

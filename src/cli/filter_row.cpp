@@ -19,6 +19,10 @@ class Row final : public FilterRow {
 public:
     Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
         : sets_(sets), stop_(stop), pipeline_(filter_threads(request.engine)) {
+        if (sets.first.scene.triangles) {
+            add_triangles(request);
+            return;
+        }
         add_exclusions(pipeline_, request, sets);
         if (stage_of(request) != Stage::pairs) add_exact(request);
     }
@@ -33,13 +37,27 @@ public:
 
 private:
     void add_exact(const DetectRequest& request) {
-        const ExactOptions options{.margin = request.margin, .max_contacts = 0};
+        ExactOptions options{.margin = request.margin};
+        options.max_contacts = request.pipeline.max_contacts.value_or(options.max_contacts);
         const ShapedObjects first = shaped(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
-        pipeline_.add(make_exact_object_filter(first, options, second ? &*second : nullptr));
+        const ShapedObjects* const other = second ? &*second : nullptr;
+        pipeline_.add(make_exact_object_filter(first, options, other));
+        if (stage_of(request) == Stage::features) pipeline_.add(make_exact_feature_filter(first, options, other));
+    }
+
+    void add_triangles(const DetectRequest& request) {
+        TriangleOptions options{.margin = request.margin, .features = stage_of(request) == Stage::features};
+        options.adjacent = request.pipeline.adjacent.value_or(options.adjacent);
+        const TriangleSet first = triangles(sets_.first);
+        const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
+        pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));
     }
 
     static ShapedObjects shaped(const InputSet& set) { return set.shaped->objects(set.padding); }
+    static TriangleSet triangles(const InputSet& set) {
+        return {set.scene.triangles->triangles, set.scene.triangles->owners};
+    }
 
     SetPair sets_;
     std::stop_token stop_;

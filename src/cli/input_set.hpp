@@ -23,6 +23,7 @@ class ShapedSet;
 struct InputSet {
     io::LoadedScene scene;
     std::shared_ptr<ShapedSet> shaped;  ///< what became of the scene's shapes, in a program with a pipeline
+    bool moves_meanwhile = false;       ///< some shapes have a place at time 1 as well
     std::vector<Part> parts;
     std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
     std::uint64_t total = 0;               ///< objects of all parts

@@ -27,7 +27,8 @@ _octopair() {
     fi
     case $previous in
         --scene) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current"); return ;;
-        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects" -- "$current"); return ;;
+        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects features" -- "$current"); return ;;
+        --adjacent) mapfile -t COMPREPLY < <(compgen -W "beyond-shared exclude include" -- "$current"); return ;;
         --same-parent) mapfile -t COMPREPLY < <(compgen -W "include exclude" -- "$current"); return ;;
         --objects)
             if [[ $subcommand == detect || $subcommand == submit ]]; then
@@ -66,7 +67,7 @@ _octopair() {
             fi ;;
         detect)
             if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --exclude --same-parent --objects --margin --padding --output --order
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else

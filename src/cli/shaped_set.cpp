@@ -56,8 +56,9 @@ void with_file(const InputSet& set, const Call& call) {
     }
 }
 
-Buffer<Box3d> copy_of(const std::vector<Box3d>& boxes) {
-    Buffer<Box3d> copy{boxes.size()};
+template <typename AnyBox>
+Buffer<AnyBox> copy_of(const std::vector<AnyBox>& boxes) {
+    Buffer<AnyBox> copy{boxes.size()};
     std::copy(boxes.begin(), boxes.end(), copy.data());
     return copy;
 }
@@ -91,7 +92,10 @@ bool has_planes(const InputSet& set) { return set.shaped != nullptr && set.shape
 }  // namespace
 
 void make_shaped(InputSet& set, const std::stop_token& stop) {
+    if (set.scene.triangles && set.scene.lacks_boxes())
+        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles));
     if (!set.scene.shapes) return;
+    set.moves_meanwhile = !set.scene.shapes->end_poses.empty();
     with_file(set, [&] {
         set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), stop);
         set.padding = set.shaped->padding();

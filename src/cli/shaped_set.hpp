@@ -34,7 +34,7 @@ private:
     std::vector<Geometry> geometries_;
 };
 
-/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Throws as ShapedSet
+/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Triangles give boxes. Throws as ShapedSet
 /// does, and Error{bad_input} for poses that do not fit their shapes, with the file where there is but one.
 void make_shaped(InputSet& set, const std::stop_token& stop);
 

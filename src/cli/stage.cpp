@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/detection.hpp"
+#include "cli/numbers.hpp"
 #include "cli/words.hpp"
 #include "octopair/error.hpp"
 
@@ -22,8 +23,24 @@ constexpr bool with_pipeline = false;
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::usage, what); }
 
 Stage parse_stage(const std::string& word) {
-    check_word({"--stage", stage_names(), {"objects", "features"}}, word);
-    return word == "pairs" ? Stage::pairs : Stage::objects;
+    if (!with_pipeline && (word == "objects" || word == "features")) {
+        refuse("--stage: this octopair was built without '" + word + "'; it has: pairs");
+    }
+    check_word({"--stage", stage_names(), {}}, word);
+    return word == "pairs" ? Stage::pairs : word == "objects" ? Stage::objects : Stage::features;
+}
+
+AdjacentTriangles parse_adjacent(const std::string& word) {
+    check_word({"--adjacent", {"beyond-shared", "exclude", "include"}, {}}, word);
+    return word == "exclude"   ? AdjacentTriangles::exclude
+           : word == "include" ? AdjacentTriangles::include
+                               : AdjacentTriangles::beyond_shared;
+}
+
+std::uint32_t parse_max_contacts(const std::string& text) {
+    const std::uint64_t number = parse_count("--max-contacts", text);
+    if (number > 0xFFFFFFFF) refuse("--max-contacts: " + text + " is more than 4294967295");
+    return std::uint32_t(number);
 }
 
 std::vector<std::string> all_inputs(const DetectRequest& request) {
@@ -43,15 +60,27 @@ std::optional<std::string> input_of_boxes(const DetectRequest& request) {
 }  // namespace
 
 std::vector<std::string_view> stage_names() {
-    return with_pipeline ? std::vector<std::string_view>{"pairs", "objects"} : std::vector<std::string_view>{"pairs"};
+    return with_pipeline ? std::vector<std::string_view>{"pairs", "objects", "features"}
+                         : std::vector<std::string_view>{"pairs"};
 }
 
 void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
     command
         .add_option_function<std::string>(
             "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); },
-            "how far down the pipeline: pairs of boxes, or objects that meet (default: objects for meshes)")
+            "how far down the pipeline: pairs of boxes, objects that meet (default for meshes), or features: where and "
+            "how")
         ->type_name("STAGE");
+    command
+        .add_option_function<std::string>(
+            "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
+            "triangles that share corners: beyond-shared (default: if they meet elsewhere), exclude or include")
+        ->type_name("WHICH");
+    command
+        .add_option_function<std::string>(
+            "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
+            "with --stage features: contacts of each pair, the deepest first (default 16)")
+        ->type_name("N");
     command.add_option("--exclude", request.exclude, "leave out pairs by rules of names, see docs/formats.md")
         ->type_name("RULES.json");
     command
@@ -67,8 +96,7 @@ void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
 
 Stage stage_of(const DetectRequest& request) {
     if (request.pipeline.stage) return *request.pipeline.stage;
-    const bool may_be_exact = with_pipeline && !request.events && request.mesh_objects == io::MeshObjects::node;
-    return may_be_exact && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
+    return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
 }
 
 bool has_filters(const DetectRequest& request) {
@@ -76,18 +104,48 @@ bool has_filters(const DetectRequest& request) {
            request.pipeline.same_parent.value_or(false);
 }
 
+namespace {
+
+/// The option that has pairs filtered.
+std::string asked_of(const DetectRequest& request) {
+    switch (stage_of(request)) {
+        case Stage::objects:
+            return "--stage objects";
+        case Stage::features:
+            return "--stage features";
+        case Stage::pairs:
+            break;
+    }
+    return request.pipeline.exclude.empty() ? "--same-parent exclude" : "--exclude";
+}
+
+void check_triangle_options(const DetectRequest& request) {
+    const bool exact = stage_of(request) != Stage::pairs;
+    const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
+    if (request.pipeline.adjacent && !(triangles && exact)) {
+        refuse("--adjacent: only with --objects triangle, beyond --stage pairs");
+    }
+    if (request.pipeline.max_contacts && (triangles || stage_of(request) != Stage::features)) {
+        refuse("--max-contacts: only with --stage features, of nodes");
+    }
+    if (!triangles || !has_filters(request)) return;
+    if (!request.pipeline.exclude.empty()) refuse("--exclude: not with --objects triangle");
+    if (request.pipeline.same_parent) refuse("--same-parent: not with --objects triangle");
+    if (!request.padding.empty()) refuse("--padding: triangles have it in --stage pairs alone");
+}
+
+}  // namespace
+
 void check_pipeline_options(const DetectRequest& request) {
+    check_triangle_options(request);
     if (!has_filters(request)) return;
-    const Stage stage = stage_of(request);
-    const std::string asked = stage != Stage::pairs               ? "--stage objects"
-                              : !request.pipeline.exclude.empty() ? "--exclude"
-                                                                  : "--same-parent exclude";
+    const std::string asked = asked_of(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");
-    if (request.engine.kind == EngineKind::mpi)
+    if (request.engine.kind == EngineKind::mpi) {
         refuse(asked + ": not with --engine mpi, which has --stage pairs alone");
+    }
     if (request.events) refuse(asked + ": not with --events");
-    if (request.mesh_objects == io::MeshObjects::triangle) refuse(asked + ": not with --objects triangle yet");
-    if (stage == Stage::pairs) return;
+    if (stage_of(request) == Stage::pairs) return;
     if (const auto input = input_of_boxes(request)) {
         refuse(fmt::format("{}: {} has boxes, not shapes; --stage pairs is for these", asked, *input));
     }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "octopair/filters.hpp"
+
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 }
@@ -22,12 +24,14 @@ struct PipelineRequest {
     std::optional<Stage> stage;
     std::string exclude;  ///< a file of exclusion rules, or empty
     std::optional<bool> same_parent;
+    std::optional<AdjacentTriangles> adjacent;
+    std::optional<std::uint32_t> max_contacts;
 };
 
 /// Those of this program, as --stage names them.
 std::vector<std::string_view> stage_names();
 
-/// --stage, --exclude, --same-parent.
+/// --stage, --adjacent, --max-contacts, --exclude, --same-parent.
 void add_pipeline_options(CLI::App& command, PipelineRequest& request);
 
 /// The one that was asked for; else `objects` where all inputs have shapes and this program has a pipeline for them, and

@@ -20,7 +20,7 @@ TEST_F(MeshScene, Counts) {
     const std::string bunny = data("bunny00.off"), elephant = data("refined_elephant.off");
     if (bunny.empty() || elephant.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";
     const auto count = [&](const std::string& path) {
-        return run("detect '" + path + "' --objects triangle --count-only --stats s.json --quiet").out;
+        return run("detect '" + path + "' --objects triangle --stage pairs --count-only --stats s.json --quiet").out;
     };
     EXPECT_EQ(count(bunny), "471777\n");
     EXPECT_NE(content("s.json").find("\"objects\": 75408,"), std::string::npos);
@@ -31,7 +31,7 @@ TEST_F(MeshScene, Counts) {
 TEST_F(MeshScene, NamesReachTheResult) {
     write_file(file("two.obj"),
                "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 4 5 6\n");
-    ASSERT_EQ(run("detect two.obj --output p.jsonl").status, 0);
+    ASSERT_EQ(run("detect two.obj --stage pairs --output p.jsonl").status, 0);
     EXPECT_EQ(content("p.jsonl"), "{\"a\":0,\"b\":1,\"a_name\":\"two.obj/left\",\"b_name\":\"two.obj/right\"}\n");
 }
 

@@ -1,5 +1,6 @@
 // --stage and what goes with it: objects that meet, rules that leave pairs out, and what is said of filters.
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/program.hpp"
 
@@ -18,8 +19,10 @@ protected:
                    "o through\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\nf 7 8 9\n");
     }
 
+    /// Without what is known of them.
     std::string rows(const std::string& arguments) const {
-        const Outcome outcome = run("detect " + arguments + " --quiet");
+        const Outcome outcome =
+            shell("\"$P\" detect " + arguments + " --quiet > out; s=$?; cut -d, -f1,2 out; exit $s");
         EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
         return outcome.out;
     }
@@ -99,6 +102,46 @@ TEST_F(Stages, LimitsCountWhatCameOut) {
     EXPECT_EQ(all["truncated"], false);
 }
 
+TEST_F(Stages, CollisionsAreWrittenWithWhatIsKnown) {
+    ASSERT_EQ(run("detect t.obj --margin 0.5 --output p.jsonl --quiet").status, 0);
+    std::istringstream lines(content("p.jsonl"));
+    std::string line;
+    std::getline(lines, line);
+    const auto near = nlohmann::json::parse(line);
+    EXPECT_EQ(near["class"], "clearance");
+    EXPECT_NEAR(near["distance"].get<double>(), 0.42426, 1e-5);
+    EXPECT_EQ(near["b_name"], "t.obj/beside");
+    std::getline(lines, line);
+    EXPECT_EQ(nlohmann::json::parse(line)["class"], "collision");
+    ASSERT_EQ(run("detect t.obj --stage features --output p.jsonl --quiet").status, 0);
+    const auto met = nlohmann::json::parse(content("p.jsonl"));
+    EXPECT_EQ(met["class"], "penetrating");
+    ASSERT_GE(met["contacts"].size(), 1u);
+    EXPECT_NEAR(met["contacts"][0]["point"][2].get<double>(), 0, 1e-9);
+    ASSERT_EQ(run("detect t.obj --stage features --max-contacts 0 --output p.jsonl --quiet").status, 0);
+    EXPECT_TRUE(nlohmann::json::parse(content("p.jsonl")).value("contacts", nlohmann::json::array()).empty());
+    ASSERT_EQ(run("detect t.obj --output p.npy --quiet").status, 0);  // pairs alone
+    EXPECT_EQ(content("p.npy").size(), 128u + 8u);
+}
+
+TEST_F(Stages, TrianglesMeetBeyondWhatTheyShare) {
+    // A strip of two that share an edge, one that shares a corner with the first, and one through it.
+    write_file(file("s.obj"),
+               "o s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv -1 0 1\nv 0 -1 1\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\n"
+               "f 1 2 3\nf 2 4 3\nf 1 5 6\nf 7 8 9\n");
+    const std::string triangles = "s.obj --objects triangle";
+    EXPECT_EQ(rows(triangles), "a,b\n0,3\n");
+    EXPECT_EQ(rows(triangles + " --adjacent beyond-shared"), "a,b\n0,3\n");
+    EXPECT_EQ(rows(triangles + " --adjacent exclude"), "a,b\n0,3\n");
+    EXPECT_EQ(rows(triangles + " --adjacent include"), "a,b\n0,1\n0,2\n0,3\n");
+    EXPECT_EQ(rows(triangles + " --against t.obj"), "a,b\n0,0\n0,2\n1,0\n1,1\n2,0\n3,0\n3,2\n");
+    ASSERT_EQ(run("detect " + triangles + " --stage features --output p.jsonl --quiet").status, 0);
+    const auto met = nlohmann::json::parse(content("p.jsonl"));
+    EXPECT_EQ(met["class"], "penetrating");
+    EXPECT_EQ(met["a_triangle"], 0);
+    EXPECT_EQ(met["b_triangle"], 3);
+}
+
 TEST_F(Stages, FiltersAreTold) {
     rules(R"({"exclude": [{"a": "*flat", "b": "*through"}]})");
     const nlohmann::json told = stats("t.obj --exclude r.json");
@@ -131,6 +174,13 @@ TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
     EXPECT_EQ(refusal("t.obj --against a.npy --stage objects"),
               "octopair: --stage objects: a.npy has boxes, not shapes; --stage pairs is for these\n");
     EXPECT_EQ(refusal("t.obj --events --stage objects"), "octopair: --stage objects: not with --events\n");
+    for (const std::string wrong :
+         {"t.obj --adjacent include", "t.obj --objects triangle --stage pairs --adjacent include",
+          "t.obj --max-contacts 3", "t.obj --objects triangle --stage features --max-contacts 3",
+          "t.obj --stage features --max-contacts 4294967296", "t.obj --objects triangle --exclude r.json",
+          "t.obj --objects triangle --same-parent exclude", "t.obj --objects triangle --padding p.npy"}) {
+        EXPECT_TRUE(refusal(wrong).starts_with("octopair: --")) << wrong;
+    }
     EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not known"), std::string::npos);
     EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not known"), std::string::npos);
     // Sets of both: their boxes.
