@@ -8,6 +8,7 @@
 #include <string>
 
 #include "octopair/error.hpp"
+#include "octopair/objects.hpp"
 
 namespace octopair {
 
@@ -20,6 +21,11 @@ public:
 
     const Value& first(std::uint32_t a) const { return at(first_, a); }
     const Value& second(std::uint32_t b) const { return at(second_, b); }
+
+    /// Throws where a number is beyond the end.
+    void check(Pair pair) const { (void)first(pair.a), (void)second(pair.b); }
+    std::span<const Value> all_first() const { return first_; }
+    std::span<const Value> all_second() const { return second_; }
 
 private:
     const Value& at(std::span<const Value> values, std::uint32_t object) const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/exact/pair_look.hpp"
 #include "geometry/exact/triangle_contact.hpp"
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
@@ -89,7 +90,11 @@ public:
     std::string_view name() const override { return "exact triangle"; }
 
     void apply(Batch& batch) const override {
-        batch.keep_if([&](std::size_t i) { return counts(batch.pairs()[i]); });
+        const auto pairs = batch.pairs();
+        for (const Pair& pair : pairs) triangles_.check(pair);
+        std::vector<std::uint8_t> looks(pairs.size());
+        look_at({triangles_.all_first(), triangles_.all_second(), pairs}, looks);
+        batch.keep_if([&](std::size_t i) { return counts(batch.pairs()[i], looks[i]); });
         batch.keep_if([&](std::size_t i) {
             describe(batch.pairs()[i], batch.finding(i));
             return true;
@@ -101,16 +106,15 @@ private:
         return !join_ && (owners_.empty() || owners_[pair.a] == owners_[pair.b]);
     }
 
-    bool counts(const Pair& pair) const {
-        const Triangle3d &a = triangles_.first(pair.a), &b = triangles_.second(pair.b);
-        if (may_be_adjacent(pair)) {
-            if (options_.adjacent == AdjacentTriangles::beyond_shared) {
-                return meet_beyond_shared(a, b) ||
-                       (options_.margin > 0 && shared_corners(a, b) == 0 && within_margin(a, b));
-            }
-            if (options_.adjacent == AdjacentTriangles::exclude && shared_corners(a, b) != 0) return false;
+    bool counts(const Pair& pair, std::uint8_t look) const {
+        const bool apart = (look & look_apart) != 0, share = (look & look_shared) != 0;
+        if (apart && (share ? may_be_adjacent(pair) : options_.margin == 0)) {
+            return share && options_.adjacent == AdjacentTriangles::include;
         }
-        return triangles_meet(a, b) || within_margin(a, b);
+        const Triangle3d &a = triangles_.first(pair.a), &b = triangles_.second(pair.b);
+        if (!share) return (!apart && triangles_meet(a, b)) || within_margin(a, b);
+        if (!may_be_adjacent(pair) || options_.adjacent == AdjacentTriangles::include) return true;
+        return options_.adjacent == AdjacentTriangles::beyond_shared && meet_beyond_shared(a, b);
     }
 
     /// Of triangles that do not meet.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geometry/exact/orientation.hpp"
+#include "geometry/exact/pair_look.hpp"
 #include "geometry/exact_oracle.hpp"
 #include "support/scale.hpp"
 
@@ -71,6 +72,31 @@ TEST(TrianglePair, MeetsWhereRationalNumbersDo) {
         if (meet) ++beyond[meet_beyond];
     }
     for (const unsigned some : {seen[0], seen[1], beyond[0], beyond[1]}) EXPECT_GT(some, testing::scaled(90, 10));
+}
+
+TEST(PairLook, SaysNothingWrongAndTheSameOfOneAsOfMany) {
+    std::mt19937 random(10);
+    std::vector<Triangle3d> first, second;
+    std::vector<Pair> pairs;
+    for (std::uint32_t i = 0; i < testing::scaled(40003, 20); ++i) {
+        const auto [a, b] = some_pair(i % pair_kinds, random);
+        first.push_back(a);
+        second.push_back(b);
+        pairs.push_back({i, i});
+    }
+    std::shuffle(pairs.begin(), pairs.end(), random);
+    for (Pair& pair : pairs) pair.b = pair.a;
+    std::vector<std::uint8_t> looks(pairs.size());
+    look_at({first, second, pairs}, looks);
+    std::array<std::size_t, 4> seen = {};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Triangle3d &a = first[pairs[i].a], &b = second[pairs[i].b];
+        ASSERT_EQ(looks[i], look_at(a, b)) << text({a, b});
+        ASSERT_EQ((looks[i] & look_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
+        ASSERT_FALSE((looks[i] & look_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
+        ++seen[looks[i]];
+    }
+    for (const std::size_t some : seen) EXPECT_GT(some, pairs.size() / 50);
 }
 
 /// The same triangles with their corners and axes in another order, turned over, and mirrored.
