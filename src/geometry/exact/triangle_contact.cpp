@@ -18,7 +18,6 @@ namespace {
 using vector::cross;
 using vector::dot;
 using vector::minus;
-using vector::plus;
 using vector::times;
 
 Point3d between(const Point3d& from, const Point3d& to, double part) {

@@ -173,7 +173,7 @@ unsigned equal_corners(const Triangle3d& a, const Triangle3d& b) {
     if (equal == 0) return 0;
     for (unsigned i = 0; i < 3; ++i) {
         for (unsigned j = 0; j < 3; ++j) {
-            const bool same = (a[i][1] == b[j][1]) & (a[i][2] == b[j][2]);
+            const bool same = a[i][1] == b[j][1] && a[i][2] == b[j][2];
             equal &= ~(unsigned(!same) << (3 * i + j));
         }
     }
