@@ -1,0 +1,211 @@
+// "bounding spheres" and "oriented boxes": what these cheap hulls tell apart does not reach the exact stages.
+//
+// A gap counts only beyond what rounding may have made of it. A plane is itself; a mesh without triangles meets nothing.
+// Moving objects are judged by their spheres in both filters: these are around centres that move straight but for
+// Motion::sagitta, so the two are nearest where the straight way from one to the other is.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "geometry/shape/motion.hpp"
+#include "geometry/shape/posed_plane.hpp"
+#include "geometry/shape/prepared.hpp"
+#include "octopair/error.hpp"
+#include "octopair/filters.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// The longest that a pose makes something of length 1, at most: the square root of a norm of its transpose times itself.
+double stretch_of(const Pose& pose) {
+    double most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += std::fabs(vector::dot(vector::column(pose, i), vector::column(pose, k)));
+        most = std::max(most, sum);
+    }
+    return std::sqrt(most) * (1 + 4 * epsilon);
+}
+
+struct Ball {
+    Point3d centre;
+    double radius;
+    double slack;  ///< what rounding may add to how far things reach
+};
+
+Ball ball_of(const Geometry::Prepared& shape, const Pose& pose) {
+    const ShapeBounds& bounds = shape.bounds;
+    const double stretch = std::max(stretch_of(pose), shape.convex.radius > 0 ? 1.0 : 0.0);
+    Ball ball = {vector::posed(pose, bounds.centre), stretch * bounds.radius, 0};
+    ball.slack = 32 * epsilon *
+                 (stretch * (vector::length(bounds.centre) + bounds.radius) + vector::length(vector::place(pose)));
+    return ball;
+}
+
+/// Half the edges of a posed box.
+std::array<Point3d, 3> half_edges(const Geometry::Prepared& shape, const Pose& pose) {
+    const Box3d& box = shape.bounds.box;
+    // Radii are not posed, so a pose that is a turn but for 1e-6 makes them no smaller.
+    constexpr double off_turn = 4e-6;
+    std::array<Point3d, 3> edges;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double half = (box.max[k] / 2 - box.min[k] / 2) * (1 + 4 * epsilon) + off_turn * shape.convex.radius;
+        edges[k] = vector::times(vector::column(pose, k), half);
+    }
+    return edges;
+}
+
+double reach_along(const std::array<Point3d, 3>& edges, const Point3d& unit) {
+    return std::fabs(vector::dot(edges[0], unit)) + std::fabs(vector::dot(edges[1], unit)) +
+           std::fabs(vector::dot(edges[2], unit));
+}
+
+/// Both objects of a pair.
+struct Couple {
+    const Geometry::Prepared &a, &b;
+    const Pose &pose_a, &pose_b;
+    const Pose *end_a, *end_b;  ///< or null
+    double reach;               ///< margin and paddings
+};
+
+const shape::Plane* plane_of(const Geometry::Prepared& shape) { return std::get_if<shape::Plane>(&shape.shape); }
+
+/// Whether a plane is further than `reach` from a ball, or from a box at its centre.
+bool plane_apart(const PosedPlane& plane, const Ball& ball, double thick, double reach) {
+    const double height = vector::dot(vector::minus(ball.centre, plane.point), plane.normal);
+    const double slack = 2 * ball.slack + 32 * epsilon * (vector::length(plane.point) + std::fabs(height));
+    return std::fabs(height) - thick - slack > reach;
+}
+
+bool balls_apart(const Ball& a, const Ball& b, double reach) {
+    const double distance = vector::length(vector::minus(a.centre, b.centre));
+    return distance - (a.radius + b.radius) - (a.slack + b.slack) > reach;
+}
+
+/// The one with two poses, of which one may be the only one.
+std::optional<Motion> motion_of(const Pose& begin, const Pose* end) {
+    return end ? Motion::between(begin, *end) : Motion::between(begin, begin);
+}
+
+bool moving_balls_apart(const Couple& couple) {
+    const auto move_a = motion_of(couple.pose_a, couple.end_a), move_b = motion_of(couple.pose_b, couple.end_b);
+    if (!move_a || !move_b) return false;
+    const Ball a = ball_of(couple.a, move_a->at(0)), b = ball_of(couple.b, move_b->at(0));
+    const Ball last_a = ball_of(couple.a, move_a->at(1)), last_b = ball_of(couple.b, move_b->at(1));
+    const double aside = move_a->sagitta(vector::length(couple.a.bounds.centre), 1) +
+                         move_b->sagitta(vector::length(couple.b.bounds.centre), 1);
+    const Point3d from = vector::minus(b.centre, a.centre);
+    const Point3d way = vector::minus(vector::minus(last_b.centre, last_a.centre), from);
+    const double squared = vector::dot(way, way);
+    const double part = squared > 0 ? std::clamp(-vector::dot(from, way) / squared, 0.0, 1.0) : 0;
+    const double nearest = vector::length(vector::plus(from, vector::times(way, part)));
+    const double radii = std::max(a.radius, last_a.radius) + std::max(b.radius, last_b.radius);
+    const double slack = 4 * (a.slack + b.slack + last_a.slack + last_b.slack) + 32 * epsilon * std::sqrt(squared);
+    return nearest - radii - aside - slack > couple.reach;
+}
+
+bool boxes_apart(const Couple& couple) {
+    const Ball ball_a = ball_of(couple.a, couple.pose_a), ball_b = ball_of(couple.b, couple.pose_b);
+    const auto a = half_edges(couple.a, couple.pose_a), b = half_edges(couple.b, couple.pose_b);
+    const Point3d between = vector::minus(ball_b.centre, ball_a.centre);
+    const double slack = 4 * (ball_a.slack + ball_b.slack);
+    const auto tells_apart = [&](const Point3d& axis) {
+        const double length = vector::length(axis);
+        if (!(length > 0)) return false;
+        const Point3d unit = vector::times(axis, 1 / length);
+        return std::fabs(vector::dot(between, unit)) - reach_along(a, unit) - reach_along(b, unit) - slack >
+               couple.reach;
+    };
+    for (const auto* edges : {&a, &b}) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (tells_apart(vector::cross((*edges)[k], (*edges)[(k + 1) % 3]))) return true;
+        }
+    }
+    for (const Point3d& edge_a : a) {
+        for (const Point3d& edge_b : b) {
+            if (tells_apart(vector::cross(edge_a, edge_b))) return true;
+        }
+    }
+    return false;
+}
+
+enum class Hull : std::uint8_t { ball, box };
+
+bool with_plane_apart(const Couple& couple, Hull hull) {
+    const bool first = plane_of(couple.a) != nullptr;
+    const Geometry::Prepared& other = first ? couple.b : couple.a;
+    const Pose& pose = first ? couple.pose_b : couple.pose_a;
+    const PosedPlane plane = posed_plane(*plane_of(first ? couple.a : couple.b), first ? couple.pose_a : couple.pose_b);
+    const Ball ball = ball_of(other, pose);
+    const double thick = hull == Hull::ball ? ball.radius : reach_along(half_edges(other, pose), plane.normal);
+    return plane_apart(plane, ball, thick, couple.reach);
+}
+
+bool told_apart(const Couple& couple, Hull hull) {
+    const bool plane_a = plane_of(couple.a) != nullptr, plane_b = plane_of(couple.b) != nullptr;
+    if ((!plane_a && !couple.a.bounds.bounded) || (!plane_b && !couple.b.bounds.bounded)) return true;
+    if (plane_a && plane_b) return false;
+    if (plane_a || plane_b) return !couple.end_a && !couple.end_b && with_plane_apart(couple, hull);
+    if (couple.end_a || couple.end_b) return moving_balls_apart(couple);
+    if (hull == Hull::box) return boxes_apart(couple);
+    return balls_apart(ball_of(couple.a, couple.pose_a), ball_of(couple.b, couple.pose_b), couple.reach);
+}
+
+class BoundingFilter final : public Filter {
+public:
+    BoundingFilter(Hull hull, const ShapedObjects& first, const ShapedObjects& second, double margin)
+        : hull_(hull), first_(first), second_(second), margin_(margin) {
+        check(first_);
+        check(second_);
+        if (!(margin >= 0) || !std::isfinite(margin)) {
+            throw Error(ErrorCode::bad_input, "the margin is not finite, or below 0");
+        }
+    }
+
+    std::string_view name() const override { return hull_ == Hull::ball ? "bounding spheres" : "oriented boxes"; }
+
+    void apply(Batch& batch) const override {
+        batch.keep_if([&](std::size_t i) { return !told_apart(couple_of(batch.pairs()[i]), hull_); });
+    }
+
+private:
+    static const Geometry::Prepared& shape_of(const ShapedObjects& objects, std::uint32_t i) {
+        return objects.geometries[objects.geometry[i]].prepared();
+    }
+    static const Pose* end_of(const ShapedObjects& objects, std::uint32_t i) {
+        return objects.end_poses.empty() ? nullptr : &objects.end_poses[i];
+    }
+    static double padding_of(const ShapedObjects& objects, std::uint32_t i) {
+        return objects.padding.empty() ? 0 : objects.padding[i];
+    }
+    Couple couple_of(const Pair& pair) const {
+        return {shape_of(first_, pair.a),
+                shape_of(second_, pair.b),
+                first_.poses[pair.a],
+                second_.poses[pair.b],
+                end_of(first_, pair.a),
+                end_of(second_, pair.b),
+                margin_ + (padding_of(first_, pair.a) + padding_of(second_, pair.b))};
+    }
+
+    Hull hull_;
+    ShapedObjects first_, second_;
+    double margin_;
+};
+
+}  // namespace
+
+std::unique_ptr<Filter> make_sphere_filter(const ShapedObjects& first, double margin, const ShapedObjects* second) {
+    return std::make_unique<BoundingFilter>(Hull::ball, first, second ? *second : first, margin);
+}
+
+std::unique_ptr<Filter> make_oriented_box_filter(const ShapedObjects& first, double margin,
+                                                 const ShapedObjects* second) {
+    return std::make_unique<BoundingFilter>(Hull::box, first, second ? *second : first, margin);
+}
+
+}  // namespace octopair
