@@ -70,22 +70,24 @@ VertexBlocks::VertexBlocks(std::vector<Point3d> vertices) {
             std::span<const Point3d>(vertices).subspan(begin, std::min(block_size, vertices.size() - begin));
         const Bounds bounds = bounds_of(points);
         Block& block = blocks_.emplace_back();
+        Places& places = places_.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             block.centre[axis] = bounds.low[axis] / 2 + bounds.high[axis] / 2;
             block.half[axis] = std::max(bounds.high[axis] - block.centre[axis], block.centre[axis] - bounds.low[axis]);
             largest_[axis] = std::max({largest_[axis], std::fabs(bounds.low[axis]), std::fabs(bounds.high[axis])});
             for (std::size_t i = 0; i < block_size; ++i) {
-                block.at[axis][i] = points[std::min(i, points.size() - 1)][axis];
+                places[axis][i] = points[std::min(i, points.size() - 1)][axis];
             }
         }
     }
 }
 
-void VertexBlocks::look_into(const Block& block, const Row& row, double& low, double& high) const {
+void VertexBlocks::look_into(std::size_t block, const Row& row, double& low, double& high) const {
     const std::array<double, 4>& r = row.factors;
+    const auto& [x, y, z] = places_[block];
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (std::size_t i = 0; i < block_size; ++i) {
-        const double at = ((r[0] * block.at[0][i] + r[1] * block.at[1][i]) + r[2] * block.at[2][i]) + r[3];
+        const double at = ((r[0] * x[i] + r[1] * y[i]) + r[2] * z[i]) + r[3];
         least = at < least ? at : least;
         most = at > most ? at : most;
     }
@@ -97,19 +99,19 @@ Box3d VertexBlocks::world_box(const Pose& pose) const {
     Box3d box = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Row row(pose.rows[axis], largest_);
-        const Block *lowest = nullptr, *highest = nullptr;
+        std::size_t lowest = 0, highest = 0;
         double reach_low = std::numeric_limits<double>::infinity(), reach_high = -reach_low;
-        for (const Block& block : blocks_) {
-            const double centre = row.centre(block), half = row.half(block);
-            if (!lowest || centre - half < reach_low) reach_low = centre - half, lowest = &block;
-            if (!highest || centre + half > reach_high) reach_high = centre + half, highest = &block;
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            const double centre = row.centre(blocks_[i]), half = row.half(blocks_[i]);
+            if (centre - half < reach_low) reach_low = centre - half, lowest = i;
+            if (centre + half > reach_high) reach_high = centre + half, highest = i;
         }
         double low = std::numeric_limits<double>::infinity(), high = -low;
-        look_into(*lowest, row, low, high);
-        look_into(*highest, row, low, high);
-        for (const Block& block : blocks_) {
-            const double centre = row.centre(block), half = row.half(block);
-            if (!(centre - half >= low && centre + half <= high)) look_into(block, row, low, high);
+        look_into(lowest, row, low, high);
+        look_into(highest, row, low, high);
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            const double centre = row.centre(blocks_[i]), half = row.half(blocks_[i]);
+            if (!(centre - half >= low && centre + half <= high)) look_into(i, row, low, high);
         }
         box.min[axis] = low, box.max[axis] = high;
     }

@@ -27,13 +27,14 @@ private:
     static constexpr std::size_t block_size = 32;
     struct Block {
         Point3d centre, half;
-        std::array<std::array<double, block_size>, 3> at;  ///< by axis; the last one is repeated
     };
+    using Places = std::array<std::array<double, block_size>, 3>;  ///< by axis; the last one is repeated
 
     struct Row;
-    void look_into(const Block& block, const Row& row, double& low, double& high) const;
+    void look_into(std::size_t block, const Row& row, double& low, double& high) const;
 
-    std::vector<Block> blocks_;
+    std::vector<Block> blocks_;  // apart from what is in them: all are looked at, few looked into
+    std::vector<Places> places_;
     Point3d largest_ = {};  ///< of each axis, the largest absolute coordinate
 };
 
