@@ -4,7 +4,7 @@
 // bound is proven by a plane between the two, so what is said to be apart is apart, whatever rounding and the search did:
 // a pair within the tolerance of touching counts as one that meets.
 // Tolerance the proof's rounding: about 1e-14 of the pair's size (its places are differences: not of the distance from the
-//           world's origin). Between curved things the search closes in to about 1e-9 of their size.
+//           world's origin). Between curved things the search closes in to about 1e-8 of their size.
 // Symmetry  (a, b) and (b, a) are the same computation. Threads: all of this may be used by many at once.
 #pragma once
 
@@ -56,8 +56,8 @@ ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b);
 /// Of two that meet (of others, depth 0 at the point between them).
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b);
 
-/// Whether `inner` lies in `outer` and does not reach its surface. Only what is proven is held: where the inner one is
-/// curved and the outer one a hull, a thin layer below the surface does not count. A triangle and a point hold nothing.
+/// Whether `inner` lies in `outer` and does not reach its surface (convex_holds.cpp says how that is found). Of a cylinder
+/// or a cone in a hull, a layer below the surface of 1/800 of its radius does not count. A triangle and a point hold nothing.
 bool convex_holds(const PosedConvex& outer, const PosedConvex& inner);
 
 }  // namespace octopair
