@@ -37,7 +37,7 @@ private:
 };
 
 /// What the parser says, without its own name and number before it.
-std::string words_of(const Json::parse_error& error) {
+std::string words_of(const Json::exception& error) {
     const std::string_view words = error.what();
     const std::size_t end = words.find("] ");
     return std::string(end == std::string_view::npos ? words : words.substr(end + 2));
@@ -112,7 +112,7 @@ private:
 ExclusionRules parse_exclusion_rules(std::string_view text, std::string_view file) {
     try {
         return Reader(file).rules(Json::parse(text, UniqueKeys(file)));
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {  // of syntax, or of a number beyond float64
         refuse(file, words_of(error));
     }
 }

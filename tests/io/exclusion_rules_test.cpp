@@ -65,6 +65,10 @@ TEST(ExclusionRules, MustBeJson) {
     }
 }
 
+TEST(ExclusionRules, NumbersAreNotTooLarge) {
+    EXPECT_EQ(refusal("{\"same_parent\": 4e442}"), "r.json: number overflow parsing '4e442'");
+}
+
 TEST(ExclusionRules, AreReadFromFiles) {
     const TemporaryDirectory folder;
     const std::string path = folder.file("r.json");
