@@ -38,7 +38,7 @@ public:
         if constexpr (std::is_trivially_copyable_v<T>) {
             put_(std::as_bytes(std::span(&value, 1)));
         } else if constexpr (requires { members(value); }) {
-            std::apply([this](const auto&... parts) { (pass(parts), ...); }, members(value));
+            std::apply([&](const auto&... parts) { (pass(parts), ...); }, members(value));
         } else {
             pass_container(value);
         }
@@ -71,7 +71,7 @@ private:
     template <typename... T>
     void pass_container(const std::variant<T...>& value) {
         pass(std::uint64_t(value.index()));
-        std::visit([this](const auto& held) { pass(held); }, value);
+        std::visit([&](const auto& held) { pass(held); }, value);
     }
 
     const PutBytes& put_;
@@ -86,7 +86,7 @@ public:
         if constexpr (std::is_trivially_copyable_v<T>) {
             get_(std::as_writable_bytes(std::span(&value, 1)));
         } else if constexpr (requires { members(value); }) {
-            std::apply([this](auto&... parts) { (pass(parts), ...); }, members(value));
+            std::apply([&](auto&... parts) { (pass(parts), ...); }, members(value));
         } else {
             pass_container(value);
         }
