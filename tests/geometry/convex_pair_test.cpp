@@ -19,7 +19,6 @@ using samples::random_pose;
 using samples::RandomStream;
 using vector::length;
 using vector::minus;
-using vector::plus;
 using vector::times;
 
 constexpr int kinds = 7;
