@@ -113,6 +113,7 @@ private:
             timed_write([&] { writer->end_frame(); });
         }
         timed_write([&] { writer->finish(); });
+        report_.changes = writer->changes();
     }
 
     template <typename Write>

@@ -9,6 +9,7 @@
 
 #include "cli/engine_choice.hpp"
 #include "cli/stage.hpp"
+#include "io/baseline.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pipeline.hpp"
@@ -52,9 +53,10 @@ struct DetectReport {
     bool moving = false;
     std::uint64_t pairs = 0;  ///< what came out, of all frames
     bool truncated = false;
-    std::uint64_t candidates = 0;       ///< pairs of boxes, as far as they were looked for
-    std::vector<FilterCounts> filters;  ///< of all frames
-    std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
+    std::uint64_t candidates = 0;             ///< pairs of boxes, as far as they were looked for
+    std::vector<FilterCounts> filters;        ///< of all frames
+    std::optional<io::ChangeCounts> changes;  ///< where there is a baseline
+    std::optional<EventCounts> events;        ///< if they were asked for; then `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;

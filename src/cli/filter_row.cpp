@@ -42,6 +42,8 @@ private:
         const ShapedObjects first = shaped(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
         const ShapedObjects* const other = second ? &*second : nullptr;
+        pipeline_.add(make_sphere_filter(first, request.margin, other));
+        pipeline_.add(make_oriented_box_filter(first, request.margin, other));
         pipeline_.add(make_exact_object_filter(first, options, other));
         if (stage_of(request) == Stage::features) pipeline_.add(make_exact_feature_filter(first, options, other));
     }

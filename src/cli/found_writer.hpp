@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 
 #include "cli/detection.hpp"
 #include "cli/input_set.hpp"
+#include "io/baseline.hpp"
 #include "octopair/pipeline.hpp"
 
 namespace octopair::cli {
@@ -20,6 +22,8 @@ public:
     virtual void write(std::span<const Pair> pairs, std::span<const Finding> findings) = 0;
     virtual void end_frame() = 0;
     virtual void finish() = 0;
+    /// After the last write: how the result stands to an older one, where there is one.
+    virtual std::optional<io::ChangeCounts> changes() const { return std::nullopt; }
 };
 
 /// The sets that a result is of; `second` is the first one's but for a join.
@@ -29,7 +33,8 @@ struct FoundIn {
     bool moving;  ///< they have frames
 };
 
-/// Collisions beyond the pairs, but for .npy, which holds pairs alone. Borrows names.
+/// Collisions beyond the pairs, but for .npy, which holds pairs alone; and their report, held against a baseline, where
+/// these are asked for. Borrows the request and the sets.
 std::unique_ptr<FoundWriter> make_found_writer(const DetectRequest& request, const FoundIn& sets,
                                                const std::stop_token& stop);
 

@@ -94,6 +94,10 @@ std::string summary_text(const DetectReport& report) {
                             grouped(report.events->ended));
     }
     text += report.truncated ? " (the limit was reached; more exist)\n" : "\n";
+    if (report.changes) {
+        text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
+                            grouped(report.changes->same), grouped(report.changes->gone));
+    }
     text += filters_text(report) + time_text(report);
     if (!report.events) {
         text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
@@ -118,6 +122,10 @@ std::string stats_json(const DetectReport& report) {
     if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
     if (!report.crew.server.empty()) stats["server"] = report.crew.server;
     if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});
+    if (report.changes) {
+        const io::ChangeCounts& changes = *report.changes;
+        stats.update({{"new", changes.begun}, {"same", changes.same}, {"gone", changes.gone}});
+    }
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }

@@ -92,6 +92,11 @@ void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
             },
             "pairs of objects of one parent: include (default) or exclude")
         ->type_name("WHAT");
+    command
+        .add_option("--baseline", request.baseline, "an older result: say which collisions are new, gone or the same")
+        ->type_name("OLD.jsonl");
+    command.add_option("--report", request.report, "write a page about the collisions for people")
+        ->type_name("FILE.html");
 }
 
 Stage stage_of(const DetectRequest& request) {
@@ -134,10 +139,25 @@ void check_triangle_options(const DetectRequest& request) {
     if (!request.padding.empty()) refuse("--padding: triangles have it in --stage pairs alone");
 }
 
+/// Of what is said of collisions, beside their rows.
+void check_outcome_options(const DetectRequest& request) {
+    const PipelineRequest& asked = request.pipeline;
+    for (const auto& [option, value] :
+         {std::pair("--baseline", &asked.baseline), std::pair("--report", &asked.report)}) {
+        if (value->empty()) continue;
+        if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
+        if (request.engine.kind == EngineKind::mpi) refuse(fmt::format("{}: not with --engine mpi", option));
+        if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
+    }
+    if (!asked.baseline.empty() && request.limit)
+        refuse("--baseline: not with --limit, which leaves out what may be new");
+}
+
 }  // namespace
 
 void check_pipeline_options(const DetectRequest& request) {
     check_triangle_options(request);
+    check_outcome_options(request);
     if (!has_filters(request)) return;
     const std::string asked = asked_of(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");

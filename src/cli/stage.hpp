@@ -26,12 +26,14 @@ struct PipelineRequest {
     std::optional<bool> same_parent;
     std::optional<AdjacentTriangles> adjacent;
     std::optional<std::uint32_t> max_contacts;
+    std::string baseline;  ///< an older result, or empty
+    std::string report;    ///< where a page for people goes, or empty
 };
 
 /// Those of this program, as --stage names them.
 std::vector<std::string_view> stage_names();
 
-/// --stage, --adjacent, --max-contacts, --exclude, --same-parent.
+/// --stage, --adjacent, --max-contacts, --exclude, --same-parent, --baseline, --report.
 void add_pipeline_options(CLI::App& command, PipelineRequest& request);
 
 /// The one that was asked for; else `objects` where all inputs have shapes and this program has a pipeline for them, and
