@@ -8,6 +8,7 @@
 
 #include "geometry/exact/orientation.hpp"
 #include "geometry/exact/triangle_contact.hpp"
+#include "geometry/exact/triangle_gap.hpp"
 #include "geometry/shape/mesh_leaves.hpp"
 #include "geometry/shape/vector.hpp"
 
@@ -35,11 +36,26 @@ public:
         tree_.nodes = {{{0, 0, 0}, 0, {0, 0, 0}, 1}};
     }
 
-    /// 0 of a point on the surface; at most `most` is looked for.
-    double distance(const PosedMesh& mesh, const Point3d& point, double most) {
-        tree_.vertices[0] = tree_.origin = point;
-        const auto gap = surface_gap({tree_, pose_}, mesh, most);
+    void put(const Point3d& point) { tree_.vertices[0] = tree_.origin = point; }
+
+    /// 0 of a point on the surface.
+    double distance(const PosedMesh& mesh) const {
+        const auto gap = surface_gap({tree_, pose_}, mesh, infinity);
         return gap ? gap->distance : infinity;
+    }
+
+    /// Whether that is at most so much; much cheaper, where it is less.
+    bool is_within(const PosedMesh& mesh, double reach) const {
+        const Point3d& point = tree_.vertices[0];
+        bool within = false;
+        visit_leaves({tree_, pose_}, mesh, round_up(reach), [&](const MeshNode&, const MeshNode& leaf) {
+            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count && !within; ++i) {
+                const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
+                within = triangle_gap({point, point, point}, triangle).distance <= reach;
+            }
+            return !within;
+        });
+        return within;
     }
 
 private:
@@ -92,10 +108,11 @@ private:
         if (holds(box_, place)) places.push_back(place);
     }
 
-    /// The distance is the cheaper question where it says no.
+    /// Few places are deeper than those before; the cheaper questions come first.
     void look_at(const Point3d& place) {
-        const double distance = probe_.distance(outer_, place, infinity);
-        if (distance > deepest_ && encloses(outer_, place)) deepest_ = distance;
+        probe_.put(place);
+        if (probe_.is_within(outer_, deepest_) || !encloses(outer_, place)) return;
+        deepest_ = std::max(deepest_, probe_.distance(outer_));
     }
 
     const PosedMesh& outer_;
@@ -136,9 +153,10 @@ public:
             add(at);
             return true;
         });
-        finding.depth = depth_of_meshes(a_, b_);
-        const bool inside = penetrating_ || finding.depth > 0;
+        const double depth = depth_of_meshes(a_, b_);
+        const bool inside = penetrating_ || depth > 0;
         finding.collision_class = inside ? CollisionClass::penetrating : CollisionClass::touching;
+        finding.depth = !inside ? 0 : depth > 0 ? depth : deepest_;
         std::sort(contacts_.begin(), contacts_.end(), comes_first);
         finding.more_contacts = more_;
         finding.contacts = std::move(contacts_);
@@ -151,12 +169,12 @@ private:
         if (contact.meeting == TriangleMeeting::overlapping && at.both_oriented) {
             penetrating_ |= face_alike(at.a, at.b) == same_handed_;
         }
-        if (max_contacts_ == 0) return;
+        const TriangleDepth out = triangle_depth(at.a, at.b);
+        deepest_ = std::max(deepest_, out.depth);
         Contact made;
         for (unsigned i = 0; i < contact.count; ++i) {
             for (int axis = 0; axis < 3; ++axis) made.point[axis] += contact.points[i][axis] / contact.count;
         }
-        const TriangleDepth out = triangle_depth(at.a, at.b);
         made.normal = out.normal;
         made.depth = out.depth;
         made.feature_a = at.number_a;
@@ -168,7 +186,7 @@ private:
     void keep(const Contact& contact) {
         if (contacts_.size() == max_contacts_) {
             more_ = true;
-            if (!comes_first(contact, contacts_.front())) return;
+            if (contacts_.empty() || !comes_first(contact, contacts_.front())) return;
             std::pop_heap(contacts_.begin(), contacts_.end(), comes_first);
             contacts_.pop_back();
         }
@@ -180,6 +198,7 @@ private:
     std::uint32_t max_contacts_;
     bool same_handed_;
     bool penetrating_ = false, more_ = false;
+    double deepest_ = 0;  // of the contacts
     std::vector<Contact> contacts_;
 };
 

@@ -3,8 +3,9 @@
 // Class     penetrating where two triangles pass through each other; of closed meshes also where two triangles lie in one
 //           plane with both insides on one side of it, or where a corner or the middle of a triangle of the one is inside
 //           the other. Else touching.
-// Depth     of closed meshes: how far the deepest of those corners and middles is from the other's surface. So both have
-//           to be moved by that much, or more, to end it. 0 of open meshes.
+// Depth     of those that penetrate: how far the deepest of those corners and middles is from the other's surface, so both
+//           have to be moved by that much, or more, to end it. Where no such place is inside, and of open meshes, that of
+//           the deepest contact.
 // Contacts  one for each two triangles that meet: in the middle of what they have in common, with the normal and the depth
 //           of these two alone. The deepest come first, then by the triangles' numbers.
 #pragma once

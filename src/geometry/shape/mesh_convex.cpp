@@ -11,9 +11,6 @@ namespace octopair {
 
 namespace {
 
-/// Upward, so that what is within `reach` stays so.
-float round_up(double reach) { return std::nextafter(float(reach), std::numeric_limits<float>::infinity()); }
-
 /// Calls tell(number, triangle) for triangles near the solid, until it returns false.
 template <typename Tell>
 void visit_near(const PosedMesh& mesh, const BoxedSolid& solid, const Tell& tell) {
