@@ -64,6 +64,39 @@ private:
         if (!names.owners.empty()) append(fmt::format("{}_triangle", side), std::to_string(names.triangle(object)));
     }
 
+    static std::string point_text(const Point3d& point) {
+        return json_number(point[0]) + ' ' + json_number(point[1]) + ' ' + json_number(point[2]);
+    }
+
+    /// Of contacts, or the nearest ones.
+    std::string points(const Finding& finding) const {
+        std::string text;
+        const auto add = [&](const Point3d& point) { text += (text.empty() ? "" : ";") + point_text(point); };
+        if (finding.collision_class == CollisionClass::clearance) {
+            for (const Point3d& point : finding.nearest) add(point);
+        } else if (form_.features) {
+            for (const Contact& contact : finding.contacts) add(contact.point);
+        }
+        return text;
+    }
+
+    static std::string old_points(const nlohmann::json& row) {
+        std::string text;
+        const auto add = [&](const nlohmann::json& point) {
+            if (!point.is_array() || point.size() != 3) return;
+            for (const auto& number : point) {
+                if (!number.is_number()) return;
+            }
+            text += (text.empty() ? "" : ";") + point_text(point.get<Point3d>());
+        };
+        for (const char* key : {"nearest", "contacts"}) {
+            const auto list = row.find(key);
+            if (list == row.end() || !list->is_array()) continue;
+            for (const auto& one : *list) add(one.is_object() && one.contains("point") ? one["point"] : one);
+        }
+        return text;
+    }
+
     void append_finding(const Finding& finding) {
         const CollisionClass what = finding.collision_class;
         if (what == CollisionClass::unknown) return;
@@ -96,7 +129,7 @@ private:
 class CsvWriter final : public CollisionWriter {
 public:
     CsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {
-        out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts");
+        out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts");
         out_->write(form_.changes ? std::string_view(",change\n") : std::string_view("\n"));
     }
 
@@ -122,6 +155,7 @@ public:
             const auto contacts = row.find("contacts");
             const bool listed = contacts != row.end() && contacts->is_array();
             append(listed ? std::to_string(contacts->size()) : std::string());
+            append(old_points(row));
             append(old_field(row, "more_contacts"));
             append(word_of(Change::gone));
             line_ += '\n';
@@ -141,6 +175,39 @@ private:
         return value->is_number_float() ? json_number(value->get<double>()) : csv_field(value->dump());
     }
 
+    static std::string point_text(const Point3d& point) {
+        return json_number(point[0]) + ' ' + json_number(point[1]) + ' ' + json_number(point[2]);
+    }
+
+    /// Of contacts, or the nearest ones.
+    std::string points(const Finding& finding) const {
+        std::string text;
+        const auto add = [&](const Point3d& point) { text += (text.empty() ? "" : ";") + point_text(point); };
+        if (finding.collision_class == CollisionClass::clearance) {
+            for (const Point3d& point : finding.nearest) add(point);
+        } else if (form_.features) {
+            for (const Contact& contact : finding.contacts) add(contact.point);
+        }
+        return text;
+    }
+
+    static std::string old_points(const nlohmann::json& row) {
+        std::string text;
+        const auto add = [&](const nlohmann::json& point) {
+            if (!point.is_array() || point.size() != 3) return;
+            for (const auto& number : point) {
+                if (!number.is_number()) return;
+            }
+            text += (text.empty() ? "" : ";") + point_text(point.get<Point3d>());
+        };
+        for (const char* key : {"nearest", "contacts"}) {
+            const auto list = row.find(key);
+            if (list == row.end() || !list->is_array()) continue;
+            for (const auto& one : *list) add(one.is_object() && one.contains("point") ? one["point"] : one);
+        }
+        return text;
+    }
+
     void append_finding(const Finding& finding) {
         const CollisionClass what = finding.collision_class;
         const bool known = what != CollisionClass::unknown, features = form_.features && meet(what);
@@ -149,6 +216,7 @@ private:
         append(features ? json_number(finding.depth) : std::string());
         append(known && form_.times ? json_number(finding.time) : std::string());
         append(features ? std::to_string(finding.contacts.size()) : std::string());
+        append(points(finding));
         append(features && finding.more_contacts ? "true" : "");
     }
 

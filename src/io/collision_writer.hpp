@@ -2,7 +2,7 @@
 //
 //   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; what is not
 //          known is left out
-//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts", and ",change" where there is a
+//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts", and ",change" where there is a
 //          baseline; a field that is not known is empty
 //
 // A file appears whole, with finish(), or not at all.

@@ -63,13 +63,13 @@ TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
 
 TEST(CollisionWriter, CsvLeavesEmptyWhatIsNotKnown) {
     const auto found = findings();
-    const std::string header = "a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts";
+    const std::string header = "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts";
     EXPECT_EQ(written(".csv", {{{names}, {names}}, true, true}, {pairs, found}),
               header +
-                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,\n"
-                  "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,true\n"
-                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,\n");
-    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,\n");
+                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,\n"
+                  "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,0 1e+300 -0,true\n"
+                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,,\n");
+    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,,\n");
 }
 
 TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
@@ -91,15 +91,15 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
     const std::vector<io::Change> changes = {io::Change::begun};
     const std::vector<Pair> pair = {{0, 1}};
     const std::string_view old =
-        R"({"a":4,"b":5,"a_name":"x,y","class":"penetrating","depth":0.1,"contacts":[{},{}],"more_contacts":true})";
+        R"({"a":4,"b":5,"a_name":"x,y","class":"penetrating","depth":0.1,"contacts":[{"point":[1,2.5,3]},{}],"more_contacts":true})";
     const CollisionForm form{.changes = true};
     EXPECT_EQ(written(".jsonl", form, {pair, {}, changes}, {old}), R"({"a":0,"b":1,"change":"new"})"
                                                                    "\n" +
                                                                        std::string(old.substr(0, old.size() - 1)) +
                                                                        ",\"change\":\"gone\"}\n");
     EXPECT_EQ(written(".csv", form, {pair, {}, changes}, {old}),
-              "a,b,a_name,b_name,class,distance,depth,time,contacts,more_contacts,change\n0,1,,,,,,,,,new\n"
-              "4,5,\"x,y\",,penetrating,,0.1,,2,true,gone\n");
+              "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,change\n0,1,,,,,,,,,,new\n"
+              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3,true,gone\n");
 }
 
 class BaselineTest : public ::testing::Test {
