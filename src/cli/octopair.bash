@@ -51,7 +51,7 @@ _octopair() {
                 return
             fi ;;
         --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
-        --against | --exclude | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+        --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
         bench)
@@ -67,7 +67,7 @@ _octopair() {
             fi ;;
         detect)
             if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --objects --margin --padding --output --order
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --baseline --report --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else

@@ -1,4 +1,5 @@
 // --stage and what goes with it: objects that meet, rules that leave pairs out, and what is said of filters.
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -148,17 +149,53 @@ TEST_F(Stages, FiltersAreTold) {
     EXPECT_EQ(told["pairs"], 0);
     EXPECT_EQ(told["candidates"], 2);
     EXPECT_GE(told["seconds"]["filter"], 0.0);
-    ASSERT_EQ(told["filters"].size(), 2u);
+    ASSERT_EQ(told["filters"].size(), 4u);
     EXPECT_EQ(told["filters"][0]["name"], "name rules");
     EXPECT_EQ(told["filters"][0]["in"], 2);
     EXPECT_EQ(told["filters"][0]["out"], 1);
-    EXPECT_EQ(told["filters"][1]["name"], "exact object");
+    EXPECT_EQ(told["filters"][1]["name"], "bounding spheres");
     EXPECT_EQ(told["filters"][1]["in"], 1);
-    EXPECT_EQ(told["filters"][1]["out"], 0);
+    EXPECT_EQ(told["filters"][2]["name"], "oriented boxes");
+    EXPECT_EQ(told["filters"][3]["name"], "exact object");
+    EXPECT_EQ(told["filters"][3]["in"], told["filters"][2]["out"]);
+    EXPECT_EQ(told["filters"][3]["out"], 0);
     const std::string summary = run("detect t.obj --output p.npy").err;
-    EXPECT_NE(summary.find("pairs       1\ncandidates  2\nfilter      exact object: 1 of 2 in "), std::string::npos)
+    EXPECT_NE(summary.find("pairs       1\ncandidates  2\nfilter      bounding spheres: "), std::string::npos)
         << summary;
+    EXPECT_NE(summary.find("\nfilter      exact object: 1 of "), std::string::npos) << summary;
     EXPECT_FALSE(stats("t.obj --stage pairs").contains("filters"));
+}
+
+TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
+    ASSERT_EQ(run("detect t.obj --margin 1 --quiet --output old.jsonl").status, 0);
+    const Outcome fewer = run("detect t.obj --baseline old.jsonl --output p.csv --stats s.json");
+    ASSERT_EQ(fewer.status, 0);
+    EXPECT_NE(fewer.err.find("\nchanges     0 new, 1 same, 2 gone\n"), std::string::npos) << fewer.err;
+    EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
+    EXPECT_NE(content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,same\n0,1,"), std::string::npos);
+    // What was found is the next baseline, without what was gone.
+    ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
+    ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);
+    EXPECT_EQ(nlohmann::json::parse(content("s.json"))["new"], 1);
+    EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 0);
+    EXPECT_EQ(run("detect t.obj --baseline none.jsonl").status, 4);
+    write_file(file("bad.jsonl"), "{\"a\":0,\"b\":");
+    EXPECT_EQ(run("detect t.obj --baseline bad.jsonl --output r.csv").status, 3);
+    EXPECT_FALSE(std::filesystem::exists(file("r.csv")));
+    for (const std::string with : {"--stage pairs", "--limit 1", "--count-only", "--engine mpi"}) {
+        EXPECT_NE(refusal("t.obj --baseline p.jsonl " + with).find("--baseline: "), std::string::npos) << with;
+    }
+}
+
+TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
+    ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 1").status, 0);
+    const std::string page = content("r.html");
+    EXPECT_NE(page.find("t.obj/through"), std::string::npos);
+    EXPECT_EQ(page.find("http"), page.find("http-equiv"));  // nothing is fetched
+    ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 3").status, 0);
+    EXPECT_EQ(content("r.html"), page);
+    EXPECT_EQ(run("detect t.obj --report none/r.html").status, 4);
+    EXPECT_NE(refusal("t.obj --report r.html --count-only").find("--report: "), std::string::npos);
 }
 
 TEST_F(Stages, ExitStatusIsOfWhatCameOut) {
