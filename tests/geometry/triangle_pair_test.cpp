@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -97,6 +99,23 @@ TEST(PairLook, SaysNothingWrongAndTheSameOfOneAsOfMany) {
         ++seen[looks[i]];
     }
     for (const std::size_t some : seen) EXPECT_GT(some, pairs.size() / 50);
+}
+
+TEST(PairLook, SaysNothingWrongWhereProductsOverflowOrVanish) {
+    std::mt19937 random(11);
+    for (const int exponent : {-1070, -700, -360, -300, 300, 336, 339, 342, 500, 508, 512, 700, 1015}) {
+        for (std::uint32_t i = 0; i < testing::scaled(2000, 20); ++i) {
+            auto [a, b] = some_pair(i % pair_kinds, random);
+            for (Triangle3d* triangle : {&a, &b}) {
+                for (Point3d& corner : *triangle) {
+                    for (double& at : corner) at = std::clamp(std::ldexp(at, exponent), -DBL_MAX, DBL_MAX);
+                }
+            }
+            const std::uint8_t look = look_at(a, b);
+            ASSERT_EQ((look & look_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
+            ASSERT_FALSE((look & look_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
+        }
+    }
 }
 
 /// The same triangles with their corners and axes in another order, turned over, and mirrored.
