@@ -78,6 +78,7 @@ struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
     double margin = 0;      ///< triangles that are not adjacent count up to this distance; finite, >= 0
     bool features = false;  ///< learn contact and depth, and whether insides pass through each other or only touch
+    unsigned threads = 0;   ///< that check triangles when the filter is made; 0: one per core
 };
 
 /// "exact triangle": lets through triangles that meet (closed, no epsilon), or are no further apart than the margin. In a
@@ -85,7 +86,9 @@ struct TriangleOptions {
 std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const TriangleOptions& options = {},
                                              const TriangleSet* second = nullptr);
 
-/// Each triangle's box: float32, rounded outward.
-std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles);
+/// Each triangle's box: float32, rounded outward. On so many threads; 0: one per core.
+std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned threads = 0);
+/// Into the room of as many boxes, such as Engine::allocate_boxes makes.
+void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads = 0);
 
 }  // namespace octopair

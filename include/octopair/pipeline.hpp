@@ -89,6 +89,19 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
+    /// Lets through the pairs of these numbers, which ascend, with what is known of them.
+    void keep_these(std::span<const std::uint32_t> numbers) {
+        if (stop_.stop_requested()) cancel();
+        std::size_t kept = 0;
+        for (const std::uint32_t i : numbers) {
+            pairs_[kept] = pairs_[i];
+            if (!findings_.empty() && kept != i) findings_[kept] = std::move(findings_[i]);
+            ++kept;
+        }
+        pairs_.resize(kept);
+        if (!findings_.empty()) findings_.resize(kept);
+    }
+
     /// For filters that take long over one pair.
     const std::stop_token& stop() const { return stop_; }
 

@@ -4,8 +4,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cfloat>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -67,6 +69,18 @@ template <typename Real>
 bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Entry& out) {
     out = rounding.entry(wide(box), padding);
     return is_box(box) && is_padding(padding);
+}
+
+/// The specification, a triangle at a time.
+bool bound_one(const Triangle3d& triangle, Box3f& box) {
+    bool finite = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double a = triangle[0][axis], b = triangle[1][axis], c = triangle[2][axis];
+        for (const double at : {a, b, c}) finite &= std::abs(at) <= DBL_MAX;
+        box.min[axis] = 0.0f - round_up(-std::min(std::min(a, b), c));
+        box.max[axis] = round_up(std::max(std::max(a, b), c));
+    }
+    return finite;
 }
 
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
@@ -140,7 +154,32 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
                                                    : round_boxes_of<false>(boxes, padding, rounding, out);
 }
 
+bool bound_triangles_simd(std::span<const Triangle3d> triangles, std::span<Box3f> boxes) {
+    if (triangles.empty()) return true;
+    const Doubles d;
+    const hn::FixedTag<float, 4> f;
+    const auto zero = hn::Zero(d);
+    auto zeros = zero;                              // times a number that is not finite, it is none
+    const std::size_t last = triangles.size() - 1;  // not in the loop, which reads and writes a number beyond each
+    for (std::size_t i = 0; i < last; ++i) {
+        const auto a = hn::LoadU(d, triangles[i][0].data());
+        const auto b = hn::LoadU(d, triangles[i][1].data());
+        const auto c = hn::LoadU(d, triangles[i][2].data());
+        zeros = hn::Add(zeros, hn::Add(hn::Mul(a, zero), hn::Add(hn::Mul(b, zero), hn::Mul(c, zero))));
+        const auto low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
+        hn::StoreU(hn::Sub(hn::Zero(f), round_up_simd(hn::Neg(low))), f, boxes[i].min);
+        hn::StoreU(round_up_simd(high), f, boxes[i].max);
+    }
+    return bound_one(triangles[last], boxes[last]) && hn::AllTrue(d, hn::Eq(zeros, zero));
+}
+
 #else
+
+bool bound_triangles_simd(std::span<const Triangle3d> triangles, std::span<Box3f> boxes) {
+    bool finite = true;
+    for (std::size_t i = 0; i < triangles.size(); ++i) finite &= bound_one(triangles[i], boxes[i]);
+    return finite;
+}
 
 template <typename Real>
 bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
@@ -197,6 +236,12 @@ bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, 
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out) {
     return HWY_DYNAMIC_DISPATCH(round_wide_simd)(boxes, padding, rounding, out);
+}
+
+HWY_EXPORT(bound_triangles_simd);
+
+bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes) {
+    return HWY_DYNAMIC_DISPATCH(bound_triangles_simd)(triangles, boxes);
 }
 
 }  // namespace octopair

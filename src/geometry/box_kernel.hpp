@@ -8,6 +8,7 @@
 #include <span>
 
 #include "geometry/entry.hpp"
+#include "octopair/filters.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -87,5 +88,8 @@ bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, 
                  std::span<Entry> out);
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
+
+/// Boxes of as many triangles: the smallest of float32 that hold them. False if not all are finite.
+bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes);
 
 }  // namespace octopair

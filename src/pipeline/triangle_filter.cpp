@@ -2,34 +2,27 @@
 //
 // Pairs are judged first and described afterwards: few of those that come in are left, and only these need findings.
 #include <algorithm>
-#include <bit>
-#include <cfloat>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "geometry/box_kernel.hpp"
 #include "geometry/exact/pair_look.hpp"
 #include "geometry/exact/triangle_contact.hpp"
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
+#include "parallel/team.hpp"
 #include "pipeline/per_object.hpp"
 
 namespace octopair {
 
 namespace {
-
-/// round_up, without a branch or a call.
-float float_above(double value) {
-    const float nearest = float(std::clamp(value, -double(FLT_MAX), double(FLT_MAX))) + 0.0f;
-    // The next float is the next integer, or the one before where floats are below 0.
-    const auto bits = std::bit_cast<std::uint32_t>(nearest);
-    const std::uint32_t step = nearest < 0 ? ~std::uint32_t(0) : 1;
-    return std::bit_cast<float>(bits + (double(nearest) < value && nearest < FLT_MAX ? step : 0)) + 0.0f;
-}
 
 bool is_finite(const Triangle3d& triangle) {
     bool finite = true;
@@ -39,15 +32,28 @@ bool is_finite(const Triangle3d& triangle) {
     return finite;
 }
 
-void check_finite(std::span<const Triangle3d> triangles) {
+/// Calls body(begin, size) for parts of so many triangles.
+template <typename Body>
+void for_each_part(std::size_t triangles, unsigned threads, const Body& body) {
+    constexpr std::size_t part = 1 << 15;
+    Team team(triangles <= part ? 1 : threads);
+    team.for_each((triangles + part - 1) / part,
+                  [&](std::size_t i, unsigned) { body(i * part, std::min(part, triangles - i * part)); });
+}
+
+[[noreturn]] void refuse_not_finite(std::span<const Triangle3d> triangles) {
     const auto wrong = std::find_if_not(triangles.begin(), triangles.end(), is_finite);
-    if (wrong == triangles.end()) return;
     throw Error(ErrorCode::bad_input,
                 "triangle " + std::to_string(wrong - triangles.begin()) + " has a corner that is not finite");
 }
 
-void check(const TriangleSet& set) {
-    check_finite(set.triangles);
+void check(const TriangleSet& set, unsigned threads) {
+    std::atomic<bool> all_finite = true;
+    for_each_part(set.triangles.size(), threads, [&](std::size_t begin, std::size_t size) {
+        const auto part = set.triangles.subspan(begin, size);
+        if (!std::all_of(part.begin(), part.end(), is_finite)) all_finite = false;
+    });
+    if (!all_finite) refuse_not_finite(set.triangles);
     if (!set.owners.empty() && set.owners.size() != set.triangles.size()) {
         throw Error(ErrorCode::bad_input, std::to_string(set.owners.size()) + " owners, but " +
                                               std::to_string(set.triangles.size()) + " triangles");
@@ -91,9 +97,10 @@ public:
 
     void apply(Batch& batch) const override {
         const auto pairs = batch.pairs();
-        for (const Pair& pair : pairs) triangles_.check(pair);
+        check(pairs);
         std::vector<std::uint8_t> looks(pairs.size());
         look_at({triangles_.all_first(), triangles_.all_second(), pairs}, looks);
+        keep_undecided(batch, looks);
         batch.keep_if([&](std::size_t i) { return counts(batch.pairs()[i], looks[i]); });
         batch.keep_if([&](std::size_t i) {
             describe(batch.pairs()[i], batch.finding(i));
@@ -102,6 +109,38 @@ public:
     }
 
 private:
+    /// Pairs one by one only where some number is beyond the end, for the first such to be named.
+    void check(std::span<const Pair> pairs) const {
+        std::uint32_t a = 0, b = 0;
+        for (const Pair& pair : pairs) {
+            a = std::max(a, pair.a);
+            b = std::max(b, pair.b);
+        }
+        if (pairs.empty() || (a < triangles_.all_first().size() && b < triangles_.all_second().size())) return;
+        for (const Pair& pair : pairs) triangles_.check(pair);
+    }
+
+    /// True if a look at triangles of one mesh is enough to leave them out.
+    bool leaves_out(std::uint8_t look) const {
+        if (look == look_apart) return options_.margin == 0;
+        const bool adjacent = !join_ && owners_.empty() && options_.adjacent != AdjacentTriangles::include;
+        return look == (look_apart | look_shared) && adjacent;
+    }
+
+    /// Most pairs end here, by no branch of their own; of the others, the looks move with them.
+    void keep_undecided(Batch& batch, std::vector<std::uint8_t>& looks) const {
+        const std::array<bool, 4> left_out = {leaves_out(0), leaves_out(1), leaves_out(2), leaves_out(3)};
+        std::vector<std::uint32_t> undecided(looks.size());
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < looks.size(); ++i) {
+            const std::uint8_t look = looks[i];
+            undecided[count] = std::uint32_t(i);
+            looks[count] = look;
+            count += left_out[look] ? 0 : 1;
+        }
+        batch.keep_these(std::span(undecided).first(count));
+    }
+
     bool may_be_adjacent(const Pair& pair) const {
         return !join_ && (owners_.empty() || owners_[pair.a] == owners_[pair.b]);
     }
@@ -151,27 +190,30 @@ private:
 
 std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const TriangleOptions& options,
                                              const TriangleSet* second) {
-    check(first);
-    if (second != nullptr) check(*second);
+    check(first, options.threads);
+    if (second != nullptr) check(*second, options.threads);
     if (!(options.margin >= 0 && options.margin <= std::numeric_limits<double>::max())) {
         throw Error(ErrorCode::bad_input, "the margin must be finite and not below 0");
     }
     return std::make_unique<TriangleFilter>(first, options, second);
 }
 
-std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles) {
+std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned threads) {
     std::vector<Box3f> boxes(triangles.size());
-    bool all_finite = true;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const auto& [a, b, c] = triangles[i];
-        all_finite &= is_finite(triangles[i]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            boxes[i].min[axis] = 0.0f - float_above(-std::min(std::min(a[axis], b[axis]), c[axis]));
-            boxes[i].max[axis] = float_above(std::max(std::max(a[axis], b[axis]), c[axis]));
-        }
-    }
-    if (!all_finite) check_finite(triangles);
+    boxes_of(triangles, boxes, threads);
     return boxes;
+}
+
+void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads) {
+    if (boxes.size() != triangles.size()) {
+        throw Error(ErrorCode::bad_input, "room for " + std::to_string(boxes.size()) + " boxes of " +
+                                              std::to_string(triangles.size()) + " triangles");
+    }
+    std::atomic<bool> all_finite = true;
+    for_each_part(triangles.size(), threads, [&](std::size_t begin, std::size_t size) {
+        if (!bound_triangles(triangles.subspan(begin, size), boxes.subspan(begin, size))) all_finite = false;
+    });
+    if (!all_finite) refuse_not_finite(triangles);
 }
 
 }  // namespace octopair

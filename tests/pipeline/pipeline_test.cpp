@@ -166,6 +166,37 @@ TEST(Pipeline, WithoutFiltersIsTheEngine) {
     EXPECT_THROW(pipeline.add(nullptr), Error);
 }
 
+/// Keeps every other pair of a batch, by its numbers.
+class OtherFilter final : public Filter {
+public:
+    std::string_view name() const override { return "others"; }
+    void apply(Batch& batch) const override {
+        std::vector<std::uint32_t> numbers;
+        for (std::uint32_t i = 0; i < batch.pairs().size(); ++i) {
+            if (lot(batch.pairs()[i]) % 2 == 0) numbers.push_back(i);
+        }
+        batch.keep_these(numbers);
+    }
+};
+
+TEST(Pipeline, KeepsPairsByNumberWithWhatIsKnownOfThem) {
+    const auto boxes = samples::make_scene("dense", 20'000, 1);
+    const auto engine = make_local_engine(1);
+    Outcome before, found, expected;
+    Pipeline pipeline(2);
+    pipeline.add(std::make_unique<LotFilter>(3));
+    pipeline.run(*engine, all_of(boxes), into(before));
+    pipeline.add(std::make_unique<OtherFilter>());
+    pipeline.run(*engine, all_of(boxes), into(found));
+    for (std::size_t i = 0; i < before.pairs.size(); ++i) {
+        if (lot(before.pairs[i]) % 2 != 0) continue;
+        expected.pairs.push_back(before.pairs[i]);
+        expected.notes.push_back(before.notes[i]);
+    }
+    EXPECT_FALSE(expected.pairs.empty());
+    EXPECT_TRUE(found == expected);
+}
+
 TEST(Pipeline, BatchesAreNeverEmpty) {
     const auto boxes = samples::make_scene("dense", 5000, 1);
     Pipeline pipeline(2);

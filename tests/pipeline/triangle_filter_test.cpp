@@ -1,9 +1,12 @@
 // Triangles as objects: engine and filter find what all pairs of triangles hold, and say how these meet.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <random>
 
+#include "geometry/box_kernel.hpp"
 #include "geometry/exact/triangle_contact.hpp"
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
@@ -149,6 +152,33 @@ TEST(TriangleFilter, BoxesHoldTheirTriangles) {
     EXPECT_EQ(boxes[0].max[2], std::numeric_limits<float>::max());
 }
 
+TEST(TriangleFilter, BoxesAreTheSmallestOnAnyThreads) {
+    std::mt19937 random(5);
+    std::vector<Triangle3d> triangles(70'001);
+    for (Triangle3d& triangle : triangles) {
+        for (Point3d& corner : triangle) {
+            for (double& at : corner) {
+                const double part = double(random()) / double(random() + 1);
+                at = std::ldexp(random() % 2 == 0 ? part : -part, int(random() % 400) - 200);
+                if (random() % 16 == 0) at = random() % 2 == 0 ? 0.0 : -0.0;
+            }
+        }
+    }
+    for (const unsigned threads : {1U, 2U}) {
+        std::vector<Box3f> boxes(triangles.size());
+        boxes_of(triangles, std::span(boxes), threads);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const auto& [a, b, c] = triangles[i];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const float low = 0.0f - round_up(-std::min({a[axis], b[axis], c[axis]}));
+                const float high = round_up(std::max({a[axis], b[axis], c[axis]}));
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(boxes[i].min[axis]), std::bit_cast<std::uint32_t>(low)) << i;
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(boxes[i].max[axis]), std::bit_cast<std::uint32_t>(high)) << i;
+            }
+        }
+    }
+}
+
 template <typename Call>
 std::string message_of(const Call& call) {
     try {
@@ -168,6 +198,17 @@ TEST(TriangleFilter, NamesWhatIsWrong) {
     options.margin = -1;
     EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}, options); }),
               "the margin must be finite and not below 0");
+    std::vector<Box3f> room(2);
+    EXPECT_EQ(message_of([&] { boxes_of(triangles, std::span(room)); }), "room for 2 boxes of 3 triangles");
+    for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        for (const std::size_t i : {1U, 2U}) {
+            auto some = triangles;
+            some[i][1][2] = wrong;
+            const auto message = "triangle " + std::to_string(i) + " has a corner that is not finite";
+            EXPECT_EQ(message_of([&] { boxes_of(some); }), message);
+            EXPECT_EQ(message_of([&] { make_triangle_filter({some}); }), message);
+        }
+    }
     triangles[2][1][0] = std::nan("");
     EXPECT_EQ(message_of([&] { boxes_of(triangles); }), "triangle 2 has a corner that is not finite");
     EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}); }), "triangle 2 has a corner that is not finite");
