@@ -10,7 +10,12 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
@@ -41,19 +46,34 @@ struct Contender {
     }
 };
 
+/// Triangles by their corners' places, made on several threads in memory that nothing else writes before.
+std::unique_ptr<Triangle3d[]> triangles_of(const shape::Mesh& mesh, unsigned threads) {
+    const std::size_t count = mesh.triangles.size();
+    auto triangles = std::make_unique_for_overwrite<Triangle3d[]>(count);
+    const auto make_part = [&](std::size_t part) {
+        for (std::size_t i = count * part / threads; i < count * (part + 1) / threads; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) triangles[i][k] = mesh.vertices[mesh.triangles[i][k]];
+        }
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t part = 1; part < threads; ++part) others.emplace_back(make_part, part);
+    make_part(0);
+    others.clear();
+    return triangles;
+}
+
 std::vector<Pair> self_intersections(const shape::Mesh& mesh, Engine& engine, unsigned threads) {
-    std::vector<Triangle3d> triangles(mesh.triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) triangles[i][k] = mesh.vertices[mesh.triangles[i][k]];
-    }
-    const auto boxes = boxes_of(triangles);
+    const auto memory = triangles_of(mesh, threads);
+    const std::span<const Triangle3d> triangles(memory.get(), mesh.triangles.size());
+    auto boxes = engine.allocate_boxes(triangles.size());
+    boxes_of(triangles, boxes.boxes(), threads);
     Pipeline pipeline(threads);
-    pipeline.add(make_triangle_filter({triangles}));
+    pipeline.add(make_triangle_filter({triangles}, {.threads = threads}));
     Options options;
     options.order = Order::octal;
     std::vector<Pair> pairs;
     pipeline.run(
-        engine, {std::span(boxes)},
+        engine, {std::span(std::as_const(boxes).boxes())},
         [&](const Batch& batch) { pairs.insert(pairs.end(), batch.pairs().begin(), batch.pairs().end()); }, options);
     return pairs;
 }
