@@ -6,6 +6,9 @@
 // Memory    bounded by the batch: at most Options::buffer_bytes of pairs are held, and what filters learned of a part of
 //           them.
 // Errors    octopair::Error; what a filter or the sink throws ends the call and reaches the caller.
+// Ranks     behind the MPI engine run() is collective, and each rank has what comes out of its own piece: with no limit,
+//           which none can heed alone, and what a filter throws may be thrown on its rank alone. filter(), of a piece that
+//           was found before, asks no other rank.
 // Threads   filters run in the caller's process, on several threads at once, each with its own batch; one pipeline makes
 //           one call at a time. CMake: link octopair::pipeline.
 #pragma once
@@ -168,6 +171,9 @@ public:
                         std::stop_token stop = {});
     PipelineSummary run_between(Engine& engine, const Objects& first, const Objects& second, const CollisionSink& sink,
                                 const Options& options = {}, std::stop_token stop = {});
+    /// Pairs that are there already, in their order; of the options it heeds limit, buffer_bytes and progress.
+    PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options = {},
+                           std::stop_token stop = {});
 
 private:
     struct State;

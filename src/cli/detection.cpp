@@ -1,20 +1,14 @@
 #include "cli/detection.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <memory>
 
 #include "cli/filter_row.hpp"
 #include "cli/found_writer.hpp"
-#include "cli/input_set.hpp"
-#include "cli/join.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/whole_inputs.hpp"
 #include "octopair/error.hpp"
-#ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/shaped_set.hpp"
-#endif
 
 namespace octopair::cli {
 
@@ -47,22 +41,10 @@ public:
 private:
     void read() {
         progress_.show("reading", 0);
-        const io::SceneContent content{request_.mesh_objects, has_filters(request_)};
-        first_ = read_input_set(request_.inputs, content, stop_);
-        if (join()) second_ = read_input_set({request_.against}, content, stop_);
-#ifdef OCTOPAIR_WITH_PIPELINE
-        make_join_boxes(first_, second_);
-#endif
-        const io::LoadedScene &a = first_.scene, &b = second_.scene;
-        const io::FrameCount frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request_);
-        report_.frames = frames.frames;
-        report_.moving = frames.moving;
-        padding_.emplace(request_, SetSizes{a.objects, b.objects}, stop_);
-        if (!request_.padding.empty()) {
-            first_.padding = padding_->inputs();
-            second_.padding = padding_->against();
-        }
-        report_.objects = a.objects + b.objects;
+        inputs_.read(request_, stop_);
+        report_.frames = inputs_.frames.frames;
+        report_.moving = inputs_.frames.moving;
+        report_.objects = first_.total + second_.total;
         report_.crew = crew_of(request_.engine);
         report_.seconds.read = seconds_since(start_);
     }
@@ -136,8 +118,8 @@ private:
     std::stop_token stop_;
     ProgressLine progress_;
     Clock::time_point start_ = Clock::now();
-    InputSet first_, second_;
-    std::optional<Paddings> padding_;
+    WholeInputs inputs_;
+    const InputSet &first_ = inputs_.first, &second_ = inputs_.second;
     std::unique_ptr<FilterRow> row_;  // none: pairs as they are
     DetectReport report_;
 };

@@ -12,6 +12,7 @@ namespace {
 
 /// Filters have as many threads as were asked for, for whatever.
 unsigned filter_threads(const EngineChoice& engine) {
+    if (engine.kind == EngineKind::mpi) return crew_of(engine).threads;
     return engine.threads ? *engine.threads : engine.workers.value_or(0);
 }
 
@@ -33,6 +34,10 @@ public:
         return sets_.second != nullptr
                    ? pipeline_.run_between(engine, first, sets_.second->frame(frame), sink, options, stop_)
                    : pipeline_.run(engine, first, sink, options, stop_);
+    }
+
+    PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) override {
+        return pipeline_.filter(pairs, sink, options, stop_);
     }
 
 private:

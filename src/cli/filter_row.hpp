@@ -24,6 +24,8 @@ public:
     /// An empty sink counts.
     virtual PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                                 const Options& options) = 0;
+    /// The same of pairs that were found before.
+    virtual PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) = 0;
 };
 
 /// Borrows from the sets. Throws what is wrong with rules, and with objects that do not fit their shapes.

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "cli/isolated_read.hpp"
-#include "io/failure.hpp"
 #include "io/npy.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/shaped_set.hpp"
@@ -16,6 +15,14 @@ namespace octopair::cli {
 Objects InputSet::frame(std::uint64_t f) const {
     Objects objects = scene.frame(scene.moving ? f : 0);
     objects.padding = padding;
+    return objects;
+}
+
+Objects InputSet::frame_slice(std::uint64_t f, const SliceNumber& number) const {
+    Objects objects = frame(f);
+    const auto first = std::size_t(number.begin(total)), count = std::size_t(number.end(total)) - first;
+    std::visit([&](auto& boxes) { boxes = boxes.subspan(first, count); }, objects.boxes);
+    if (!objects.padding.empty()) objects.padding = objects.padding.subspan(first, count);
     return objects;
 }
 
@@ -49,7 +56,6 @@ io::LoadedScene read_part(const std::string& path, const io::SceneContent& conte
 class PartFile {
 public:
     PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
-        if (io::is_json_file(path)) io::refuse(path, "ranks read no JSON scenes yet; other engines do");
         if (io::is_npy_file(path)) {
             npy_.emplace(path);
         } else {

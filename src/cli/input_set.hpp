@@ -20,23 +20,6 @@ struct Part {
 
 class ShapedSet;
 
-struct InputSet {
-    io::LoadedScene scene;
-    std::shared_ptr<ShapedSet> shaped;  ///< what became of the scene's shapes, in a program with a pipeline
-    bool moves_meanwhile = false;       ///< some shapes have a place at time 1 as well
-    std::vector<Part> parts;
-    std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
-    std::uint64_t total = 0;               ///< objects of all parts
-    std::span<const double> padding = {};  ///< borrowed; empty, or one an object
-
-    /// The objects of a frame; a set that does not move is the same in every frame.
-    Objects frame(std::uint64_t f) const;
-    /// Names the file and the object of it that is not a box, if there is one.
-    std::optional<std::string> find_fault() const;
-    /// Where it stands: an object, counted on from frame to frame.
-    std::optional<std::uint64_t> fault_position() const;
-};
-
 /// One of so many even parts of a set.
 struct SliceNumber {
     std::uint64_t slice = 0, slices = 1;
@@ -51,12 +34,31 @@ private:
     }
 };
 
+struct InputSet {
+    io::LoadedScene scene;
+    std::shared_ptr<ShapedSet> shaped;  ///< what became of the scene's shapes, in a program with a pipeline
+    bool moves_meanwhile = false;       ///< some shapes have a place at time 1 as well
+    std::vector<Part> parts;
+    std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
+    std::uint64_t total = 0;               ///< objects of all parts
+    std::span<const double> padding = {};  ///< borrowed; empty, or one an object
+
+    /// The objects of a frame; a set that does not move is the same in every frame.
+    Objects frame(std::uint64_t f) const;
+    /// Of a whole set, those of a slice.
+    Objects frame_slice(std::uint64_t f, const SliceNumber& number) const;
+    /// Names the file and the object of it that is not a box, if there is one.
+    std::optional<std::string> find_fault() const;
+    /// Where it stands: an object, counted on from frame to frame.
+    std::optional<std::uint64_t> fault_position() const;
+};
+
 /// Boxes are there, but of triangles that were asked for with what the exact stages need (SceneContent::shapes); where there
 /// is a JSON scene, all are read with shapes. Throws what io::read_scene, io::join_scenes and make_shaped throw.
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 
-/// The objects of a slice of the set; of .npy files no others are read. `names`: whether the scene gets the names of all
+/// The objects of a slice of the set, of any files but JSON scenes; of .npy files no others are read. `names`: whether the scene gets the names of all
 /// objects of the set, or of none.
 struct SliceRequest {
     SliceNumber number;

@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "base/timed.hpp"
-#include "cli/input_set.hpp"
 #include "cli/join.hpp"
 #include "cli/piece_output.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/whole_inputs.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/rank_filters.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -40,7 +43,11 @@ private:
         cluster_.joint([&] { engine_ = make_mpi_engine(MPI_COMM_WORLD, {.threads = report_.crew.threads}); });
         if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
         try {
-            request_.count_only ? count() : find();
+            if (has_filters(request_)) {
+                filter();
+            } else {
+                request_.count_only ? count() : find();
+            }
         } catch (const Error& error) {
             if (error.code() == ErrorCode::bad_input) refuse_faults();
             throw;
@@ -50,24 +57,24 @@ private:
     /// Whether indices need more bits than a Pair has, or are to have them.
     bool wide() const { return request_.wide_indices || report_.objects > std::numeric_limits<std::uint32_t>::max(); }
     bool join() const { return !request_.against.empty(); }
+    /// Whether each rank has all objects: filters ask for any, and the boxes of shapes may depend on all.
+    bool whole() const {
+        return has_filters(request_) || io::is_json_file(request_.against) ||
+               std::any_of(request_.inputs.begin(), request_.inputs.end(), io::is_json_file);
+    }
+    SliceNumber own_slice() const { return {cluster_.rank(), cluster_.ranks()}; }
 
     void read() {
         const Timed timed(report_.seconds.read);
         progress_.show("reading", 0);
-        const SliceRequest slice{{cluster_.rank(), cluster_.ranks()}, cluster_.first()};
-        first_ = read_input_slice(request_.inputs, {request_.mesh_objects}, slice, stop_);
-        if (join()) second_ = read_input_slice({request_.against}, {request_.mesh_objects}, slice, stop_);
-        const io::FrameCount frames = joint_frames({first_.scene.frames, first_.scene.moving},
-                                                   {second_.scene.frames, second_.scene.moving}, request_);
-        report_.frames = frames.frames;
-        report_.moving = frames.moving;
-        padding_.emplace(request_, SetSizes{first_.total, second_.total}, stop_);
-        const auto own = [](std::span<const double> all, const InputSet& set) {
-            return all.empty() ? all : all.subspan(set.begin, set.scene.objects);
-        };
-        first_.padding = own(padding_->inputs(), first_);
-        second_.padding = own(padding_->against(), second_);
+        whole() ? inputs_.read(request_, stop_) : read_slices();
+        report_.frames = inputs_.frames.frames;
+        report_.moving = inputs_.frames.moving;
         report_.objects = first_.total + second_.total;
+        if (has_filters(request_) && wide()) {
+            throw Error(ErrorCode::resource_limit,
+                        std::to_string(report_.objects) + " objects: filters have indices of 32 bits");
+        }
         const bool npy = !request_.output.empty() && io::pair_format(request_.output) == io::PairFormat::npy;
         if (wide() && !npy && !request_.count_only) {
             throw Error(ErrorCode::resource_limit,
@@ -77,8 +84,22 @@ private:
         report_.crew.ranks = cluster_.ranks();
     }
 
+    void read_slices() {
+        const SliceRequest slice{own_slice(), cluster_.first()};
+        first_ = read_input_slice(request_.inputs, {request_.mesh_objects}, slice, stop_);
+        if (join()) second_ = read_input_slice({request_.against}, {request_.mesh_objects}, slice, stop_);
+        inputs_.frames = joint_frames({first_.scene.frames, first_.scene.moving},
+                                      {second_.scene.frames, second_.scene.moving}, request_);
+        inputs_.padding.emplace(request_, SetSizes{first_.total, second_.total}, stop_);
+        const auto own = [](std::span<const double> all, const InputSet& set) {
+            return all.empty() ? all : all.subspan(set.begin, set.scene.objects);
+        };
+        first_.padding = own(inputs_.padding->inputs(), first_);
+        second_.padding = own(inputs_.padding->against(), second_);
+    }
+
     void count() {
-        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search(frame, nullptr);
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) report_.add(search(frame, nullptr), 0);
     }
 
     void find() {
@@ -86,7 +107,7 @@ private:
         const auto output = make_piece_output(request_, cluster_, names, stop_, report_.moving);
         PairList piece;
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
-            search(frame, &piece);
+            report_.add(search(frame, &piece), 0);
             progress_.clear();
             const Timed timed(report_.seconds.write);
             wide() ? output->write(frame, wide_piece_) : output->write(frame, piece);
@@ -95,10 +116,79 @@ private:
         output->finish();
     }
 
-    /// Without a list: counts.
-    void search(std::uint64_t frame, PairList* piece) {
-        const Objects first = first_.frame(frame), second = second_.frame(frame);
-        const Options options = call_options(request_, report_, frame, progress_);
+#ifdef OCTOPAIR_WITH_PIPELINE
+    void filter() {
+        std::unique_ptr<RankFilters> filters;
+        {
+            const Timed timed(report_.seconds.prepare);
+            progress_.show("preparing", 0);
+            filters =
+                std::make_unique<RankFilters>(request_, cluster_, SetPair{first_, join() ? &second_ : nullptr}, stop_);
+        }
+        std::unique_ptr<FoundWriter> writer;  // the first rank's
+        if (!request_.count_only) writer = make_writer();
+        PairList piece;
+        for (std::uint64_t frame = 0; frame < report_.frames; ++frame) {
+            CollisionPiece kept;
+            const Summary found = search(frame, &piece);
+            PipelineSummary summary = filters->run(piece, filter_options(frame), request_.count_only ? nullptr : &kept);
+            summary.search = found;
+            summary.seconds += found.seconds;
+            report_.add(summary, 0);
+            progress_.clear();
+            if (!request_.count_only) write(frame, kept, writer.get());
+        }
+        if (!request_.count_only) finish(writer.get());
+    }
+
+    Options filter_options(std::uint64_t frame) {
+        Options options = call_options(request_, report_, frame, progress_);
+        options.progress = [&](double done) { progress_.show("filtering", done); };
+        return options;
+    }
+
+    std::unique_ptr<FoundWriter> make_writer() {
+        std::unique_ptr<FoundWriter> writer;
+        cluster_.together([&] {
+            if (!cluster_.first()) return;
+            writer = make_found_writer(request_, {first_, join() ? second_ : first_, report_.moving}, stop_);
+        });
+        return writer;
+    }
+
+    void write(std::uint64_t frame, const CollisionPiece& piece, FoundWriter* writer) {
+        const Timed timed(report_.seconds.write);
+        cluster_.together([&] {
+            if (writer != nullptr) writer->begin_frame(frame);
+        });
+        relay(cluster_, piece, writer);
+        cluster_.together([&] {
+            if (writer != nullptr) writer->end_frame();
+        });
+    }
+
+    void finish(FoundWriter* writer) {
+        const Timed timed(report_.seconds.write);
+        cluster_.together([&] {
+            if (writer == nullptr) return;
+            writer->finish();
+            report_.changes = writer->changes();
+        });
+    }
+#else
+    void filter() {}  // a program without filters refuses what needs them
+#endif
+
+    /// Of a frame, or its part that is this rank's.
+    Objects own_objects(const InputSet& set, std::uint64_t frame) const {
+        return whole() ? set.frame_slice(frame, own_slice()) : set.frame(frame);
+    }
+
+    /// Without a list: counts. What filters get knows no limit.
+    Summary search(std::uint64_t frame, PairList* piece) {
+        const Objects first = own_objects(first_, frame), second = own_objects(second_, frame);
+        Options options = call_options(request_, report_, frame, progress_);
+        if (has_filters(request_)) options.limit.reset();
         Summary summary;
         cluster_.joint([&] {
             if (wide()) {
@@ -112,7 +202,7 @@ private:
                                  : engine_->find_pairs(first, *piece, options, stop_);
             }
         });
-        report_.add(summary, 0);
+        return summary;
     }
 
     /// Says again what the engine found wrong with a box, with the file; of several ranks', the first one.
@@ -130,8 +220,8 @@ private:
     Cluster& cluster_;
     std::stop_token stop_;
     ProgressLine progress_;
-    InputSet first_, second_;
-    std::optional<Paddings> padding_;
+    WholeInputs inputs_;  // or slices of these
+    InputSet &first_ = inputs_.first, &second_ = inputs_.second;
     std::unique_ptr<Engine> engine_;
     std::vector<Pair64> wide_piece_;
     DetectReport report_;

@@ -146,7 +146,6 @@ void check_outcome_options(const DetectRequest& request) {
          {std::pair("--baseline", &asked.baseline), std::pair("--report", &asked.report)}) {
         if (value->empty()) continue;
         if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
-        if (request.engine.kind == EngineKind::mpi) refuse(fmt::format("{}: not with --engine mpi", option));
         if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
     }
     if (!asked.baseline.empty() && request.limit)
@@ -161,9 +160,7 @@ void check_pipeline_options(const DetectRequest& request) {
     if (!has_filters(request)) return;
     const std::string asked = asked_of(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");
-    if (request.engine.kind == EngineKind::mpi) {
-        refuse(asked + ": not with --engine mpi, which has --stage pairs alone");
-    }
+    if (request.wide_indices) refuse("--index-type uint64: not with " + asked);
     if (request.events) refuse(asked + ": not with --events");
     if (stage_of(request) == Stage::pairs) return;
     if (const auto input = input_of_boxes(request)) {

@@ -172,6 +172,26 @@ private:
     BlockRow row_;  // the last, so that its helpers end before what they use
 };
 
+/// Some pairs at a time, so that progress is told and what is done is handed out meanwhile. An empty sink counts.
+Summary give(const PairList& pairs, const PairSink& take, const Options& options) {
+    constexpr std::size_t some = 1 << 16;
+    Summary summary;
+    summary.pairs = std::min(pairs.size(), options.limit.value_or(pairs.size()));
+    summary.truncated = summary.pairs < pairs.size();
+    if (!take) return summary;
+    std::uint64_t given = 0;
+    for (std::span<const Pair> chunk : pairs.chunks()) {
+        while (!chunk.empty()) {
+            const auto part = chunk.first(std::min(chunk.size(), some));
+            take(part);
+            chunk = chunk.subspan(part.size());
+            given += part.size();
+            if (options.progress) options.progress(double(given) / double(summary.pairs));
+        }
+    }
+    return summary;
+}
+
 }  // namespace
 
 void Batch::cancel() { throw Error(ErrorCode::cancelled, "cancelled"); }
@@ -253,6 +273,12 @@ PipelineSummary Pipeline::run_between(Engine& engine, const Objects& first, cons
     return state_->run(sink, options, stop, [&](const PairSink& take, const Options& passed) {
         return engine.stream_pairs_between(first, second, take, passed, stop);
     });
+}
+
+PipelineSummary Pipeline::filter(const PairList& pairs, const CollisionSink& sink, const Options& options,
+                                 std::stop_token stop) {
+    return state_->run(sink, options, stop,
+                       [&](const PairSink& take, const Options& passed) { return give(pairs, take, passed); });
 }
 
 }  // namespace octopair

@@ -44,7 +44,7 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "detect a.npy --objects edge",
         "detect a.npy --stage objects",
         "detect a.npy --stage features",
-        "detect a.npy --stage objects --engine mpi",
+        "detect a.obj --stage objects --index-type uint64 --engine mpi --output p.npy",
         "detect a.npy --same-parent maybe",
         "detect a.npy --same-parent exclude --events",
         "detect a.npy --engine mpi --workers 2",

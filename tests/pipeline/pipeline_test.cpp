@@ -197,6 +197,48 @@ TEST(Pipeline, KeepsPairsByNumberWithWhatIsKnownOfThem) {
     EXPECT_TRUE(found == expected);
 }
 
+TEST_P(AnyPipeline, FiltersPairsThatAreThere) {
+    const auto boxes = samples::make_scene("dense", 20'000, 5);
+    PairList pairs;
+    make_local_engine(2)->find_pairs(all_of(boxes), pairs, options());
+    const Outcome expected = expected_of(pairs.to_vector());
+    Pipeline pipeline = two_filters(GetParam().threads);
+    Options asked = options();
+    double last = 0;
+    asked.progress = [&](double done) {
+        EXPECT_GE(done, last);
+        last = done;
+    };
+    Outcome found;
+    const PipelineSummary summary = pipeline.filter(pairs, into(found), asked);
+    EXPECT_TRUE(found == expected);
+    EXPECT_EQ(summary.collisions, expected.pairs.size());
+    EXPECT_FALSE(summary.truncated);
+    EXPECT_EQ(summary.search.pairs, pairs.size());
+    EXPECT_EQ(summary.filters.front().in, pairs.size());
+    EXPECT_EQ(last, 1);
+    asked.limit = 1234;
+    Outcome few;
+    EXPECT_TRUE(pipeline.filter(pairs, into(few), asked).truncated);
+    EXPECT_TRUE(std::ranges::equal(few.pairs, std::span(expected.pairs).first(1234)));
+}
+
+TEST(Pipeline, CountsPairsThatAreThere) {
+    const auto boxes = samples::make_scene("dense", 5000, 1);
+    PairList pairs;
+    EXPECT_EQ(Pipeline(2).filter(pairs, {}).collisions, 0u);
+    make_local_engine(2)->find_pairs(all_of(boxes), pairs);
+    EXPECT_EQ(Pipeline(2).filter(pairs, {}).collisions, pairs.size());
+    const PipelineSummary limited = Pipeline(2).filter(pairs, {}, {.limit = 7});
+    EXPECT_EQ(limited.collisions, 7u);
+    EXPECT_TRUE(limited.truncated);
+    std::stop_source stop;
+    stop.request_stop();
+    Outcome none;
+    EXPECT_THROW(two_filters(2).filter(pairs, into(none), {}, stop.get_token()), Error);
+    EXPECT_TRUE(none.pairs.empty());
+}
+
 TEST(Pipeline, BatchesAreNeverEmpty) {
     const auto boxes = samples::make_scene("dense", 5000, 1);
     Pipeline pipeline(2);

@@ -1,0 +1,135 @@
+#!/usr/bin/env bash
+# `octopair detect --engine mpi` with filters behind the pairs gives the files of the local engine, and ends alike on all
+# ranks.
+#
+#     stages.sh PROGRAM MPIRUN
+set -euo pipefail
+program=$1 mpirun=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() { echo "$*" && exit 1; }
+on_ranks() { "$mpirun" -n "$1" "$program" "${@:2}"; }
+
+python3 - << 'END'
+# Shapes of every kind, close to each other, and a mesh that folds through itself.
+import array, json, math, random, struct
+random.seed(7)
+shapes = {
+    "sphere": {"type": "sphere", "radius": 0.5},
+    "box": {"type": "box", "half_extents": [0.5, 0.3, 0.2]},
+    "capsule": {"type": "capsule", "radius": 0.2, "length": 0.8},
+    "cylinder": {"type": "cylinder", "radius": 0.3, "length": 0.7},
+    "cone": {"type": "cone", "radius": 0.4, "length": 0.8},
+    "ellipsoid": {"type": "ellipsoid", "radii": [0.3, 0.4, 0.5]},
+    "hull": {"type": "convex_hull", "points": [[0, 0, 0], [0.6, 0, 0], [0, 0.6, 0], [0, 0, 0.6]]},
+    "mesh": {"type": "mesh", "vertices": [[0, 0, 0], [0.7, 0, 0], [0, 0.7, 0], [0, 0, 0.7]],
+             "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]},
+    "plane": {"type": "plane", "normal": [0.1, 0, 1], "offset": 0.4},
+}
+def place(size):
+    return [random.uniform(0, size) for _ in range(3)]
+def scene(objects, size, **more):
+    kinds = [kind for kind in shapes if kind != "plane"]
+    made = [{"name": f"part {i % 50}", "shape": kinds[i % len(kinds)], "position": place(size),
+             "rotation": [random.uniform(-1, 1) for _ in range(4)], "parent": f"group {i % 9}", **more}
+            for i in range(objects)]
+    for i, one in enumerate(made):
+        if i % 5 == 0: one["padding"] = 0.05
+        if i % 7 == 0: one["mask"] = 2
+    return {"shapes": shapes, "objects": made}
+def dump(name, what):
+    with open(name, "w") as f: json.dump(what, f)
+first = scene(300, 5)
+first["objects"].append({"name": "floor", "shape": "plane"})
+dump("shapes.json", first)
+dump("others.json", scene(120, 5))
+moving = scene(100, 5)
+for one in moving["objects"]: one["end_position"] = place(5)
+dump("moving.json", moving)
+dump("rules.json", {"ignored_pairs": [["part 1", "part 2"]], "exclude": [{"a": "part 1*", "b": "part 3?"}]})
+side = 24
+with open("folds.off", "w") as f:
+    f.write(f"OFF\n{side * side} {2 * (side - 1) ** 2} 0\n")
+    for i in range(side):
+        for k in range(side):
+            f.write(f"{i + 2 * math.sin(k * 1.3)} {k + 2 * math.cos(i * 0.9)} {math.sin(i * 0.7 + k)}\n")
+    for i in range(side - 1):
+        for k in range(side - 1):
+            at = i * side + k
+            f.write(f"3 {at} {at + 1} {at + side}\n3 {at + 1} {at + side + 1} {at + side}\n")
+text = "{'descr': '<f8', 'fortran_order': False, 'shape': (301,), }"
+text += " " * (63 - (10 + len(text)) % 64) + "\n"
+with open("padding.npy", "wb") as f:
+    f.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text.encode())
+    f.write(array.array("d", [0.01 * (i % 7) for i in range(301)]).tobytes())
+END
+
+# RANKS NAME ARGUMENTS...: the same file from ranks as from threads, and not an empty one.
+same() {
+    local ranks=$1 name=$2
+    shift 2
+    "$program" detect "$@" --output "local.$name" --quiet
+    on_ranks "$ranks" detect "$@" --engine mpi --output "ranks.$name" --quiet
+    cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
+    [ "$(wc -l < "local.$name")" -gt 2 ] || [ "${name##*.}" = npy ] || fail "nothing to compare for: $*"
+}
+for ranks in 1 2; do same $ranks found.jsonl shapes.json --stage features --margin 0.02; done
+same 3 found.csv shapes.json --stage objects --order octal --padding padding.npy
+same 2 found.npy shapes.json others.json --stage objects
+same 3 found.jsonl shapes.json --against others.json --stage features --max-contacts 2 --exclude rules.json
+same 2 found.csv moving.json --stage objects --same-parent exclude
+same 3 pairs.csv shapes.json --stage pairs
+same 2 pairs.npy shapes.json --stage pairs --exclude rules.json
+same 3 found.jsonl folds.off --objects triangle --stage features --adjacent include
+[ "$("$program" detect others.json --quiet)" = "$(on_ranks 2 detect others.json --engine mpi --quiet)" ] ||
+    fail "another output"
+
+# The limit counts what comes out of filters, whichever rank's; it ends within the first one's, a later one's, or not at all.
+all=$("$program" detect shapes.json --stage features --count-only --quiet)
+[ "$all" = "$(on_ranks 3 detect shapes.json --stage features --engine mpi --count-only --quiet)" ] || fail "another count"
+for limit in 1 $((all / 2)) "$all"; do
+    "$program" detect shapes.json --stage features --limit "$limit" --output local.jsonl --stats local.json --quiet
+    on_ranks 3 detect shapes.json --stage features --limit "$limit" --output ranks.jsonl --stats ranks.json --quiet \
+        --engine mpi
+    cmp local.jsonl ranks.jsonl || fail "another result within the limit of $limit"
+    for key in pairs truncated; do
+        [ "$(grep "^  \"$key\"" local.json)" = "$(grep "^  \"$key\"" ranks.json)" ] || fail "$key, limit $limit"
+    done
+done
+python3 - << 'END'
+# The last ones, where the limit was not in the way: filters count what all ranks did.
+import json
+local, ranks = (json.load(open(name)) for name in ("local.json", "ranks.json"))
+counts = lambda stats: [(f["name"], f["in"], f["out"]) for f in stats["filters"]]
+assert ranks["ranks"] == 3 and len(counts(ranks)) > 1 and local["candidates"] > local["pairs"] > 100
+assert counts(local) == counts(ranks) and local["candidates"] == ranks["candidates"]
+END
+
+# Held against an older result, and on a page.
+head -n 100 local.jsonl > old.jsonl
+against_old() { echo "shapes.json --baseline old.jsonl --output $1.jsonl --report $1.html --stats $1.json --quiet"; }
+"$program" detect $(against_old local)
+on_ranks 2 detect $(against_old ranks) --engine mpi
+cmp local.jsonl ranks.jsonl && cmp local.html ranks.html || fail "another result beside a baseline"
+[ "$(grep '"same"' local.json)" = "$(grep '"same"' ranks.json)" ] || fail "other changes"
+
+# STATUS WORDS ARGUMENTS...: fails with them, said once, and leaves no file.
+refuses() {
+    local status=$1 words=$2 got=0
+    shift 2
+    on_ranks 3 detect "$@" --engine mpi --output no.npy --quiet 2> errors.txt || got=$?
+    [ "$got" = "$status" ] || fail "exit status $got, not $status, for: $*: $(cat errors.txt)"
+    [ "$(grep -c "octopair: .*$words" errors.txt)" = 1 ] || fail "not said once: $words: $(cat errors.txt)"
+    [ ! -e no.npy ] || fail "a file is left by: $*"
+    [ -z "$(find . -name '*.tmp')" ] || fail "a temporary file is left by: $*"
+}
+echo '{"objects": [{"shape": {"type": "sphere", "radius": 1}}, {"shape": {"type": "sphere", "radius": -1}}]}' > bad.json
+echo '{"ignored_pairs": [["part 1", "nobody"]]}' > nobody.json
+refuses 3 'bad.json: .*radius' bad.json
+refuses 3 "nobody.json: .*'nobody'" shapes.json --exclude nobody.json
+on_ranks 2 detect shapes.json --engine mpi --report /nowhere/page.html --output no.csv --quiet 2> errors.txt &&
+    fail "a page is made nowhere"
+[ ! -e no.csv ] || fail "a result without its page"
+echo "ranks filter as threads do"
