@@ -56,6 +56,7 @@ std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options
     summary.collisions = std::min(all, limit);
 
     std::vector<Work> own;
+    own.reserve(summary.filters.size());
     for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.seconds});
     const std::vector<Work> works = cluster_.comm().all_gather(std::span<const Work>(own)).values;
     for (std::size_t i = 0; i < works.size(); ++i) {
