@@ -66,10 +66,14 @@ struct Moment {
     const Geometry::Prepared &geometry_a, &geometry_b;
 };
 
+struct MovingPair {
+    MovingObject a, b;
+};
+
 /// Whether moving objects meet, or else come within reach; as they are at the first such moment. When they meet there is a
 /// gap left, of the search's tolerance, unless they met from the beginning.
-bool judge_moving(const MovingObject& a, const MovingObject& b, double reach, Finding& finding,
-                  const std::stop_token& stop) {
+bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const std::stop_token& stop) {
+    const auto& [a, b] = pair;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto meeting = first_time_within(a, b, 0, stop);
     const auto time = meeting || !(reach > 0) ? meeting : first_time_within(a, b, reach, stop);
@@ -105,11 +109,12 @@ void find_impact(const Moment& moment, std::uint32_t max_contacts, Finding& find
 }
 
 /// Whether a pair counts; what was learned of it so far is replaced, but for the note.
-bool judge(const PosedPairs& objects, const Pair& pair, double margin, Batch& batch, std::size_t i) {
+bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i) {
+    const Pair pair = batch.pairs()[i];
     const double reach = margin + objects.padding(pair);
     Finding found;
     const bool counts = objects.moving()
-                            ? judge_moving(objects.moving_a(pair), objects.moving_b(pair), reach, found, batch.stop())
+                            ? judge_moving({objects.moving_a(pair), objects.moving_b(pair)}, reach, found, batch.stop())
                             : judge_objects(objects.a(pair), objects.b(pair), reach, found);
     if (!counts) return false;
     Finding& finding = batch.finding(i);
@@ -125,7 +130,7 @@ public:
     std::string_view name() const override { return "exact object"; }
 
     void apply(Batch& batch) const override {
-        batch.keep_if([&](std::size_t i) { return judge(objects_, batch.pairs()[i], margin_, batch, i); });
+        batch.keep_if([&](std::size_t i) { return judge(objects_, margin_, batch, i); });
     }
 
 private:
@@ -144,7 +149,7 @@ public:
             const Pair pair = batch.pairs()[i];
             // Where no exact stage came before, this one is both.
             const bool judged = batch.finding(i).collision_class != CollisionClass::unknown;
-            if (!judged && !judge(objects_, pair, options_.margin, batch, i)) return false;
+            if (!judged && !judge(objects_, options_.margin, batch, i)) return false;
             Finding& finding = batch.finding(i);
             if (finding.collision_class == CollisionClass::clearance) return true;
             if (objects_.moving()) {
