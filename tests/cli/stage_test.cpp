@@ -182,7 +182,7 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     write_file(file("bad.jsonl"), "{\"a\":0,\"b\":");
     EXPECT_EQ(run("detect t.obj --baseline bad.jsonl --output r.csv").status, 3);
     EXPECT_FALSE(std::filesystem::exists(file("r.csv")));
-    for (const std::string with : {"--stage pairs", "--limit 1", "--count-only", "--engine mpi"}) {
+    for (const std::string with : {"--stage pairs", "--limit 1", "--count-only"}) {
         EXPECT_NE(refusal("t.obj --baseline p.jsonl " + with).find("--baseline: "), std::string::npos) << with;
     }
 }
