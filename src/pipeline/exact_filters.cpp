@@ -1,4 +1,5 @@
 // The exact stages for objects: "exact object" and "exact feature".
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -84,6 +85,8 @@ bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const 
         finding.collision_class = CollisionClass::collision;
         finding.distance = 0;
     }
+    // Within the search's tolerance.
+    if (finding.collision_class == CollisionClass::clearance) finding.distance = std::min(finding.distance, reach);
     finding.time = *time;
     return true;
 }

@@ -330,6 +330,41 @@ TEST(MovingObjects, BladesTurnIntoWhatTheyReach) {
     }
 }
 
+TEST(MovingObjects, LongWaysBesideEachOtherAreNoImpact) {
+    const shape::Mesh valley = {{{-2000, -2000, 0}, {2000, -2000, 0}, {2000, 2000, 0}, {-2000, 2000, 0}, {0, 3000, 50}},
+                                {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}}};
+    Scene scene;
+    scene.add(shape::Sphere{1}, make_pose({-1000, 0, 1.5}));
+    scene.add(valley);
+    scene.end_poses = {make_pose({1000, 0, 1.5}), Pose{}};
+    EXPECT_TRUE(find(scene).empty());
+    EXPECT_TRUE(find(scene, {0.49}).empty());
+    EXPECT_EQ(find(scene, {0.51}).size(), 1u);
+
+    // Along a tilted plane, and along a rail, both turned by 45 degrees.
+    Scene plane;
+    plane.add(shape::Sphere{1}, make_pose({-1000, 1000, 0}));
+    plane.add(shape::Plane{{1, 1, 0}, -1.3 * std::sqrt(2.0)});
+    plane.end_poses = {make_pose({1000, -1000, 0}), Pose{}};
+    EXPECT_TRUE(find(plane).empty());
+    const std::array<double, 4> turn = {std::cos(std::acos(-1.0) / 8), 0, 0, std::sin(std::acos(-1.0) / 8)};
+    Scene rail;
+    rail.add(shape::Box{{1, 1, 1}}, make_pose({-70, -70, 0}, turn));
+    rail.add(shape::Box{{100, 1, 1}}, make_pose({-1.43, 1.43, 0}, turn));
+    rail.end_poses = {make_pose({70, 70, 0}, turn), rail.poses[1]};
+    EXPECT_TRUE(find(rail).empty());
+    const Finding beside = collision_of(rail, {0.03});
+    EXPECT_EQ(beside.collision_class, CollisionClass::clearance);
+    EXPECT_NEAR(beside.distance, 1.43 * std::sqrt(2.0) - 2, 1e-6);
+    EXPECT_LE(beside.distance, 0.03);
+
+    Scene descent;
+    descent.add(shape::Sphere{1}, make_pose({0, 0, 2}));
+    descent.add(shape::Plane{{0, 0, 1}, 0});
+    descent.end_poses = {make_pose({10'000, 0, 0}), Pose{}};
+    EXPECT_NEAR(collision_of(descent).time, 0.5, 1e-5);
+}
+
 TEST(MovingObjects, NoMomentIsMissed) {
     Scene scene = mixed_scene(6, 40);
     RandomStream random(6, 2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/shape/object_advance.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -16,12 +17,6 @@ double speed_of_turning(const MovingObject& object) {
     const ShapeBounds& bounds = object.geometry.bounds;
     if (!bounds.bounded) return 0;
     return object.motion.speed(vector::length(bounds.centre) + bounds.radius) - object.motion.speed(0);
-}
-
-/// Two points, one of each, come closer by at most this in the whole time.
-double most_approach(const MovingObject& a, const MovingObject& b) {
-    const double straight = vector::length(vector::minus(way_of(a.motion), way_of(b.motion)));
-    return (straight + speed_of_turning(a) + speed_of_turning(b)) * (1 + 1e-9);
 }
 
 double tolerance_of(const MovingObject& a, const MovingObject& b) {
@@ -40,19 +35,21 @@ double tolerance_of(const MovingObject& a, const MovingObject& b) {
 
 std::optional<double> first_time_within(const MovingObject& a, const MovingObject& b, double reach,
                                         const std::stop_token& stop) {
-    constexpr unsigned patience = 256;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double approach = most_approach(a, b);
+    constexpr unsigned patience = 1 << 14;
+    Passing passing{vector::minus(way_of(a.motion), way_of(b.motion)), speed_of_turning(a) + speed_of_turning(b), reach,
+                    0};
     double tolerance = tolerance_of(a, b), time = 0;
     for (unsigned step = 1; !stop.stop_requested(); ++step) {
         const Pose pose_a = a.motion.at(time), pose_b = b.motion.at(time);
-        const double distance = object_distance({a.geometry, pose_a}, {b.geometry, pose_b}, infinity) - reach;
+        const PosedObject at_a = {a.geometry, pose_a}, at_b = {b.geometry, pose_b};
+        const std::optional<ObjectGap> gap = object_gap(at_a, at_b);
+        if (!gap) return std::nullopt;
         // Exactly met at the beginning is no matter of tolerance.
-        if (distance <= (time == 0 ? 0 : tolerance)) return time;
-        if (!(approach > 0)) return std::nullopt;
-        const double next = time + std::max(distance - tolerance / 2, distance / 2) / approach;
-        if (!(next <= 1)) return std::nullopt;
-        time = next;
+        if (gap->at_least - reach <= (time == 0 ? 0 : tolerance)) return time;
+        passing.keep = tolerance / 2;
+        const double left_time = 1 - time, go_on = safe_time(at_a, at_b, passing, *gap, left_time);
+        if (go_on >= left_time) return std::nullopt;
+        time += go_on;
         if (step % patience == 0) tolerance *= 4;
     }
     return std::nullopt;

@@ -1,9 +1,10 @@
 // When two moving objects first meet: conservative advancement (Mirtich 1996). From where they are, both go on for as long
-// as they cannot possibly meet: their distance over the most that their speeds can add up to.
+// as they cannot possibly meet: their distance over the most that their speeds can add up to; or the gap between two planes
+// that part them over how fast these close, so that two that pass each other take few steps.
 //
 // Never too late: what is said not to meet does not, at any time. Tolerance: two that come closer than a millionth of the
-// smaller one's size are taken to meet. Two that pass each other at little more than that for long would take too many
-// steps; after each 256 the tolerance grows fourfold.
+// smaller one's size are taken to meet. Turning things, and meshes that no plane parts, may pass each other at so small a
+// part of their way that steps never end; after each 16,384 the tolerance grows fourfold.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
 #include "geometry/shape/object_pair.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "geometry/shape/mesh_convex.hpp"
 #include "geometry/shape/mesh_pair.hpp"
 #include "geometry/shape/mesh_plane.hpp"
+#include "geometry/shape/object_kind.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -152,19 +154,6 @@ struct MeshAndPlane {
     static double contained_depth() { return 0; }
 };
 
-PosedMesh mesh_of(const PosedObject& object) { return {*object.geometry.tree, object.pose}; }
-BoxedSolid boxed_solid_of(const PosedObject& object) { return {object.geometry.convex, mesh_of(object)}; }
-PosedConvex solid_of(const PosedObject& object) { return {object.geometry.convex, object.pose}; }
-PosedPlane plane_of(const PosedObject& object) {
-    return posed_plane(std::get<shape::Plane>(object.geometry.shape), object.pose);
-}
-
-enum class Kind : std::uint8_t { mesh, solid, plane };
-Kind kind_of(const PosedObject& object) {
-    if (std::holds_alternative<shape::Mesh>(object.geometry.shape)) return Kind::mesh;
-    return object.geometry.convex.exists() ? Kind::solid : Kind::plane;
-}
-
 /// Calls judge(pair) with the two as one of the kinds above, `first` being of no later kind than `second`. Planes are
 /// apart.
 template <typename Result, typename Judge>
@@ -221,14 +210,18 @@ bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Fin
     return counts;
 }
 
-double object_distance(const PosedObject& a, const PosedObject& b, double most) {
+std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool in_order = kind_of(a) <= kind_of(b);
-    return with_kind(in_order ? a : b, in_order ? b : a, infinity, [&](const auto& pair) {
-        if (pair.meet() || pair.contained()) return 0.0;
-        const auto gap = pair.gap(most);
-        return gap && gap->at_least <= most ? gap->at_least : infinity;
+    using Answer = std::optional<ObjectGap>;
+    Answer gap = with_kind(in_order ? a : b, in_order ? b : a, Answer(), [&](const auto& pair) -> Answer {
+        if (pair.meet() || pair.contained()) return ObjectGap();
+        const std::optional<Distance> found = pair.gap(infinity);
+        if (!found) return std::nullopt;
+        return ObjectGap{found->at_least, found->nearest};
     });
+    if (gap && !in_order) std::swap(gap->nearest[0], gap->nearest[1]);
+    return gap;
 }
 
 void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding) {

@@ -3,7 +3,9 @@
 // What has an inside contains what lies there: a mesh inside a closed mesh meets it, and so does a ball inside one.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "geometry/shape/prepared.hpp"
 #include "octopair/pipeline.hpp"
@@ -19,8 +21,12 @@ struct PosedObject {
 /// and, of clearance, distance and nearest points.
 bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Finding& finding);
 
-/// The distance of two objects that are no further apart than `most`, 0 if they meet; infinite if they are.
-double object_distance(const PosedObject& a, const PosedObject& b, double most);
+struct ObjectGap {
+    double at_least = 0;  ///< the distance, or where it is known no better, what is proven of it; 0 if they meet
+    std::array<Point3d, 2> nearest = {};  ///< of objects that are apart
+};
+/// Nothing where one of them is empty.
+std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b);
 
 /// Of two objects that meet, and whose class is known so far as judge_objects() finds it: sets class, depth and contacts.
 void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding);
