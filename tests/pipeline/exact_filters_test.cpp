@@ -256,6 +256,39 @@ TEST(ExactFilters, SolidsInSolids) {
     EXPECT_EQ(class_of(cube, shape::Plane{{0, 0, 1}, 0.5}, {0, 0, 0}), CollisionClass::penetrating);
 }
 
+TEST(ExactFilters, SolidsInMeshesWithWallsInOnePlane) {
+    const auto finding_of = [](shape::Any a, shape::Any b, const Point3d& place) {
+        Scene scene;
+        scene.add(std::move(a));
+        scene.add(std::move(b), make_pose(place));
+        return collision_of(scene);
+    };
+    const shape::Mesh cube = box_mesh({-4, -4, -4}, {4, 4, 4});
+    for (const shape::Any& solid : {shape::Any(shape::Box{{4, 4, 4}}), shape::Any(shape::Sphere{4}),
+                                    shape::Any(shape::Box{{4, 1, 1}}), shape::Any(shape::Cylinder{1, 8})}) {
+        EXPECT_EQ(finding_of(cube, solid, {0, 0, 0}).collision_class, CollisionClass::penetrating);
+        EXPECT_GT(finding_of(cube, solid, {0, 0, 0}).depth, 0.5);
+    }
+    EXPECT_EQ(finding_of(cube, shape::Box{{1, 1, 1}}, {3, 0, 0}).depth, 2);  // flush with a wall
+    EXPECT_EQ(finding_of(cube, shape::Sphere{1}, {3, 0, 0}).depth, 2);
+    EXPECT_EQ(finding_of(cube, shape::Box{{1, 1, 1}}, {5, 0, 0}).collision_class, CollisionClass::touching);
+    EXPECT_EQ(finding_of(cube, shape::Box{{1, 1, 1}}, {5, 0, 0}).depth, 0);
+    EXPECT_EQ(finding_of(cube, shape::Sphere{1}, {0, 0, 0}).depth, 5);  // contained: out through a wall
+}
+
+TEST(ExactFilters, ContactsLeadOutOfClosedMeshes) {
+    for (const double height : {-0.1, 0.1, 0.2}) {  // of the ball's centre above the lower wall
+        Scene scene;
+        scene.add(box_mesh({-1, -1, 0}, {1, 1, 2}));
+        scene.add(shape::Sphere{0.25}, make_pose({0.25, 0.125, height}));
+        const Finding finding = collision_of(scene);
+        EXPECT_NEAR(finding.depth, height + 0.25, 1e-6);
+        ASSERT_FALSE(finding.contacts.empty());
+        EXPECT_NEAR(finding.contacts[0].normal[2], -1, 1e-6);
+        EXPECT_NEAR(finding.contacts[0].depth, height + 0.25, 1e-6);
+    }
+}
+
 TEST(ExactFilters, NormalsPointFromFirstToSecond) {
     for (const bool mesh_first : {false, true}) {
         Scene scene;

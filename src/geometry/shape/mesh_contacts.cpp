@@ -8,8 +8,8 @@
 
 #include "geometry/exact/orientation.hpp"
 #include "geometry/exact/triangle_contact.hpp"
-#include "geometry/exact/triangle_gap.hpp"
 #include "geometry/shape/mesh_leaves.hpp"
+#include "geometry/shape/mesh_probe.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -17,51 +17,6 @@ namespace octopair {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Point3d middle_of(const Triangle3d& triangle) {
-    Point3d middle;
-    for (int axis = 0; axis < 3; ++axis) {
-        middle[axis] = triangle[0][axis] / 3 + triangle[1][axis] / 3 + triangle[2][axis] / 3;
-    }
-    return middle;
-}
-
-/// A mesh of one point, to be put anywhere.
-class Probe {
-public:
-    Probe() {
-        tree_.vertices.resize(1);
-        tree_.triangles = {{0, 0, 0}};
-        tree_.numbers = {0};
-        tree_.nodes = {{{0, 0, 0}, 0, {0, 0, 0}, 1}};
-    }
-
-    void put(const Point3d& point) { tree_.vertices[0] = tree_.origin = point; }
-
-    /// 0 of a point on the surface.
-    double distance(const PosedMesh& mesh) const {
-        const auto gap = surface_gap({tree_, pose_}, mesh, infinity);
-        return gap ? gap->distance : infinity;
-    }
-
-    /// Whether that is at most so much; much cheaper, where it is less.
-    bool is_within(const PosedMesh& mesh, double reach) const {
-        const Point3d& point = tree_.vertices[0];
-        bool within = false;
-        visit_leaves({tree_, pose_}, mesh, round_up(reach), [&](const MeshNode&, const MeshNode& leaf) {
-            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count && !within; ++i) {
-                const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
-                within = triangle_gap({point, point, point}, triangle).distance <= reach;
-            }
-            return !within;
-        });
-        return within;
-    }
-
-private:
-    MeshTree tree_;
-    Pose pose_;
-};
 
 Box3d world_box(const PosedMesh& mesh) {
     Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};

@@ -11,12 +11,12 @@ namespace octopair {
 
 namespace {
 
-/// Calls tell(number, triangle) for triangles near the solid, until it returns false.
+/// Calls tell(place in the tree, triangle) for triangles near the solid, until it returns false.
 template <typename Tell>
 void visit_near(const PosedMesh& mesh, const BoxedSolid& solid, const Tell& tell) {
     visit_leaves(mesh, solid.box, 0, [&](const MeshNode& leaf, const MeshNode&) {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            if (!tell(mesh.tree.numbers[i], mesh.tree.world_triangle(mesh.pose, i))) return false;
+            if (!tell(i, mesh.tree.world_triangle(mesh.pose, i))) return false;
         }
         return true;
     });
@@ -36,9 +36,9 @@ bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid) {
 }
 
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
-                             const std::function<void(std::uint32_t number, const Triangle3d&)>& tell) {
-    visit_near(mesh, solid, [&](std::uint32_t number, const Triangle3d& triangle) {
-        if (convex_meet(PosedConvex(triangle), posed(solid))) tell(number, triangle);
+                             const std::function<void(std::uint32_t at, const Triangle3d&)>& tell) {
+    visit_near(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
+        if (convex_meet(PosedConvex(triangle), posed(solid))) tell(at, triangle);
         return true;
     });
 }

@@ -11,6 +11,7 @@
 #include "geometry/shape/mesh_convex.hpp"
 #include "geometry/shape/mesh_pair.hpp"
 #include "geometry/shape/mesh_plane.hpp"
+#include "geometry/shape/mesh_solid_contacts.hpp"
 #include "geometry/shape/object_kind.hpp"
 #include "geometry/shape/vector.hpp"
 
@@ -32,8 +33,18 @@ std::optional<Distance> from(const std::optional<ConvexGap>& gap) {
     return Distance{gap->distance, gap->at_least, {gap->on_a, gap->on_b}};
 }
 
-/// A depth of less than this part of the smaller one's size is a touch: what is curved is known no better.
-constexpr double touching_depth = 1e-9;
+/// A depth of at most this is a touch: a part of the smaller one's size, as what is curved is known no better.
+double touch_of(const PosedObject& a, const PosedObject& b) {
+    const auto size = [](const PosedObject& object) {
+        const ShapeBounds& bounds = object.geometry.bounds;
+        return bounds.bounded ? bounds.radius : std::numeric_limits<double>::infinity();
+    };
+    const auto curved = [](const PosedObject& object) {
+        const ConvexSolid& solid = object.geometry.convex;
+        return solid.radius > 0 || (solid.core != ConvexSolid::Core::points && solid.core != ConvexSolid::Core::box);
+    };
+    return std::min(size(a), size(b)) * (curved(a) || curved(b) ? 1e-9 : 1e-12);
+}
 
 Contact from(const ConvexContact& contact) { return {contact.point, contact.normal, contact.depth}; }
 
@@ -44,8 +55,11 @@ void set_contact(const Contact& contact, std::uint32_t max_contacts, Finding& fi
     if (max_contacts > 0) finding.contacts = {contact};
 }
 
-CollisionClass class_of(double depth, double size) {
-    return depth > touching_depth * size ? CollisionClass::penetrating : CollisionClass::touching;
+/// By the depth, which of those that touch is none.
+void set_class(double touch, Finding& finding) {
+    const bool touches = finding.depth <= touch;
+    finding.collision_class = touches ? CollisionClass::touching : CollisionClass::penetrating;
+    if (touches) finding.depth = 0;
 }
 
 // The kinds of pairs: each says whether the two meet, whether one contains the other, how far apart they are, and how they
@@ -65,7 +79,7 @@ struct TwoMeshes {
 
 struct TwoSolids {
     PosedConvex a, b;
-    double size;
+    double touch;
 
     bool meet() const { return convex_meet(a, b) && !contained(); }
     bool contained() const { return convex_holds(a, b) || convex_holds(b, a); }
@@ -73,7 +87,7 @@ struct TwoSolids {
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         const ConvexContact contact = convex_contact(a, b);
         set_contact(from(contact), max_contacts, finding);
-        finding.collision_class = class_of(contact.depth, size);
+        set_class(touch, finding);
     }
     double contained_depth() const { return convex_contact(a, b).depth; }
 };
@@ -81,37 +95,24 @@ struct TwoSolids {
 struct MeshAndSolid {
     PosedMesh mesh;
     BoxedSolid solid;
-    double size;
+    double touch;
 
     bool meet() const { return surface_meets(mesh, solid) && !holds_mesh(solid, mesh); }
     bool contained() const { return encloses_solid(mesh, solid) || holds_mesh(solid, mesh); }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
-        visit_meeting_triangles(mesh, solid, [&](std::uint32_t number, const Triangle3d& triangle) {
-            Contact contact = from(convex_contact(PosedConvex(triangle), {solid.solid, solid.box.pose}));
-            contact.feature_a = number;
-            finding.depth = std::max(finding.depth, contact.depth);
-            finding.contacts.push_back(contact);
-        });
-        finding.collision_class = class_of(finding.depth, size);
-        auto& contacts = finding.contacts;
-        std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
-            return a.depth != b.depth ? a.depth > b.depth : a.feature_a < b.feature_a;
-        });
-        finding.more_contacts = contacts.size() > max_contacts;
-        if (finding.more_contacts) contacts.resize(max_contacts);
+        find_mesh_solid_contacts(mesh, solid, touch, finding);
+        set_class(touch, finding);
+        finding.more_contacts = finding.contacts.size() > max_contacts;
+        if (finding.more_contacts) finding.contacts.resize(max_contacts);
     }
-    /// Of the nearest way out for what is inside, as far as corners and a point of the solid tell.
-    double contained_depth() const {
-        const auto gap = surface_gap(mesh, solid, std::numeric_limits<double>::infinity());
-        return gap ? gap->distance : 0;
-    }
+    double contained_depth() const { return depth_of_mesh_and_solid(mesh, solid); }
 };
 
 struct SolidAndPlane {
     PosedConvex solid;
     PosedPlane plane;
-    double size;
+    double touch;
 
     PlaneSpan span() const { return span_across(plane, solid); }
     bool meet() const { return meets(span()); }
@@ -123,7 +124,7 @@ struct SolidAndPlane {
     }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         set_plane_contact(plane, span(), max_contacts, finding);
-        finding.collision_class = class_of(finding.depth, size);
+        set_class(touch, finding);
     }
     static double contained_depth() { return 0; }
 
@@ -138,7 +139,7 @@ struct SolidAndPlane {
 struct MeshAndPlane {
     PosedMesh mesh;
     PosedPlane plane;
-    double size;
+    double touch;
 
     bool meet() const { return surface_meets(mesh, plane); }
     static bool contained() { return false; }
@@ -149,7 +150,7 @@ struct MeshAndPlane {
     }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), max_contacts, finding);
-        finding.collision_class = class_of(finding.depth, size);
+        set_class(touch, finding);
     }
     static double contained_depth() { return 0; }
 };
@@ -158,13 +159,13 @@ struct MeshAndPlane {
 /// apart.
 template <typename Result, typename Judge>
 Result with_kind(const PosedObject& first, const PosedObject& second, Result of_planes, const Judge& judge) {
-    const double size = std::min(first.geometry.bounds.radius, second.geometry.bounds.radius);
+    const double touch = touch_of(first, second);
     const Kind a = kind_of(first), b = kind_of(second);
     if (a == Kind::mesh && b == Kind::mesh) return judge(TwoMeshes{mesh_of(first), mesh_of(second)});
-    if (a == Kind::mesh && b == Kind::solid) return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), size});
-    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), first.geometry.bounds.radius});
-    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), size});
-    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), first.geometry.bounds.radius});
+    if (a == Kind::mesh && b == Kind::solid) return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), touch});
+    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), touch});
+    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), touch});
+    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), touch});
     return of_planes;
 }
 

@@ -1,0 +1,107 @@
+#include "geometry/shape/mesh_solid_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "geometry/exact/orientation.hpp"
+#include "geometry/shape/convex_plane.hpp"
+#include "geometry/shape/mesh_probe.hpp"
+#include "geometry/shape/vector.hpp"
+
+namespace octopair {
+
+namespace {
+
+PosedConvex posed(const BoxedSolid& solid) { return {solid.solid, solid.box.pose}; }
+
+/// Its middle, and what is outermost along the axes and between them; of the core.
+std::vector<Point3d> places_of(const BoxedSolid& solid) {
+    std::vector<Point3d> places;
+    Point3d middle = {};
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                const int along = std::abs(x) + std::abs(y) + std::abs(z);
+                if (along != 1 && along != 3) continue;
+                const Point3d direction = {double(x), double(y), double(z)};
+                places.push_back(vector::posed(solid.box.pose, support(solid.solid, direction)));
+                middle = vector::plus(middle, vector::times(places.back(), 1.0 / 14));
+            }
+        }
+    }
+    places.push_back(middle);
+    return places;
+}
+
+double deepest_in_mesh(const PosedMesh& mesh, const BoxedSolid& solid) {
+    Probe probe;
+    double deepest = 0;
+    for (const Point3d& place : places_of(solid)) {
+        probe.put(place);
+        if (probe.is_within(mesh, 0) || !encloses(mesh, place)) continue;
+        deepest = std::max(deepest, probe.distance(mesh) + solid.solid.radius);
+    }
+    return deepest;
+}
+
+/// Of very many places not all are looked at.
+double deepest_in_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
+    constexpr std::size_t most_triangles = 1024;
+    const std::size_t step = mesh.tree.triangles.size() / most_triangles + 1;
+    double deepest = 0;
+    const auto look_at = [&](const Point3d& place) {
+        const PosedConvex point(place);
+        if (convex_meet(point, posed(solid))) deepest = std::max(deepest, convex_contact(point, posed(solid)).depth);
+    };
+    for (std::size_t i = 0; i < mesh.tree.triangles.size(); i += step) {
+        const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, std::uint32_t(i));
+        look_at(triangle[0]);  // the others are the first ones of neighbours
+        look_at(middle_of(triangle));
+    }
+    return deepest;
+}
+
+/// Of length 1, or 0 of a degenerate one; counterclockwise from outside, unless the pose mirrors.
+Point3d outward_of(const Triangle3d& triangle, const Pose& pose) {
+    const Point3d normal =
+        vector::cross(vector::minus(triangle[1], triangle[0]), vector::minus(triangle[2], triangle[0]));
+    const double length = vector::length(normal);
+    if (!(length > 0)) return {};
+    const bool mirrored = plane_side({}, vector::column(pose, 0), vector::column(pose, 1), vector::column(pose, 2)) < 0;
+    return vector::times(normal, (mirrored ? -1 : 1) / length);
+}
+
+/// A way out that leads into the mesh is none: then it is the one along the triangle's own side.
+void lead_out(const Triangle3d& triangle, const Point3d& outward, const BoxedSolid& solid, Contact& contact) {
+    if (vector::dot(contact.normal, outward) >= 0) return;
+    contact.normal = outward;
+    contact.depth = std::max(0.0, -span_across(PosedPlane{outward, triangle[0]}, posed(solid)).low);
+}
+
+}  // namespace
+
+double depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
+    const double in_solid = deepest_in_solid(mesh, solid);
+    return mesh.tree.parts.any_closed ? std::max(in_solid, deepest_in_mesh(mesh, solid)) : in_solid;
+}
+
+void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, double touch, Finding& finding) {
+    double deepest = 0;
+    visit_meeting_triangles(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
+        const bool oriented = mesh.tree.parts.sides[at] == MeshParts::Side::oriented;
+        const Point3d outward = oriented ? outward_of(triangle, mesh.pose) : Point3d{};
+        const ConvexContact least = convex_contact(PosedConvex(triangle), posed(solid));
+        Contact contact = {least.point, least.normal, least.depth, mesh.tree.numbers[at]};
+        deepest = std::max(deepest, least.depth);
+        if (least.depth > touch) lead_out(triangle, outward, solid, contact);
+        finding.contacts.push_back(contact);
+    });
+    const double inside = mesh.tree.parts.any_closed ? depth_of_mesh_and_solid(mesh, solid) : 0;
+    finding.depth = std::max(inside, deepest);
+    std::sort(finding.contacts.begin(), finding.contacts.end(), [](const Contact& a, const Contact& b) {
+        return a.depth != b.depth ? a.depth > b.depth : a.feature_a < b.feature_a;
+    });
+}
+
+}  // namespace octopair
