@@ -65,6 +65,7 @@ std::vector<Collision> find(const Scene& scene, const ExactOptions& options = {}
 
 std::vector<Pair> pairs_of(const std::vector<Collision>& collisions) {
     std::vector<Pair> pairs;
+    pairs.reserve(collisions.size());
     for (const Collision& collision : collisions) pairs.push_back(collision.pair);
     return pairs;
 }

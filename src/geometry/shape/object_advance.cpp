@@ -93,8 +93,8 @@ double time_beside_plane(const PlaneSpan& span, const PosedPlane& plane, const P
 }
 
 /// The kinds of both ascending.
-double time_in_order(const PosedObject& a, const PosedObject& b, const Passing& passing, const ObjectGap& gap,
-                     double most) {
+double time_in_order(const ObjectsApart& pair, const Passing& passing, double most) {
+    const auto& [a, b, gap] = pair;
     const Kind kind_a = kind_of(a), kind_b = kind_of(b);
     if (kind_b == Kind::plane) {
         const PosedPlane plane = plane_of(b);
@@ -108,14 +108,14 @@ double time_in_order(const PosedObject& a, const PosedObject& b, const Passing& 
 
 }  // namespace
 
-double safe_time(const PosedObject& a, const PosedObject& b, const Passing& passing, const ObjectGap& gap,
-                 double most) {
+double safe_time(const ObjectsApart& pair, const Passing& passing, double most) {
+    const auto& [a, b, gap] = pair;
     const double anyhow = passing.time_for(gap.at_least, passing.fastest());
     if (!(anyhow < most)) return most;
     const bool in_order = kind_of(a) <= kind_of(b);
     const ObjectGap other = {gap.at_least, {gap.nearest[1], gap.nearest[0]}};
     const double time =
-        in_order ? time_in_order(a, b, passing, gap, most) : time_in_order(b, a, turned_round(passing), other, most);
+        in_order ? time_in_order(pair, passing, most) : time_in_order({b, a, other}, turned_round(passing), most);
     return std::min(std::max(anyhow, time), most);
 }
 

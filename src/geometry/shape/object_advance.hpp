@@ -29,7 +29,13 @@ struct Passing {
     }
 };
 
-/// At most `most`. `gap` is theirs as they are now, and more than the reach.
-double safe_time(const PosedObject& a, const PosedObject& b, const Passing& passing, const ObjectGap& gap, double most);
+/// Two objects, as they are now, and the gap between them; borrowed.
+struct ObjectsApart {
+    const PosedObject &a, &b;
+    const ObjectGap& gap;
+};
+
+/// At most `most`. The gap must be more than the reach.
+double safe_time(const ObjectsApart& pair, const Passing& passing, double most);
 
 }  // namespace octopair

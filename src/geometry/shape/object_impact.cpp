@@ -47,7 +47,7 @@ std::optional<double> first_time_within(const MovingObject& a, const MovingObjec
         // Exactly met at the beginning is no matter of tolerance.
         if (gap->at_least - reach <= (time == 0 ? 0 : tolerance)) return time;
         passing.keep = tolerance / 2;
-        const double left_time = 1 - time, go_on = safe_time(at_a, at_b, passing, *gap, left_time);
+        const double left_time = 1 - time, go_on = safe_time({at_a, at_b, *gap}, passing, left_time);
         if (go_on >= left_time) return std::nullopt;
         time += go_on;
         if (step % patience == 0) tolerance *= 4;
