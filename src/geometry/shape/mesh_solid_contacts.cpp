@@ -15,10 +15,18 @@ namespace {
 
 PosedConvex posed(const BoxedSolid& solid) { return {solid.solid, solid.box.pose}; }
 
+/// A place of the core that is deep in it: the mean of its points, or the origin of its space.
+Point3d deep_place_of(const ConvexSolid& solid) {
+    Point3d middle = {};
+    for (const Point3d& point : solid.points) {
+        middle = vector::plus(middle, vector::times(point, 1 / double(solid.points.size())));
+    }
+    return middle;
+}
+
 /// Its middle, and what is outermost along the axes and between them; of the core.
 std::vector<Point3d> places_of(const BoxedSolid& solid) {
-    std::vector<Point3d> places;
-    Point3d middle = {};
+    std::vector<Point3d> places = {vector::posed(solid.box.pose, deep_place_of(solid.solid))};
     for (int x = -1; x <= 1; ++x) {
         for (int y = -1; y <= 1; ++y) {
             for (int z = -1; z <= 1; ++z) {
@@ -26,11 +34,9 @@ std::vector<Point3d> places_of(const BoxedSolid& solid) {
                 if (along != 1 && along != 3) continue;
                 const Point3d direction = {double(x), double(y), double(z)};
                 places.push_back(vector::posed(solid.box.pose, support(solid.solid, direction)));
-                middle = vector::plus(middle, vector::times(places.back(), 1.0 / 14));
             }
         }
     }
-    places.push_back(middle);
     return places;
 }
 
