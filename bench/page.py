@@ -356,6 +356,34 @@ def cluster(results):
     return measured_on(study["machine"]) + "\n".join(lines)
 
 
+def median(numbers):
+    return sorted(numbers)[len(numbers) // 2]
+
+
+def exact_objects(results):
+    """Instances of a mesh, beside FCL."""
+    first = load(results / "exact_objects_1.json")
+    rows = [(f"octopair, {study['threads']} thread{'s' if study['threads'] > 1 else ''}",
+             median(study["octopair_seconds"]), median(study["fcl_seconds"]))
+            for study in map(load, sorted(results.glob("exact_objects_*.json")))]
+    lines = [f"| {first['objects']:,} objects of {first['triangles']:,} triangles, {first['collisions']:,} collisions | "
+             "milliseconds | FCL, one thread, in the same turns | FCL / octopair |", "|---|--:|--:|--:|"]
+    lines += [f"| {name} | {ours * 1e3:,.0f} | {theirs * 1e3:,.0f} | {theirs / ours:.1f} |"
+              for name, ours, theirs in rows]
+    return measured_on(first["machine"]) + "\n".join(lines)
+
+
+def self_intersections(results):
+    """Triangles of one mesh, beside CGAL."""
+    study = load(results / "self_intersections.json")
+    ours = study["contenders"][0]["median_seconds"]
+    lines = [f"| {study['triangles']:,} triangles, {study['pairs']:,} pairs that meet, {study['threads']} threads | "
+             "milliseconds | / octopair |", "|---|--:|--:|"]
+    lines += [f"| {row['name']}{'' if row['agrees'] else ' (finds other pairs)'} | {row['median_seconds'] * 1e3:,.0f} | "
+              f"{row['median_seconds'] / ours:.1f} |" for row in study["contenders"]]
+    return measured_on(study["machine"]) + "\n".join(lines)
+
+
 def model(name):
     """What bench/scaling_model.py makes of it."""
     return lambda results: load(results / "model.json")[name]
@@ -364,7 +392,8 @@ def model(name):
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
           "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
-          "service_crowds": service_crowds, "service_aims": service_aims, "scaling": scaling,
+          "service_crowds": service_crowds, "service_aims": service_aims,
+          "exact_objects": exact_objects, "self_intersections": self_intersections, "scaling": scaling,
           "scaling_aims": scaling_aims, "cluster": cluster, "model": model("model"),
           "model_check": model("model_check"), "model_far": model("model_far")}
 for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):

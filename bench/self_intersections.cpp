@@ -1,6 +1,6 @@
 // Self-intersections of a closed mesh: the pipeline, from vertices to pairs, beside CGAL's self_intersections.
 //
-//     octopair_self_intersections [--triangles N] [--threads K] [--rounds N] [--seed S]
+//     octopair_self_intersections [--triangles N] [--threads K] [--rounds N] [--seed S] [--json FILE]
 //
 // All take turns, round by round; the first round is not counted. Ours starts from vertices and triangles, as a user does:
 // triangles' places and boxes are in its time. Pairs other than ours make the exit status 1.
@@ -11,12 +11,15 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "io/atomic_file.hpp"
+#include "machine/machine.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
 #include "self_intersections/cgal.hpp"
@@ -31,6 +34,7 @@ struct Request {
     std::uint32_t seed = 1;
     unsigned threads = 2;
     unsigned rounds = 5;
+    std::string json;
 };
 
 struct Contender {
@@ -92,6 +96,21 @@ void sort_pairs(std::vector<Pair>& pairs) {
     std::sort(pairs.begin(), pairs.end());
 }
 
+nlohmann::ordered_json results_json(const Request& request, const std::vector<Contender>& contenders) {
+    auto rows = nlohmann::ordered_json::array();
+    for (const Contender& contender : contenders) {
+        rows.push_back({{"name", contender.name},
+                        {"median_seconds", contender.median()},
+                        {"seconds", contender.seconds},
+                        {"agrees", contender.pairs == contenders.front().pairs}});
+    }
+    return {{"machine", bench::machine_json()},
+            {"triangles", request.triangles},
+            {"threads", request.threads},
+            {"pairs", contenders.front().pairs.size()},
+            {"contenders", rows}};
+}
+
 int compare(const Request& request) {
     const shape::Mesh mesh = bench::make_surface(request.triangles, request.seed);
     const auto engine = make_local_engine(request.threads);
@@ -114,6 +133,11 @@ int compare(const Request& request) {
                    contender.median() / ours.median(),
                    agrees ? "" : fmt::format("  DIFFERS: {} pairs", contender.pairs.size()));
     }
+    if (!request.json.empty()) {
+        io::AtomicFile file(request.json);
+        file.write(results_json(request, contenders).dump(2) + '\n');
+        file.commit();
+    }
     return all_agree ? 0 : 1;
 }
 
@@ -126,6 +150,7 @@ int main(int argc, char** argv) {
     app.add_option("--threads", request.threads)->check(CLI::Range(1, 1024));
     app.add_option("--rounds", request.rounds)->check(CLI::Range(1, 1000));
     app.add_option("--seed", request.seed);
+    app.add_option("--json", request.json, "where the numbers go as JSON");
     CLI11_PARSE(app, argc, argv);
     return compare(request);
 }
