@@ -27,7 +27,7 @@ std::unique_ptr<Filter> make_group_filter(const GroupMasks& first, const std::op
 std::unique_ptr<Filter> make_ignored_pairs_filter(std::vector<Pair> ignored, bool join = false);
 
 /// Two patterns: a pair is left out if one name fits one and the other name the other. `*` stands for any characters,
-/// `?` for one.
+/// `?` for one; an empty name is none, and fits nothing.
 struct NameRule {
     std::string a, b;
 };

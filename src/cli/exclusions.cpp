@@ -20,11 +20,13 @@ namespace {
 
 using Names = std::span<const std::string>;
 
-/// Which objects have a name; several may have the same.
+/// Which objects have a name; several may have the same, and those that have none are not here.
 class NameTable {
 public:
     explicit NameTable(Names names) {
-        for (std::uint32_t i = 0; i < names.size(); ++i) objects_[names[i]].push_back(i);
+        for (std::uint32_t i = 0; i < names.size(); ++i) {
+            if (!names[i].empty()) objects_[names[i]].push_back(i);
+        }
     }
     std::span<const std::uint32_t> of(std::string_view name) const {
         const auto found = objects_.find(name);

@@ -148,6 +148,9 @@ void check_outcome_options(const DetectRequest& request) {
         if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
         if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
     }
+    if (!asked.report.empty() && !asked.report.ends_with(".html") && !asked.report.ends_with(".htm")) {
+        refuse(fmt::format("--report: {}: a page ends in .html", asked.report));
+    }
     if (!asked.baseline.empty() && request.limit)
         refuse("--baseline: not with --limit, which leaves out what may be new");
 }

@@ -85,7 +85,7 @@ private:
     std::uint32_t of(const std::string& name) {
         Kind kind;
         for (const auto& [pattern, rules] : patterns_) {
-            if (!fits(name, pattern)) continue;
+            if (name.empty() || !fits(name, pattern)) continue;
             kind.as_a.insert(kind.as_a.end(), rules.as_a.begin(), rules.as_a.end());
             kind.as_b.insert(kind.as_b.end(), rules.as_b.begin(), rules.as_b.end());
         }

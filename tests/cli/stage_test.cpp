@@ -195,6 +195,7 @@ TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
     ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 3").status, 0);
     EXPECT_EQ(content("r.html"), page);
     EXPECT_EQ(run("detect t.obj --report none/r.html").status, 4);
+    EXPECT_NE(refusal("t.obj --report r.txt").find("--report: r.txt: "), std::string::npos);
     EXPECT_NE(refusal("t.obj --report r.html --count-only").find("--report: "), std::string::npos);
 }
 

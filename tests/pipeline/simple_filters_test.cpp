@@ -126,10 +126,10 @@ TEST_P(SimpleFilters, NameRulesLeaveOutEitherWayRound) {
             names_a, rules, join() ? std::optional<std::span<const std::string>>(names_b) : std::nullopt);
         EXPECT_EQ(through(*filter, join()), kept(join(), [&](Pair pair) {
                       const std::string &a = names_a[pair.a], &b = names_b[pair.b];
-                      return std::ranges::none_of(rules, [&](const NameRule& rule) {
-                          return (fits_plainly(a, rule.a) && fits_plainly(b, rule.b)) ||
-                                 (fits_plainly(a, rule.b) && fits_plainly(b, rule.a));
-                      });
+                      return a.empty() || b.empty() || std::ranges::none_of(rules, [&](const NameRule& rule) {
+                                 return (fits_plainly(a, rule.a) && fits_plainly(b, rule.b)) ||
+                                        (fits_plainly(a, rule.b) && fits_plainly(b, rule.a));
+                             });
                   }));
     }
 }
