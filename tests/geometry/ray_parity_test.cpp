@@ -63,7 +63,7 @@ TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
         }
         ++(around % 2 != 0 ? inside : outside);
     }
-    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GT(some, testing::scaled(10, 20));
+    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GE(some, testing::scaled(10, 20));
 }
 
 TEST(RayParity, GoesOneWayAndCountsBothSides) {
@@ -87,7 +87,7 @@ TEST(PointOnTriangle, IsThatOfRationalNumbers) {
             << ::testing::PrintToString(triangle) << ::testing::PrintToString(place);
         on += unsigned(expected);
     }
-    EXPECT_GT(on, testing::scaled(60, 10));
+    EXPECT_GT(on, testing::scaled(30, 10));
 }
 
 }  // namespace
