@@ -134,13 +134,18 @@ TEST_P(AnyPipeline, TellsItsProgress) {
     const auto boxes = samples::make_scene("dense", 20'000, 1);
     Options asked = options();
     std::vector<double> told;
-    asked.progress = [&](double done) { told.push_back(done); };
-    Outcome found;
+    std::mutex telling;  // which may be on another thread than the sink
+    asked.progress = [&](double done) {
+        const std::lock_guard lock(telling);
+        told.push_back(done);
+    };
     bool ended_early = false;
+    const CollisionSink sink = [&](const Batch&) {
+        const std::lock_guard lock(telling);
+        ended_early |= !told.empty() && told.back() >= 1;
+    };
     Pipeline pipeline = two_filters(GetParam().threads);
-    pipeline.run(
-        *make_local_engine(2), all_of(boxes), [&](const Batch&) { ended_early |= !told.empty() && told.back() >= 1; },
-        asked);
+    pipeline.run(*make_local_engine(2), all_of(boxes), sink, asked);
     EXPECT_FALSE(ended_early);
     EXPECT_TRUE(std::ranges::is_sorted(told));
     ASSERT_FALSE(told.empty());
