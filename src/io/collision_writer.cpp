@@ -64,39 +64,6 @@ private:
         if (!names.owners.empty()) append(fmt::format("{}_triangle", side), std::to_string(names.triangle(object)));
     }
 
-    static std::string point_text(const Point3d& point) {
-        return json_number(point[0]) + ' ' + json_number(point[1]) + ' ' + json_number(point[2]);
-    }
-
-    /// Of contacts, or the nearest ones.
-    std::string points(const Finding& finding) const {
-        std::string text;
-        const auto add = [&](const Point3d& point) { text += (text.empty() ? "" : ";") + point_text(point); };
-        if (finding.collision_class == CollisionClass::clearance) {
-            for (const Point3d& point : finding.nearest) add(point);
-        } else if (form_.features) {
-            for (const Contact& contact : finding.contacts) add(contact.point);
-        }
-        return text;
-    }
-
-    static std::string old_points(const nlohmann::json& row) {
-        std::string text;
-        const auto add = [&](const nlohmann::json& point) {
-            if (!point.is_array() || point.size() != 3) return;
-            for (const auto& number : point) {
-                if (!number.is_number()) return;
-            }
-            text += (text.empty() ? "" : ";") + point_text(point.get<Point3d>());
-        };
-        for (const char* key : {"nearest", "contacts"}) {
-            const auto list = row.find(key);
-            if (list == row.end() || !list->is_array()) continue;
-            for (const auto& one : *list) add(one.is_object() && one.contains("point") ? one["point"] : one);
-        }
-        return text;
-    }
-
     void append_finding(const Finding& finding) {
         const CollisionClass what = finding.collision_class;
         if (what == CollisionClass::unknown) return;

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "geometry/box_kernel.hpp"
+#include "geometry/exact/contact_of_triangles.hpp"
 #include "geometry/exact/pair_look.hpp"
-#include "geometry/exact/triangle_contact.hpp"
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"
@@ -71,18 +71,6 @@ bool boxes_apart(const Triangle3d& a, const Triangle3d& b, double margin) {
     constexpr double roundings = 1 + 0x1p-40;
     return std::max({gap[0], gap[1], gap[2]}) > margin * roundings ||
            std::hypot(gap[0], gap[1], gap[2]) > margin * roundings;
-}
-
-/// In the middle of what two triangles that meet have in common.
-Contact contact_of(const Triangle3d& a, const Triangle3d& b, const TriangleContact& common) {
-    Contact contact = {};
-    for (unsigned i = 0; i < common.count; ++i) {
-        for (std::size_t axis = 0; axis < 3; ++axis) contact.point[axis] += common.points[i][axis] / common.count;
-    }
-    const TriangleDepth way_out = triangle_depth(a, b);
-    contact.normal = way_out.normal;
-    contact.depth = way_out.depth;
-    return contact;
 }
 
 class TriangleFilter final : public Filter {

@@ -1,5 +1,6 @@
 // Real assemblies through the program: nodes and triangles tell the same of who meets whom, and so do all engines and any
 // number of threads.
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -17,6 +18,10 @@ using Pairing = std::pair<std::string, std::string>;
 
 class Assemblies : public ProgramTest, public ::testing::WithParamInterface<std::string> {
 protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(model())) GTEST_SKIP() << "scripts/setup data brings the models";
+    }
+
     std::string model() const { return std::string(OCTOPAIR_DATA "/assimp_models/") + GetParam(); }
 
     std::vector<nlohmann::json> rows(const std::string& arguments) const {
@@ -36,7 +41,6 @@ protected:
 };
 
 TEST_P(Assemblies, NodesAndTrianglesTellTheSame) {
-    if (!std::filesystem::exists(model())) GTEST_SKIP() << "no data";
     std::set<Pairing> by_node, by_triangle;
     for (const auto& row : rows("")) {
         if (row["class"] != "contained") by_node.insert(pairing(row));
@@ -50,7 +54,6 @@ TEST_P(Assemblies, NodesAndTrianglesTellTheSame) {
 }
 
 TEST_P(Assemblies, FeaturesAreOfTheObjectsThatMeet) {
-    if (!std::filesystem::exists(model())) GTEST_SKIP() << "no data";
     const auto objects = rows("--margin 0.01"), features = rows("--margin 0.01 --stage features");
     ASSERT_EQ(objects.size(), features.size());
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -68,7 +71,6 @@ TEST_P(Assemblies, FeaturesAreOfTheObjectsThatMeet) {
 }
 
 TEST_P(Assemblies, SameBytesFromAllEngines) {
-    if (!std::filesystem::exists(model())) GTEST_SKIP() << "no data";
     for (const std::string order : {"ascending", "octal"}) {
         const std::string arguments = "--stage features --margin 0.01 --order " + order;
         (void)rows(arguments + " --threads 1");

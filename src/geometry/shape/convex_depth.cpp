@@ -1,8 +1,8 @@
 // How deep convex things meet.
 //
 // For any direction, what the two overlap along it is a depth that parts them, by their supports alone; the least of all
-// directions is wanted. Cores that do not meet have it along their shortest way. Of cores that do, FCL's expanding
-// polytope proposes one, as do the axes, edges and faces that the two show, for FCL gives up on flat ones; the best
+// directions is wanted. Cores that do not meet have it along their shortest way. Of cores that do, libccd's expanding
+// polytope proposes one, as do the axes, edges and faces that the two show, for it gives up on flat ones; the best
 // proposal is then followed downhill. So what a library gets wrong can cost depth, but a contact always parts the two.
 #include <ccd/ccd.h>
 

@@ -6,10 +6,11 @@
 #include <tuple>
 #include <vector>
 
+#include "geometry/exact/contact_of_triangles.hpp"
 #include "geometry/exact/orientation.hpp"
-#include "geometry/exact/triangle_contact.hpp"
 #include "geometry/shape/mesh_leaves.hpp"
 #include "geometry/shape/mesh_probe.hpp"
+#include "geometry/shape/mirror.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -76,14 +77,6 @@ private:
     double deepest_ = 0;
 };
 
-/// 1 if a mesh's triangles are counterclockwise from outside, in the world; -1 if clockwise.
-int facing_of(const Pose& pose) {
-    const Point3d x = {pose.rows[0][0], pose.rows[1][0], pose.rows[2][0]};
-    const Point3d y = {pose.rows[0][1], pose.rows[1][1], pose.rows[2][1]};
-    const Point3d z = {pose.rows[0][2], pose.rows[1][2], pose.rows[2][2]};
-    return plane_side({0, 0, 0}, x, y, z) < 0 ? -1 : 1;
-}
-
 /// Whether two triangles in one plane face the same side of it.
 bool face_alike(const Triangle3d& a, const Triangle3d& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -101,7 +94,7 @@ bool comes_first(const Contact& a, const Contact& b) {
 class ContactSearch {
 public:
     ContactSearch(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts)
-        : a_(a), b_(b), max_contacts_(max_contacts), same_handed_(facing_of(a.pose) == facing_of(b.pose)) {}
+        : a_(a), b_(b), max_contacts_(max_contacts), same_handed_(mirrors(a.pose) == mirrors(b.pose)) {}
 
     void run(Finding& finding) {
         visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
@@ -124,14 +117,8 @@ private:
         if (contact.meeting == TriangleMeeting::overlapping && at.both_oriented) {
             penetrating_ |= face_alike(at.a, at.b) == same_handed_;
         }
-        const TriangleDepth out = triangle_depth(at.a, at.b);
-        deepest_ = std::max(deepest_, out.depth);
-        Contact made;
-        for (unsigned i = 0; i < contact.count; ++i) {
-            for (int axis = 0; axis < 3; ++axis) made.point[axis] += contact.points[i][axis] / contact.count;
-        }
-        made.normal = out.normal;
-        made.depth = out.depth;
+        Contact made = contact_of(at.a, at.b, contact);
+        deepest_ = std::max(deepest_, made.depth);
         made.feature_a = at.number_a;
         made.feature_b = at.number_b;
         keep(made);

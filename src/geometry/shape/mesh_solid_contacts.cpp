@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/exact/orientation.hpp"
 #include "geometry/shape/convex_plane.hpp"
 #include "geometry/shape/mesh_probe.hpp"
+#include "geometry/shape/mirror.hpp"
 #include "geometry/shape/vector.hpp"
 
 namespace octopair {
@@ -74,8 +74,7 @@ Point3d outward_of(const Triangle3d& triangle, const Pose& pose) {
         vector::cross(vector::minus(triangle[1], triangle[0]), vector::minus(triangle[2], triangle[0]));
     const double length = vector::length(normal);
     if (!(length > 0)) return {};
-    const bool mirrored = plane_side({}, vector::column(pose, 0), vector::column(pose, 1), vector::column(pose, 2)) < 0;
-    return vector::times(normal, (mirrored ? -1 : 1) / length);
+    return vector::times(normal, (mirrors(pose) ? -1 : 1) / length);
 }
 
 /// A way out that leads into the mesh is none: then it is the one along the triangle's own side.
