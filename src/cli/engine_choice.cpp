@@ -149,4 +149,9 @@ EngineCrew crew_of(const EngineChoice& choice) {
     return {"local", one_a_core_unless(choice.threads, ~0u), 0};
 }
 
+unsigned threads_beside(const EngineChoice& choice) {
+    if (choice.kind == EngineKind::mpi) return crew_of(choice).threads;
+    return choice.threads ? *choice.threads : choice.workers.value_or(0);
+}
+
 }  // namespace octopair::cli

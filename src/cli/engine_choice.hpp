@@ -49,4 +49,7 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice);
 
 EngineCrew crew_of(const EngineChoice& choice);
 
+/// Of this process, for shapes and filters: as many as were asked for, for whatever; 0: one a core.
+unsigned threads_beside(const EngineChoice& choice);
+
 }  // namespace octopair::cli

@@ -10,16 +10,11 @@ namespace octopair::cli {
 
 namespace {
 
-/// Filters have as many threads as were asked for, for whatever.
-unsigned filter_threads(const EngineChoice& engine) {
-    if (engine.kind == EngineKind::mpi) return crew_of(engine).threads;
-    return engine.threads ? *engine.threads : engine.workers.value_or(0);
-}
 
 class Row final : public FilterRow {
 public:
     Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
-        : sets_(sets), stop_(stop), pipeline_(filter_threads(request.engine)) {
+        : sets_(sets), stop_(stop), pipeline_(threads_beside(request.engine)) {
         if (sets.first.scene.triangles) {
             add_triangles(request);
             return;
@@ -56,6 +51,7 @@ private:
     void add_triangles(const DetectRequest& request) {
         TriangleOptions options{.margin = request.margin, .features = stage_of(request) == Stage::features};
         options.adjacent = request.pipeline.adjacent.value_or(options.adjacent);
+        options.threads = threads_beside(request.engine);
         const TriangleSet first = triangles(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
         pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));

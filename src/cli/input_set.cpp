@@ -92,7 +92,7 @@ private:
 }  // namespace
 
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
-                        const std::stop_token& stop) {
+                        [[maybe_unused]] unsigned threads, const std::stop_token& stop) {
     InputSet set;
     std::vector<io::LoadedScene> scenes;
     io::SceneContent wanted = content;
@@ -104,7 +104,7 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
     set.scene = io::join_scenes(scenes, paths);
     set.total = set.scene.objects;
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_shaped(set, stop);
+    make_shaped(set, threads, stop);
 #endif
     return set;
 }

@@ -14,13 +14,14 @@
 
 namespace octopair::cli {
 
-ShapedSet::ShapedSet(io::LoadedShapes loaded, const std::stop_token& stop) : loaded_(std::move(loaded)) {
-    prepare(std::exchange(loaded_.shapes, {}), stop);
+ShapedSet::ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop)
+        : loaded_(std::move(loaded)) {
+    prepare(std::exchange(loaded_.shapes, {}), threads, stop);
 }
 
-void ShapedSet::prepare(std::vector<shape::Any> shapes, const std::stop_token& stop) {
+void ShapedSet::prepare(std::vector<shape::Any> shapes, unsigned threads, const std::stop_token& stop) {
     std::vector<std::optional<Geometry>> ready(shapes.size());
-    Team(0).for_each(shapes.size(), [&](std::size_t i, unsigned) {
+    Team(threads).for_each(shapes.size(), [&](std::size_t i, unsigned) {
         if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
         ready[i].emplace(std::move(shapes[i]));
     });
@@ -91,13 +92,13 @@ bool has_planes(const InputSet& set) { return set.shaped != nullptr && set.shape
 
 }  // namespace
 
-void make_shaped(InputSet& set, const std::stop_token& stop) {
+void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop) {
     if (set.scene.triangles && set.scene.lacks_boxes())
-        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles));
+        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles, threads));
     if (!set.scene.shapes) return;
     set.moves_meanwhile = !set.scene.shapes->end_poses.empty();
     with_file(set, [&] {
-        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), stop);
+        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), threads, stop);
         set.padding = set.shaped->padding();
         if (set.scene.lacks_boxes()) set.scene.boxes = copy_of(boxes_of(set.shaped->objects()));
     });
@@ -105,7 +106,7 @@ void make_shaped(InputSet& set, const std::stop_token& stop) {
 
 void make_join_boxes(InputSet& first, InputSet& second) {
     if (!has_planes(first) && !has_planes(second)) return;
-    const ShapedSet around_first(bounds_of(first), {}), around_second(bounds_of(second), {});
+    const ShapedSet around_first(bounds_of(first), 1, {}), around_second(bounds_of(second), 1, {});
     const ShapedSet& first_shapes = first.shaped != nullptr ? *first.shaped : around_first;
     const ShapedSet& second_shapes = second.shaped != nullptr ? *second.shaped : around_second;
     const JoinBoxes boxes = boxes_of(first_shapes.objects(), second_shapes.objects());

@@ -11,8 +11,8 @@ namespace octopair::cli {
 
 class ShapedSet {
 public:
-    /// Makes shapes ready on several threads. Throws what Geometry throws, and Error{cancelled}.
-    ShapedSet(io::LoadedShapes loaded, const std::stop_token& stop);
+    /// Makes shapes ready on so many threads; 0: one a core. Throws what Geometry throws, and Error{cancelled}.
+    ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop);
     ShapedSet(const ShapedSet&) = delete;
     ShapedSet& operator=(const ShapedSet&) = delete;
 
@@ -28,7 +28,7 @@ public:
     GroupMasks group_masks();
 
 private:
-    void prepare(std::vector<shape::Any> shapes, const std::stop_token& stop);
+    void prepare(std::vector<shape::Any> shapes, unsigned threads, const std::stop_token& stop);
 
     io::LoadedShapes loaded_;
     std::vector<Geometry> geometries_;
@@ -36,7 +36,7 @@ private:
 
 /// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Triangles give boxes. Throws as ShapedSet
 /// does, and Error{bad_input} for poses that do not fit their shapes, with the file where there is but one.
-void make_shaped(InputSet& set, const std::stop_token& stop);
+void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop);
 
 /// Both sets of a join anew, where they have shapes that boxes are made of: a plane has to reach as far as the other set.
 void make_join_boxes(InputSet& first, InputSet& second);

@@ -27,7 +27,7 @@ struct SubmitRequest {
 };
 
 InputSet read_still_set(const std::vector<std::string>& paths, const DetectRequest& what, const std::stop_token& stop) {
-    InputSet set = read_input_set(paths, {what.mesh_objects}, stop);
+    InputSet set = read_input_set(paths, {what.mesh_objects}, 0, stop);
     if (set.scene.moving) throw Error(ErrorCode::usage, paths.front() + ": a job is of one frame; this scene moves");
     return set;
 }

@@ -9,8 +9,9 @@ namespace octopair::cli {
 
 void WholeInputs::read(const DetectRequest& request, const std::stop_token& stop) {
     const io::SceneContent content{request.mesh_objects, has_filters(request)};
-    first = read_input_set(request.inputs, content, stop);
-    if (!request.against.empty()) second = read_input_set({request.against}, content, stop);
+    const unsigned threads = threads_beside(request.engine);
+    first = read_input_set(request.inputs, content, threads, stop);
+    if (!request.against.empty()) second = read_input_set({request.against}, content, threads, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
     make_join_boxes(first, second);
 #endif

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr int most_levels = 16;
 
-/// Watches a parser: how deep it is, and which keys the objects around it have had.
+/// Watches a parser: where it is, and which keys the objects around it have had.
 class Watch {
 public:
     Watch(std::string_view file, const std::stop_token& stop) : file_(file), stop_(stop) {}
@@ -26,31 +26,58 @@ public:
         if (++events_ % 65536 == 0 && stop_.stop_requested()) cancel();
         switch (event) {
             case json::parse_event_t::object_start:
-                keys_.emplace_back();
-                [[fallthrough]];
             case json::parse_event_t::array_start:
-                if (depth >= most_levels) refuse(file_, fmt::format("more than {} levels of nesting", most_levels));
+                if (depth >= most_levels) refuse(place(), fmt::format("more than {} levels of nesting", most_levels));
+                levels_.push_back({.is_array = event == json::parse_event_t::array_start});
                 break;
             case json::parse_event_t::object_end:
-                keys_.pop_back();
+            case json::parse_event_t::array_end:
+                levels_.pop_back();
+                [[fallthrough]];
+            case json::parse_event_t::value:
+                if (!levels_.empty()) ++levels_.back().values;
                 break;
             case json::parse_event_t::key:
-                if (!keys_.back().insert(parsed.get<std::string>()).second) {
-                    refuse(file_, fmt::format("the key '{}' stands twice in one object",
-                                              shown_text(parsed.get_ref<const std::string&>())));
-                }
-                break;
-            default:
+                begin_key(parsed.get_ref<const std::string&>());
                 break;
         }
         return true;
     }
 
+    /// The file, and the way to the value that is being read.
+    std::string place() const {
+        std::string way;
+        for (const Level& level : levels_) {
+            if (level.is_array) {
+                way += fmt::format("[{}]", level.values);
+            } else if (level.keys.size() > level.values) {
+                way += fmt::format("{}{}", way.empty() ? "" : ".", shown_text(level.key));
+            }
+        }
+        return way.empty() ? std::string(file_) : fmt::format("{}: {}", file_, way);
+    }
+
 private:
+    /// An array or an object that has begun, and not ended.
+    struct Level {
+        bool is_array = false;
+        std::size_t values = 0;  ///< that have ended
+        std::set<std::string> keys = {};
+        std::string key = {};  ///< the last
+    };
+
+    void begin_key(const std::string& key) {
+        Level& level = levels_.back();
+        if (!level.keys.insert(key).second) {
+            refuse(place(), fmt::format("the key '{}' stands twice in one object", shown_text(key)));
+        }
+        level.key = key;
+    }
+
     std::string_view file_;
     const std::stop_token& stop_;
     std::uint64_t events_ = 0;
-    std::vector<std::set<std::string>> keys_;
+    std::vector<Level> levels_;
 };
 
 /// The parser's words without its own name for them.
@@ -85,8 +112,10 @@ json parse_json(std::string_view text, std::string_view file, const std::stop_to
         return json::parse(text, [&watch](int depth, json::parse_event_t event, const json& parsed) {
             return watch(depth, event, parsed);
         });
-    } catch (const json::exception& error) {
+    } catch (const json::parse_error& error) {  // it says the line and the column
         refuse(file, words_of(error));
+    } catch (const json::exception& error) {
+        refuse(watch.place(), words_of(error));
     }
 }
 

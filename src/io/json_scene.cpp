@@ -30,7 +30,8 @@ Pose pose_of(const JsonFields& fields, std::string_view place_key, std::string_v
         turn[i] = array[i].get<double>();
     }
     const double length = std::hypot(std::hypot(turn[0], turn[1]), std::hypot(turn[2], turn[3]));
-    if (!(length > 0) || !std::isfinite(length)) fields.refuse_key(turn_key, "a quaternion of no length");
+    if (!(length > 0)) fields.refuse_key(turn_key, "a quaternion of no length");
+    if (!std::isfinite(length)) fields.refuse_key(turn_key, "a quaternion whose length is beyond float64");
     return make_pose(place, turn);
 }
 

@@ -91,6 +91,9 @@ shape::Mesh mesh(const JsonFields& fields, const MeshLoader& load_mesh) {
         fields.allow({"type", "vertices", "triangles", "file"});
         return inline_mesh(fields);
     }
+    for (const std::string_view key : {"vertices", "triangles"}) {
+        if (fields.find(key) != nullptr) fields.refuse_key(key, "a mesh of a file has these from there");
+    }
     fields.allow({"type", "file"});
     try {
         return load_mesh(fields.text("file"));

@@ -66,7 +66,7 @@ TEST(ExclusionRules, MustBeJson) {
 }
 
 TEST(ExclusionRules, NumbersAreNotTooLarge) {
-    EXPECT_EQ(refusal("{\"same_parent\": 4e442}"), "r.json: number overflow parsing '4e442'");
+    EXPECT_EQ(refusal("{\"same_parent\": 4e442}"), "r.json: same_parent: number overflow parsing '4e442'");
 }
 
 TEST(ExclusionRules, AreReadFromFiles) {

@@ -94,6 +94,14 @@ TEST(JsonScene, RefusesInClearWords) {
         {R"({"objects":{}})", "f.json: objects: an object, not an array"},
         {R"({"objects":[],"units":"m"})", "f.json: the key 'units' is not known here; these are: objects, shapes"},
         {R"({"objects":[],"objects":[]})", "f.json: the key 'objects' stands twice in one object"},
+        {R"({"objects":[{},{"shape":{"radius":1,"radius":2}}]})",
+         "f.json: objects[1].shape: the key 'radius' stands twice in one object"},
+        {R"({"objects":[{},{"position":[0,1e999,0]}]})",
+         "f.json: objects[1].position[1]: number overflow parsing '1e999'"},
+        {R"({"objects":[{)" + ball + R"(,"rotation":[1.7e308,0,0,1.7e308]}]})",
+         "f.json: object 0: rotation: a quaternion whose length is beyond float64"},
+        {with_shape(R"({"type":"mesh","file":"a.obj","vertices":[]})"),
+         "f.json: object 0: shape: vertices: a mesh of a file has these from there"},
         {R"({"objects":[7]})", "f.json: object 0: a number, not an object"},
         {R"({"objects":[{"name":"x"}]})", "f.json: object 0 ('x'): the key 'shape' is missing"},
         {R"({"objects":[{"name":7}]})", "f.json: object 0: name: a number, not a string"},
@@ -153,7 +161,7 @@ TEST(JsonScene, RefusesWhatIsNoJson) {
         EXPECT_EQ(words.find('\n'), std::string::npos);
     }
     EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)parse("{\"objects\":" + std::string(100000, '[')); }),
-              "f.json: more than 16 levels of nesting");
+              "f.json: objects[0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: more than 16 levels of nesting");
 }
 
 #if defined(OCTOPAIR_WITH_PIPELINE) && defined(OCTOPAIR_WITH_MESHES)
