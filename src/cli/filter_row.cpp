@@ -10,7 +10,6 @@ namespace octopair::cli {
 
 namespace {
 
-
 class Row final : public FilterRow {
 public:
     Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)

@@ -15,7 +15,7 @@
 namespace octopair::cli {
 
 ShapedSet::ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop)
-        : loaded_(std::move(loaded)) {
+    : loaded_(std::move(loaded)) {
     prepare(std::exchange(loaded_.shapes, {}), threads, stop);
 }
 

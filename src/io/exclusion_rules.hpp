@@ -23,7 +23,7 @@ struct ExclusionRules {
     bool same_parent = false;
 };
 
-/// Throws Error{bad_input, io_failed}; the message begins with the file and names the place: "exclude[2].b".
+/// Throws Error{bad_input, io_failed}; the message begins with the file and names the place: "exclude[2]: b".
 ExclusionRules read_exclusion_rules(const std::string& path);
 
 /// `file`: for messages.

@@ -134,6 +134,11 @@ const json::array_t& json_array(const json& value, const std::string& place) {
     return value.get_ref<const json::array_t&>();
 }
 
+const std::string& json_text(const json& value, const std::string& place) {
+    if (!value.is_string()) refuse_type(place, value, "a string");
+    return value.get_ref<const std::string&>();
+}
+
 Point3d json_point(const json& value, const std::string& place) {
     constexpr std::string_view wanted = "an array of 3 numbers";
     if (!value.is_array()) refuse_type(place, value, wanted);
@@ -201,13 +206,15 @@ Point3d JsonFields::point_above_zero(std::string_view key) const {
     return value;
 }
 
-const std::string& JsonFields::text(std::string_view key) const {
-    const json& value = need(key);
-    if (!value.is_string()) refuse_type(place_of(key), value, "a string");
-    return value.get_ref<const std::string&>();
-}
+const std::string& JsonFields::text(std::string_view key) const { return json_text(need(key), place_of(key)); }
 
 std::uint32_t JsonFields::whole_number(std::string_view key) const { return json_index(need(key), place_of(key)); }
+
+bool JsonFields::yes_or_no(std::string_view key) const {
+    const json& value = need(key);
+    if (!value.is_boolean()) refuse_type(place_of(key), value, "true or false");
+    return value.get<bool>();
+}
 
 void JsonFields::refuse_key(std::string_view key, std::string_view what) const { refuse(place_of(key), what); }
 

@@ -21,10 +21,11 @@ nlohmann::json parse_json(std::string_view text, std::string_view file, const st
 /// Text from a file as it may stand in a message.
 std::string shown_text(std::string_view text);
 
-/// Parts of a number array, or throw Error{bad_input} "PLACE: a string, not ...".
+/// What a value is, or throw Error{bad_input} "PLACE: a string, not ...".
 Point3d json_point(const nlohmann::json& value, const std::string& place);
 std::uint32_t json_index(const nlohmann::json& value, const std::string& place);
 const nlohmann::json::array_t& json_array(const nlohmann::json& value, const std::string& place);
+const std::string& json_text(const nlohmann::json& value, const std::string& place);
 
 /// The keys of a JSON object, borrowed. All calls throw Error{bad_input} that begins with the place.
 class JsonFields {
@@ -46,6 +47,7 @@ public:
     Point3d point_above_zero(std::string_view key) const;
     const std::string& text(std::string_view key) const;
     std::uint32_t whole_number(std::string_view key) const;
+    bool yes_or_no(std::string_view key) const;
 
     const std::string& place() const { return place_; }
     std::string place_of(std::string_view key) const { return place_ + ": " + std::string(key); }

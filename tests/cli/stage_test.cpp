@@ -86,7 +86,7 @@ TEST_F(Stages, WrongRulesAreRefused) {
     };
     EXPECT_EQ(refused(R"({"ignored_pairs": [["t.obj/flat", "t.obj/none"]]})"),
               "octopair: r.json: ignored_pairs[0]: no object has the name 't.obj/none'\n");
-    EXPECT_EQ(refused(R"({"exclude": 7})"), "octopair: r.json: exclude: an array is wanted, not number\n");
+    EXPECT_EQ(refused(R"({"exclude": 7})"), "octopair: r.json: exclude: a number, not an array\n");
     EXPECT_EQ(run("detect t.obj --exclude none.json").status, 4);
     save_boxes("a.npy", {0, 0.5});
     rules(R"({"exclude": [{"a": "*", "b": "*"}]})");

@@ -37,23 +37,22 @@ TEST(ExclusionRules, MayBeLeftOut) {
 }
 
 TEST(ExclusionRules, NameThePlace) {
-    EXPECT_EQ(refusal("[]"), "r.json: not an object of JSON");
+    EXPECT_EQ(refusal("[]"), "r.json: an array, not an object");
     EXPECT_EQ(refusal(R"({"excludes": []})"),
-              "r.json: \"excludes\" is no key of exclusion rules; these are exclude, ignored_pairs, same_parent");
-    EXPECT_EQ(refusal(R"({"exclude": {}})"), "r.json: exclude: an array is wanted, not object");
-    EXPECT_EQ(refusal(R"({"exclude": ["*"]})"),
-              "r.json: exclude[0]: an object {\"a\": PATTERN, \"b\": PATTERN} is wanted, not string");
-    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"), "r.json: exclude[1]: has no \"b\"");
-    EXPECT_EQ(refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0].a: a string is wanted, not number");
+              "r.json: the key 'excludes' is not known here; these are: exclude, ignored_pairs, same_parent");
+    EXPECT_EQ(refusal(R"({"exclude": {}})"), "r.json: exclude: an object, not an array");
+    EXPECT_EQ(refusal(R"({"exclude": ["*"]})"), "r.json: exclude[0]: a string, not an object");
+    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"),
+              "r.json: exclude[1]: the key 'b' is missing");
+    EXPECT_EQ(refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0]: a: a number, not a string");
     EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
-              "r.json: exclude[0]: \"c\" is no key of a rule");
-    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a"]]})"),
-              "r.json: ignored_pairs[0]: an array of two names is wanted, not array");
-    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a", null]]})"),
-              "r.json: ignored_pairs[0][1]: a string is wanted, not null");
-    EXPECT_EQ(refusal(R"({"same_parent": 1})"), "r.json: same_parent: true or false is wanted, not number");
+              "r.json: exclude[0]: the key 'c' is not known here; these are: a, b");
+    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a"]]})"), "r.json: ignored_pairs[0]: an array of 1, not of two names");
+    EXPECT_EQ(refusal(R"({"ignored_pairs": ["a"]})"), "r.json: ignored_pairs[0]: a string, not an array");
+    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a", null]]})"), "r.json: ignored_pairs[0][1]: null, not a string");
+    EXPECT_EQ(refusal(R"({"same_parent": 1})"), "r.json: same_parent: a number, not true or false");
     EXPECT_EQ(refusal(R"({"same_parent": true, "same_parent": false})"),
-              "r.json: the key \"same_parent\" is there twice");
+              "r.json: the key 'same_parent' stands twice in one object");
 }
 
 TEST(ExclusionRules, MustBeJson) {
