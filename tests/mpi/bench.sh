@@ -2,13 +2,7 @@
 # `octopair bench cluster` measures ranks, and leaves nothing where it cannot.
 #
 #     bench.sh PROGRAM MPIRUN
-set -euo pipefail
-program=$1 mpirun=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() { echo "$*" && exit 1; }
+source "$(dirname "$(realpath "$0")")/in_folder.sh"
 
 "$program" bench cluster --scene uniform dense --objects 3000 --ranks 1 3 --rounds 2 --mpirun "$mpirun" --json all.json > table.txt
 grep -q '^3000 objects, dense: [1-9][0-9]* pairs$' table.txt || fail "no table of a scene: $(cat table.txt)"

@@ -2,14 +2,7 @@
 # `octopair detect --engine mpi` gives the files of the local engine, and ends alike on all ranks.
 #
 #     detect.sh PROGRAM MPIRUN
-set -euo pipefail
-program=$1 mpirun=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() { echo "$*" && exit 1; }
-on_ranks() { "$mpirun" -n "$1" "$program" "${@:2}"; }
+source "$(dirname "$(realpath "$0")")/in_folder.sh"
 
 "$program" generate clustered --objects 20000 --seed 3 --output a.npy --quiet
 "$program" generate micro20 --objects 3000 --seed 3 --output b.npy --quiet
@@ -62,16 +55,6 @@ on_ranks 2 detect a.npy --engine mpi --stats stats.json --count-only 2> summary.
 grep -q '"ranks": 2' stats.json || fail "the stats do not tell the ranks"
 grep -q 'on 2 ranks with 1 thread each' summary.txt || fail "the summary does not tell the ranks"
 
-# STATUS WORDS ARGUMENTS...: fails with them, said once, and leaves no file.
-refuses() {
-    local status=$1 words=$2 got=0
-    shift 2
-    on_ranks 3 detect "$@" --engine mpi --output no.npy --quiet 2> errors.txt || got=$?
-    [ "$got" = "$status" ] || fail "exit status $got, not $status, for: $*"
-    [ "$(grep -c "octopair: .*$words" errors.txt)" = 1 ] || fail "not said once: $words: $(cat errors.txt)"
-    [ ! -e no.npy ] || fail "a file is left by: $*"
-    [ -z "$(find . -name '*.tmp')" ] || fail "a temporary file is left by: $*"
-}
 printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,nan\n' > bad.csv
 refuses 3 'bad.csv: .*' bad.csv
 refuses 4 'missing.npy' missing.npy

@@ -2,13 +2,7 @@
 # `octopair bench scaling` measures threads and ranks, and leaves nothing where it cannot.
 #
 #     scaling.sh PROGRAM MPIRUN
-set -euo pipefail
-program=$1 mpirun=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() { echo "$*" && exit 1; }
+source "$(dirname "$(realpath "$0")")/in_folder.sh"
 scaling() { "$program" bench scaling --mpirun "$mpirun" --rounds 3 "$@"; }
 
 scaling --scene uniform dense --objects 4000 --cores 2 3 --threads-per-rank 2 --json strong.json > table.txt

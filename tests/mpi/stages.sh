@@ -3,14 +3,7 @@
 # ranks.
 #
 #     stages.sh PROGRAM MPIRUN
-set -euo pipefail
-program=$1 mpirun=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() { echo "$*" && exit 1; }
-on_ranks() { "$mpirun" -n "$1" "$program" "${@:2}"; }
+source "$(dirname "$(realpath "$0")")/in_folder.sh"
 
 python3 - << 'END'
 # Shapes of every kind, close to each other, and a mesh that folds through itself.
@@ -115,16 +108,6 @@ on_ranks 2 detect $(against_old ranks) --engine mpi
 cmp local.jsonl ranks.jsonl && cmp local.html ranks.html || fail "another result beside a baseline"
 [ "$(grep '"same"' local.json)" = "$(grep '"same"' ranks.json)" ] || fail "other changes"
 
-# STATUS WORDS ARGUMENTS...: fails with them, said once, and leaves no file.
-refuses() {
-    local status=$1 words=$2 got=0
-    shift 2
-    on_ranks 3 detect "$@" --engine mpi --output no.npy --quiet 2> errors.txt || got=$?
-    [ "$got" = "$status" ] || fail "exit status $got, not $status, for: $*: $(cat errors.txt)"
-    [ "$(grep -c "octopair: .*$words" errors.txt)" = 1 ] || fail "not said once: $words: $(cat errors.txt)"
-    [ ! -e no.npy ] || fail "a file is left by: $*"
-    [ -z "$(find . -name '*.tmp')" ] || fail "a temporary file is left by: $*"
-}
 echo '{"objects": [{"shape": {"type": "sphere", "radius": 1}}, {"shape": {"type": "sphere", "radius": -1}}]}' > bad.json
 echo '{"ignored_pairs": [["part 1", "nobody"]]}' > nobody.json
 refuses 3 'bad.json: .*radius' bad.json
