@@ -35,14 +35,14 @@ enum class CollisionClass : std::uint8_t {
     collision,
     touching,     ///< they meet, and their insides do not
     penetrating,  ///< their insides, or surfaces, pass through each other
-    contained,    ///< one lies inside the other, and their surfaces do not meet
+    contained,    ///< all of one lies inside the other, and their surfaces do not meet
 };
 
 /// Where two features meet. `normal`: of length 1, from a to b: moving b along it by `depth` ends this contact.
 struct Contact {
     static constexpr std::uint32_t no_feature = 0xFFFFFFFF;
 
-    Point3d point = {};
+    Point3d point = {};  ///< of convex shapes, in both
     Point3d normal = {};
     double depth = 0;                      ///< >= 0
     std::uint32_t feature_a = no_feature;  ///< the triangle of a mesh

@@ -94,7 +94,7 @@ void expect_overlap(const Thing& a, const Thing& b, RandomStream& random) {
     const ConvexContact found = contact(a, b);
     EXPECT_NEAR(length(found.normal), 1, 1e-12);
     EXPECT_FALSE(meet(a, b.moved(times(found.normal, found.depth + 1e-9))));
-    EXPECT_LT(std::max(a.off(found.point), b.off(found.point)), found.depth + 1e-9);
+    EXPECT_LT(std::max(a.off(found.point), b.off(found.point)), 1e-9);
     // No shorter way parts them.
     for (int i = 0; i < 10; ++i) {
         const Point3d way = random_point(random);
@@ -155,6 +155,31 @@ TEST(ConvexPair, KnownDistancesAndDepths) {
     const Thing across(shape::Capsule{0.5, 2}, make_pose({0, 0, 0}, {1, 1, 0, 0}));
     EXPECT_DOUBLE_EQ(contact(rod, across).depth, 1);
     EXPECT_DOUBLE_EQ(gap(rod, across.moved({2, 0, 0})), 1);
+}
+
+TEST(ConvexPair, ContactsAreInThinThingsToo) {
+    const Thing ball(shape::Sphere{1}), plate(shape::Box{{0.01, 1, 1}}, Point3d{0.2, 0, 0}),
+        bead(shape::Sphere{0.1}, Point3d{0.05, 0, 0});
+    EXPECT_NEAR(contact(ball, plate).point[0], 0.19, 1e-12);
+    EXPECT_DOUBLE_EQ(contact(ball, plate).depth, 0.81);
+    EXPECT_NEAR(contact(ball, bead).point[0], 0.025, 1e-12);
+}
+
+TEST(ConvexPair, SizesDownToTheLeastNumbers) {
+    for (const double size : {1e-300, 1e-307, 1e-308, 1e-309, 1e-320}) {
+        const shape::Any shapes[] = {
+            shape::Sphere{size},         shape::Box{{size, size, size}},       shape::Capsule{size, size},
+            shape::Cylinder{size, size}, shape::Ellipsoid{{size, size, size}}, shape::Cone{size, size}};
+        for (const auto& shape_a : shapes) {
+            for (const auto& shape_b : shapes) {
+                const Thing a(shape_a), b(shape_b, Point3d{size / 2, 0, 0});
+                EXPECT_TRUE(meet(a, b)) << size;
+                EXPECT_LE(contact(a, b).depth, 4 * size);
+                // Below that numbers have fewer digits than the proof of a gap needs.
+                EXPECT_FALSE(size >= 1e-308 && meet(a, b.moved({10 * size, 0, 0}))) << size;
+            }
+        }
+    }
 }
 
 TEST(ConvexPair, TouchingMeetsAndAHairBeyondDoesNot) {

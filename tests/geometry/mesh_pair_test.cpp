@@ -238,14 +238,32 @@ TEST(MeshInside, CornersOfTriangleSoupsCloseThem) {
     for (const double y : {-0.5, 0.0, 1.0, 1.5}) EXPECT_FALSE(encloses({*tree, Pose{}}, {-0.5, y, y})) << y;
 }
 
+TEST(MeshInside, WhatIsHeldIsWhole) {
+    const auto cube = [](double half) { return box_mesh({-half, -half, -half}, {half, half, half}); };
+    Couple boxes(cube(2), cube(1));
+    EXPECT_TRUE(holds_whole(boxes.a(), boxes.b()));
+    EXPECT_FALSE(holds_whole(boxes.b(), boxes.a()));
+    // In the wall of a hollow one, all around the hollow.
+    shape::Mesh hollow = cube(1.5);
+    for (auto& corners : hollow.triangles) std::swap(corners[0], corners[1]);
+    Couple around(joined(cube(2), hollow), cube(1.75));
+    EXPECT_TRUE(encloses_part(around.a(), around.b()));
+    EXPECT_FALSE(holds_whole(around.a(), around.b()));
+    EXPECT_FALSE(holds_whole(around.b(), around.a()));
+    Couple nothing(cube(2), {});
+    EXPECT_FALSE(holds_whole(nothing.a(), nothing.b()));
+}
+
 TEST(MeshInside, PartsAreJudgedOneByOne) {
     Couple couple(box_mesh({0, 0, 0}, {10, 10, 10}),
                   joined(box_mesh({20, 0, 0}, {21, 1, 1}), box_mesh({4, 4, 4}, {5, 5, 5})));
     EXPECT_FALSE(surfaces_meet(couple.a(), couple.b()));
     EXPECT_TRUE(encloses_part(couple.a(), couple.b()));
     EXPECT_FALSE(encloses_part(couple.b(), couple.a()));
+    EXPECT_FALSE(holds_whole(couple.a(), couple.b()));
     couple.pose_b.rows[0][3] = 7;
     EXPECT_FALSE(encloses_part(couple.a(), couple.b()));
+    EXPECT_FALSE(holds_whole(couple.a(), couple.b()));
 }
 
 }  // namespace

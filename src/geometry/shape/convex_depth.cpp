@@ -81,7 +81,7 @@ private:
 
 void propose_by_polytope(const ConvexFrame& frame, LeastOverlap& least) {
     const double size = frame.a().magnitude() + frame.b().magnitude();
-    if (!(size > 0)) return;
+    if (!std::isfinite(1 / size)) return;  // nor are there digits for a polytope
     const Scaled a = {&frame.a(), 1 / size}, b = {&frame.b(), 1 / size};
     ccd_t settings;
     CCD_INIT(&settings);
@@ -145,13 +145,21 @@ void propose_by_features(const ConvexFrame& frame, LeastOverlap& least) {
     least.propose(thin_way(frame.b()));
 }
 
+/// Along the way between the cores, the middle of what is within both radii; of cores that meet, a point in both.
+Point3d point_in_both(const ConvexFrame& frame, const CoreGap& core) {
+    const Point3d way = vector::minus(core.on_b, core.on_a);
+    const double length = vector::length(way);
+    if (!(length > 0)) return core.on_a;
+    const double begin = std::max(0.0, length - frame.b().radius()), end = std::min(length, frame.a().radius());
+    return vector::plus(core.on_a, vector::times(way, (begin + end) / 2 / length));
+}
+
 }  // namespace
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     const ConvexFrame frame(a, b);
     const CoreGap core = core_gap(frame);
     LeastOverlap least(frame);
-    Point3d on_a = core.on_a, on_b = core.on_b;
     const Point3d way = vector::minus(core.on_b, core.on_a);
     // A way as short as rounding has no direction.
     if (core.at_least > 0 && core.at_most > 1e4 * frame.slack()) {
@@ -164,9 +172,7 @@ ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     const Point3d& normal = least.normal();
     ConvexContact contact;
     contact.depth = std::max(0.0, least.overlap());
-    on_a = vector::plus(on_a, vector::times(normal, frame.a().radius()));
-    on_b = vector::minus(on_b, vector::times(normal, frame.b().radius()));
-    contact.point = vector::plus(vector::times(vector::plus(on_a, on_b), 0.5), frame.origin());
+    contact.point = vector::plus(point_in_both(frame, core), frame.origin());
     contact.normal = frame.swapped() ? vector::times(normal, -1) : normal;
     return contact;
 }

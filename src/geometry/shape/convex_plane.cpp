@@ -30,7 +30,7 @@ ConvexGap plane_gap(const PosedPlane& plane, const PlaneSpan& span) {
     gap.at_least = std::max({0.0, span.low, -span.high});
     const bool above = span.low > -span.high;
     gap.on_b = above ? span.lowest : span.highest;
-    const double height = vector::dot(vector::minus(gap.on_b, plane.point), plane.normal);
+    const double height = height_above(plane, gap.on_b);
     gap.on_a = vector::minus(gap.on_b, vector::times(plane.normal, height));
     if (gap.at_least > 0) gap.distance = std::max(gap.at_least, std::fabs(height));
     return gap;
@@ -41,8 +41,9 @@ ConvexContact plane_contact(const PosedPlane& plane, const PlaneSpan& span) {
     const bool up = -span.low <= span.high;
     ConvexContact contact;
     contact.normal = up ? plane.normal : vector::times(plane.normal, -1);
-    contact.depth = std::max(0.0, up ? -span.low : span.high);
     const Point3d& deepest = up ? span.lowest : span.highest;
+    const double height = height_above(plane, deepest);
+    contact.depth = std::max(0.0, up ? -height : height);
     contact.point = vector::plus(deepest, vector::times(contact.normal, contact.depth / 2));
     return contact;
 }

@@ -88,8 +88,16 @@ bool encloses(const PosedMesh& mesh, const Point3d& point) {
 }
 
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner) {
-    if (!outer.tree.parts.any_closed) return false;
-    return std::any_of(inner.tree.parts.corners.begin(), inner.tree.parts.corners.end(),
+    const auto& corners = inner.tree.parts.corners;
+    return outer.tree.parts.any_closed && std::any_of(corners.begin(), corners.end(), [&](const Point3d& corner) {
+               return encloses(outer, vector::posed(inner.pose, corner));
+           });
+}
+
+bool holds_whole(const PosedMesh& outer, const PosedMesh& inner) {
+    const auto& corners = inner.tree.parts.corners;
+    return !corners.empty() && !encloses_part(inner, outer) &&
+           std::all_of(corners.begin(), corners.end(),
                        [&](const Point3d& corner) { return encloses(outer, vector::posed(inner.pose, corner)); });
 }
 

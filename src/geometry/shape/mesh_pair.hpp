@@ -40,6 +40,9 @@ bool encloses(const PosedMesh& mesh, const Point3d& point);
 /// Whether a part of `inner` lies inside `outer`; their surfaces must not meet.
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner);
 
+/// Whether all of `inner`, with what it encloses, lies inside `outer`; their surfaces must not meet.
+bool holds_whole(const PosedMesh& outer, const PosedMesh& inner);
+
 struct SurfaceGap {
     double distance;
     std::array<Point3d, 2> nearest;

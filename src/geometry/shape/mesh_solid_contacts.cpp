@@ -81,7 +81,8 @@ Point3d outward_of(const Triangle3d& triangle, const Pose& pose) {
 void lead_out(const Triangle3d& triangle, const Point3d& outward, const BoxedSolid& solid, Contact& contact) {
     if (vector::dot(contact.normal, outward) >= 0) return;
     contact.normal = outward;
-    contact.depth = std::max(0.0, -span_across(PosedPlane{outward, triangle[0]}, posed(solid)).low);
+    const PosedPlane side{outward, triangle[0]};
+    contact.depth = std::max(0.0, -height_above(side, span_across(side, posed(solid)).lowest));
 }
 
 }  // namespace

@@ -62,14 +62,25 @@ void set_class(double touch, Finding& finding) {
     if (touches) finding.depth = 0;
 }
 
-// The kinds of pairs: each says whether the two meet, whether one contains the other, how far apart they are, and how they
-// meet. Those of a mesh have it first, those of a plane last.
+/// Of two that meet: whether one contains the other; nothing of two that do not.
+using Meeting = std::optional<CollisionClass>;
+
+Meeting collision_if(bool meet) { return meet ? Meeting(CollisionClass::collision) : std::nullopt; }
+Meeting contained_or_collision(bool contained) {
+    return contained ? CollisionClass::contained : CollisionClass::collision;
+}
+
+// The kinds of pairs: each says whether the two meet, how far apart they are, and how they meet. Those of a mesh have it
+// first, those of a plane last.
 
 struct TwoMeshes {
     PosedMesh a, b;
 
-    bool meet() const { return surfaces_meet(a, b); }
-    bool contained() const { return encloses_part(a, b) || encloses_part(b, a); }
+    Meeting meeting() const {
+        if (surfaces_meet(a, b)) return CollisionClass::collision;
+        if (!encloses_part(a, b) && !encloses_part(b, a)) return std::nullopt;
+        return contained_or_collision(holds_whole(a, b) || holds_whole(b, a));
+    }
     std::optional<Distance> gap(double most) const { return from(surface_gap(a, b, most)); }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         find_mesh_contacts(a, b, max_contacts, finding);
@@ -81,8 +92,10 @@ struct TwoSolids {
     PosedConvex a, b;
     double touch;
 
-    bool meet() const { return convex_meet(a, b) && !contained(); }
-    bool contained() const { return convex_holds(a, b) || convex_holds(b, a); }
+    Meeting meeting() const {
+        if (!convex_meet(a, b)) return std::nullopt;
+        return contained_or_collision(convex_holds(a, b) || convex_holds(b, a));
+    }
     std::optional<Distance> gap(double) const { return from(std::optional(convex_gap(a, b))); }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         const ConvexContact contact = convex_contact(a, b);
@@ -97,8 +110,10 @@ struct MeshAndSolid {
     BoxedSolid solid;
     double touch;
 
-    bool meet() const { return surface_meets(mesh, solid) && !holds_mesh(solid, mesh); }
-    bool contained() const { return encloses_solid(mesh, solid) || holds_mesh(solid, mesh); }
+    Meeting meeting() const {
+        if (surface_meets(mesh, solid)) return contained_or_collision(holds_mesh(solid, mesh));
+        return encloses_solid(mesh, solid) ? Meeting(CollisionClass::contained) : std::nullopt;
+    }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
     void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
         find_mesh_solid_contacts(mesh, solid, touch, finding);
@@ -115,8 +130,7 @@ struct SolidAndPlane {
     double touch;
 
     PlaneSpan span() const { return span_across(plane, solid); }
-    bool meet() const { return meets(span()); }
-    static bool contained() { return false; }
+    Meeting meeting() const { return collision_if(meets(span())); }
     std::optional<Distance> gap(double) const {
         auto found = from(std::optional(plane_gap(plane, span())));
         std::swap(found->nearest[0], found->nearest[1]);
@@ -141,8 +155,7 @@ struct MeshAndPlane {
     PosedPlane plane;
     double touch;
 
-    bool meet() const { return surface_meets(mesh, plane); }
-    static bool contained() { return false; }
+    Meeting meeting() const { return collision_if(surface_meets(mesh, plane)); }
     std::optional<Distance> gap(double) const {
         auto found = from(plane_gap(plane, mesh));
         if (found) std::swap(found->nearest[0], found->nearest[1]);
@@ -183,12 +196,8 @@ void turn_round(Finding& finding) {
 
 template <typename Pair>
 bool judge_pair(const Pair& pair, double reach, Finding& finding) {
-    if (pair.meet()) {
-        finding.collision_class = CollisionClass::collision;
-        return true;
-    }
-    if (pair.contained()) {
-        finding.collision_class = CollisionClass::contained;
+    if (const Meeting meeting = pair.meeting()) {
+        finding.collision_class = *meeting;
         return true;
     }
     if (!(reach > 0)) return false;
@@ -216,7 +225,7 @@ std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) 
     const bool in_order = kind_of(a) <= kind_of(b);
     using Answer = std::optional<ObjectGap>;
     Answer gap = with_kind(in_order ? a : b, in_order ? b : a, Answer(), [&](const auto& pair) -> Answer {
-        if (pair.meet() || pair.contained()) return ObjectGap();
+        if (pair.meeting()) return ObjectGap();
         const std::optional<Distance> found = pair.gap(infinity);
         if (!found) return std::nullopt;
         return ObjectGap{found->at_least, found->nearest};

@@ -19,4 +19,9 @@ inline PosedPlane posed_plane(const shape::Plane& plane, const Pose& pose) {
     return {vector::times(turned, 1 / vector::length(turned)), vector::plus(point, vector::place(pose))};
 }
 
+/// Below 0 on the side that the normal leads away from.
+inline double height_above(const PosedPlane& plane, const Point3d& point) {
+    return vector::dot(vector::minus(point, plane.point), plane.normal);
+}
+
 }  // namespace octopair
