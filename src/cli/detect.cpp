@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 #include "cli/detect_options.hpp"
 #include "cli/detection.hpp"
@@ -129,6 +132,24 @@ void check_index_type(const DetectRequest& request) {
     if (!npy && !request.count_only) refuse("only in an .npy file");
 }
 
+/// What the one has written is not lost to another. Devices and pipes take all.
+void check_outputs(const DetectRequest& request) {
+    namespace fs = std::filesystem;
+    const std::pair<std::string_view, fs::path> outputs[] = {
+        {"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}};
+    std::error_code no_path;  // then the writer says why
+    const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, no_path), no_path); };
+    for (const auto& [option, path] : outputs) {
+        for (const auto& [earlier_option, earlier] : outputs) {
+            if (option == earlier_option) break;
+            if (path.empty() || earlier.empty() || place(path) != place(earlier)) continue;
+            if (fs::exists(path, no_path) && !fs::is_regular_file(path, no_path)) continue;
+            throw Error(ErrorCode::usage,
+                        fmt::format("{}: {} is the file of {} as well", option, path.native(), earlier_option));
+        }
+    }
+}
+
 }  // namespace
 
 void add_detect(CLI::App& app, Action& action) {
@@ -146,6 +167,7 @@ void add_detect(CLI::App& app, Action& action) {
         if (request->events) check_event_options(*request);
         check_index_type(*request);
         check_pipeline_options(*request);
+        check_outputs(*request);
         action = [request] { return run_detect(*request); };
     });
 }

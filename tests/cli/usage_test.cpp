@@ -30,6 +30,8 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "detect a.npy --margin inf",
         "detect a.npy --margin 1e999",
         "detect a.npy --margin 1m",
+        "detect a.npy --output p.csv --stats p.csv",
+        "detect a.npy --output p.csv --stats ./p.csv",
         "detect a.npy --margin ''",
         "detect a.npy --limit -1",
         "detect a.npy --limit 1.5",
