@@ -151,6 +151,9 @@ void check_outcome_options(const DetectRequest& request) {
     if (!asked.report.empty() && !asked.report.ends_with(".html") && !asked.report.ends_with(".htm")) {
         refuse(fmt::format("--report: {}: a page ends in .html", asked.report));
     }
+    if (asked.baseline.ends_with(".csv") || asked.baseline.ends_with(".npy")) {
+        refuse(fmt::format("--baseline: {}: an older result is a .jsonl file", asked.baseline));
+    }
     if (!asked.baseline.empty() && request.limit)
         refuse("--baseline: not with --limit, which leaves out what may be new");
 }

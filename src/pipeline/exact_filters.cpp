@@ -92,16 +92,16 @@ bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const 
 }
 
 /// Where the gap of the moment of impact is, there they touch.
-void find_impact(const Moment& moment, std::uint32_t max_contacts, Finding& finding) {
+void find_impact(const Moment& moment, const ContactRequest& request, Finding& finding) {
     Finding at_moment;
     judge_objects(moment.a(), moment.b(), std::numeric_limits<double>::infinity(), at_moment);
     if (at_moment.collision_class != CollisionClass::clearance) {
-        find_contacts(moment.a(), moment.b(), max_contacts, finding);
+        find_contacts(moment.a(), moment.b(), request, finding);
         return;
     }
     finding.collision_class = CollisionClass::touching;
-    finding.more_contacts = max_contacts == 0;
-    if (max_contacts == 0) return;
+    finding.more_contacts = request.max_contacts == 0;
+    if (request.max_contacts == 0) return;
     const auto& [on_a, on_b] = at_moment.nearest;
     Contact contact;
     for (int axis = 0; axis < 3; ++axis) {
@@ -148,6 +148,7 @@ public:
     std::string_view name() const override { return "exact feature"; }
 
     void apply(Batch& batch) const override {
+        const ContactRequest request{options_.max_contacts, batch.stop()};
         batch.keep_if([&](std::size_t i) {
             const Pair pair = batch.pairs()[i];
             // Where no exact stage came before, this one is both.
@@ -156,10 +157,9 @@ public:
             Finding& finding = batch.finding(i);
             if (finding.collision_class == CollisionClass::clearance) return true;
             if (objects_.moving()) {
-                find_impact({objects_.moving_a(pair), objects_.moving_b(pair), finding.time}, options_.max_contacts,
-                            finding);
+                find_impact({objects_.moving_a(pair), objects_.moving_b(pair), finding.time}, request, finding);
             } else {
-                find_contacts(objects_.a(pair), objects_.b(pair), options_.max_contacts, finding);
+                find_contacts(objects_.a(pair), objects_.b(pair), request, finding);
             }
             return true;
         });

@@ -123,13 +123,14 @@ private:
     void apply(Block& block) const {
         block.work.assign(filters_.size(), {});
         for (std::size_t i = 0; i < filters_.size(); ++i) {
-            if (block.batch.stop().stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
             FilterWork& work = block.work[i];
             work.in = block.batch.pairs().size();
             if (work.in == 0) return;
             const Timed timed(work.seconds);
             filters_[i]->apply(block.batch);
             work.out = block.batch.pairs().size();
+            // What a filter says after a stop request need not be true.
+            if (block.batch.stop().stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
         }
     }
 

@@ -46,6 +46,7 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "detect a.npy --objects edge",
         "detect a.npy --stage objects",
         "detect a.npy --stage features",
+        "detect a.obj --baseline a.csv",
         "detect a.obj --stage objects --index-type uint64 --engine mpi --output p.npy",
         "detect a.npy --same-parent maybe",
         "detect a.npy --same-parent exclude --events",

@@ -43,6 +43,25 @@ double off_triangle(const Point3d& place, const Triangle3d& triangle) {
 /// Kinds of pairs with numbers around 1.
 constexpr std::array<unsigned, 4> near_kinds = {0, 1, 2, 3};
 
+TEST(TriangleGap, APointIsATriangleOfOneCorner) {
+    std::mt19937 random(9);
+    unsigned on_triangles = 0;
+    for (unsigned i = 0; i < testing::scaled(20000, 20); ++i) {
+        const auto& [a, b] = some_pair(i % 8, random);
+        for (const Point3d& point : {a[0], b[1], times(plus(b[0], b[1]), 0.5)}) {
+            const double expected = triangle_gap({point, point, point}, b).distance, found = triangle_gap(point, b);
+            double largest = 0;
+            for (const Point3d& corner : {point, b[0], b[1], b[2]}) {
+                for (const double at : corner) largest = std::max(largest, std::abs(at));
+            }
+            ASSERT_NEAR(found, expected, largest * 1e-15) << text(TrianglePair{Triangle3d{point, point, point}, b});
+            ASSERT_EQ(found == 0, expected == 0) << text(TrianglePair{Triangle3d{point, point, point}, b});
+            on_triangles += found == 0;
+        }
+    }
+    EXPECT_GT(on_triangles, testing::scaled(20000, 20));
+}
+
 TEST(TriangleGap, NoPlaneTellsThatItIsLonger) {
     std::mt19937 random(6);
     unsigned apart = 0;

@@ -1,6 +1,7 @@
 // Calls that end before their time: what filters and sinks throw, and stop requests.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <new>
 #include <thread>
@@ -145,6 +146,26 @@ TEST_P(Endings, StopRequestsAreHeardInTime) {
         }
         EXPECT_LE(took, patience) << std::chrono::duration<double>(took).count() << " s";
     }
+}
+
+TEST_P(Endings, ARequestDuringTheLastPairHolds) {
+    std::stop_source source;
+    Pipeline pipeline(GetParam().threads);
+    std::atomic<std::uint64_t> seen = 0;
+    pipeline.add(make_filter("all", [](Pair) { return true; }));
+    const std::uint64_t all = pipeline.run(*engine_, all_of(boxes_), {}, options()).collisions;
+    ASSERT_GT(all, 0u);
+    pipeline.add(make_filter("last", [&](Pair) {
+        if (++seen == all) source.request_stop();
+        return true;
+    }));
+    try {
+        pipeline.run(*engine_, all_of(boxes_), {}, options(), source.get_token());
+        ADD_FAILURE() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+    EXPECT_EQ(seen, all);
 }
 
 TEST_P(Endings, ARequestMadeBeforeTheCallHolds) {

@@ -190,6 +190,12 @@ TEST(ExactFilters, FacesInOnePlane) {
     EXPECT_TRUE(find(two_boxes({1, 1, 1}, {1, 1, 1}, {std::nextafter(1.0, 2.0), 0, 0})).empty());
 }
 
+TEST(ExactFilters, OneMeshTwice) {
+    const Finding twice = collision_of(two_boxes({2, 3, 4}, {2, 3, 4}, {0, 0, 0}));
+    EXPECT_EQ(twice.collision_class, CollisionClass::penetrating);
+    EXPECT_EQ(twice.depth, 1);  // of the middle, though no corner is inside
+}
+
 TEST(ExactFilters, CoaxialWallsThatOverlap) {
     // Two walls of one section in one line, 50 mm too long: no triangle passes through another.
     const Finding walls = collision_of(two_boxes({4, 0.2, 2.5}, {4, 0.2, 2.5}, {3.95, 0, 0}));

@@ -116,4 +116,23 @@ TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b) {
             {near.back(nearest.on_a), near.back(nearest.on_b)}};
 }
 
+double triangle_gap(const Point3d& point, const Triangle3d& triangle) {
+    const Triangle3d place = {point, point, point};
+    const NearOrigin near(place, triangle);
+    const Triangle3d& corners = near.b;  // about the point
+    Nearest nearest;
+    for (const Edge& edge :
+         {Edge{corners[0], corners[1]}, Edge{corners[1], corners[2]}, Edge{corners[2], corners[0]}}) {
+        nearest.offer({}, edge.nearest({}));
+    }
+    Point3d inside;
+    if (Face(corners).nearest_inside({}, inside)) nearest.offer({}, inside);
+    const double distance = near.back(vector::length(nearest.on_b));
+    double largest = 0;
+    for (const Point3d& corner : {point, triangle[0], triangle[1], triangle[2]}) {
+        for (const double at : corner) largest = std::max(largest, std::fabs(at));
+    }
+    return distance <= largest * 1e-12 && triangles_meet(place, triangle) ? 0 : distance;
+}
+
 }  // namespace octopair

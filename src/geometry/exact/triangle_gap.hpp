@@ -1,4 +1,4 @@
-// How far apart two triangles are, in float64.
+// How far apart two triangles are, or a point and one, in float64.
 #pragma once
 
 #include <array>
@@ -15,5 +15,8 @@ struct TriangleGap {
 /// 0 if they meet, by the exact test; otherwise right to a few roundings of the largest coordinate, also of degenerate
 /// triangles.
 TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b);
+
+/// The same distance of a point and a triangle, much cheaper.
+double triangle_gap(const Point3d& point, const Triangle3d& triangle);
 
 }  // namespace octopair

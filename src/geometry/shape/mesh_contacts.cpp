@@ -40,40 +40,60 @@ bool holds(const Box3d& box, const Point3d& point) {
     return true;
 }
 
-/// How deep corners and middles of triangles of the one are inside the other.
+Point3d middle_of_box(const Box3d& box) {
+    Point3d middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+    return middle;
+}
+
+/// How deep places of the one are inside the other.
 class DepthSearch {
 public:
-    explicit DepthSearch(const PosedMesh& outer) : outer_(outer), box_(world_box(outer)) {}
+    DepthSearch(const PosedMesh& outer, const std::stop_token& stop)
+        : outer_(outer), stop_(stop), box_(world_box(outer)), probe_(outer) {}
 
     double deepest(const PosedMesh& inner) {
         if (!outer_.tree.parts.any_closed) return 0;
-        std::vector<Point3d> places;
-        for (std::uint32_t i = 0; i < inner.tree.triangles.size(); ++i) {
-            const Triangle3d triangle = inner.tree.world_triangle(inner.pose, i);
-            for (const Point3d& corner : triangle) add(corner, places);
-            add(middle_of(triangle), places);
+        const Point3d middle = middle_of_box(world_box(inner));
+        if (holds(box_, middle) && probe_.distance(middle, 0) > 0 && encloses(inner, middle)) look_at(middle);
+        const std::vector<Point3d> places = places_of(inner);
+        // Some from all over first: the deeper these are, the fewer of the others ask for more than a look.
+        for (const std::size_t step : {std::size_t(64), std::size_t(1)}) {
+            for (std::size_t i = 0; i < places.size() && !stop_.stop_requested(); i += step) look_at(places[i]);
         }
-        std::sort(places.begin(), places.end());
-        places.erase(std::unique(places.begin(), places.end()), places.end());
-        for (const Point3d& place : places) look_at(place);
         return deepest_;
     }
 
 private:
-    void add(const Point3d& place, std::vector<Point3d>& places) const {
-        if (holds(box_, place)) places.push_back(place);
+    /// Corners and middles of triangles, where they can be inside; those of one neighbourhood together.
+    std::vector<Point3d> places_of(const PosedMesh& inner) const {
+        std::vector<Point3d> places;
+        std::vector<bool> seen(inner.tree.vertices.size());
+        const auto add = [&](const Point3d& place) {
+            if (holds(box_, place)) places.push_back(place);
+        };
+        for (std::uint32_t i = 0; i < inner.tree.triangles.size(); ++i) {
+            const Triangle3d triangle = inner.tree.world_triangle(inner.pose, i);
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t vertex = inner.tree.triangles[i][corner];
+                if (!seen[vertex]) add(triangle[corner]);
+                seen[vertex] = true;
+            }
+            add(middle_of(triangle));
+        }
+        return places;
     }
 
     /// Few places are deeper than those before; the cheaper questions come first.
     void look_at(const Point3d& place) {
-        probe_.put(place);
-        if (probe_.is_within(outer_, deepest_) || !encloses(outer_, place)) return;
-        deepest_ = std::max(deepest_, probe_.distance(outer_));
+        const double distance = probe_.distance(place, deepest_);
+        if (distance > deepest_ && encloses(outer_, place)) deepest_ = distance;
     }
 
     const PosedMesh& outer_;
+    const std::stop_token& stop_;
     Box3d box_;
-    Probe probe_;
+    SurfaceProbe probe_;
     double deepest_ = 0;
 };
 
@@ -93,15 +113,15 @@ bool comes_first(const Contact& a, const Contact& b) {
 
 class ContactSearch {
 public:
-    ContactSearch(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts)
-        : a_(a), b_(b), max_contacts_(max_contacts), same_handed_(mirrors(a.pose) == mirrors(b.pose)) {}
+    ContactSearch(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request)
+        : a_(a), b_(b), request_(request), same_handed_(mirrors(a.pose) == mirrors(b.pose)) {}
 
     void run(Finding& finding) {
         visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
             add(at);
-            return true;
+            return !request_.stop.stop_requested();
         });
-        const double depth = depth_of_meshes(a_, b_);
+        const double depth = depth_of_meshes(a_, b_, request_.stop);
         const bool inside = penetrating_ || depth > 0;
         finding.collision_class = inside ? CollisionClass::penetrating : CollisionClass::touching;
         finding.depth = !inside ? 0 : depth > 0 ? depth : deepest_;
@@ -126,7 +146,7 @@ private:
 
     /// A heap with the last one to be told in front.
     void keep(const Contact& contact) {
-        if (contacts_.size() == max_contacts_) {
+        if (contacts_.size() == request_.max_contacts) {
             more_ = true;
             if (contacts_.empty() || !comes_first(contact, contacts_.front())) return;
             std::pop_heap(contacts_.begin(), contacts_.end(), comes_first);
@@ -137,7 +157,7 @@ private:
     }
 
     const PosedMesh &a_, &b_;
-    std::uint32_t max_contacts_;
+    const ContactRequest& request_;
     bool same_handed_;
     bool penetrating_ = false, more_ = false;
     double deepest_ = 0;  // of the contacts
@@ -146,13 +166,13 @@ private:
 
 }  // namespace
 
-double depth_of_meshes(const PosedMesh& a, const PosedMesh& b) {
+double depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop) {
     if (a.tree.nodes.empty() || b.tree.nodes.empty()) return 0;
-    return std::max(DepthSearch(a).deepest(b), DepthSearch(b).deepest(a));
+    return std::max(DepthSearch(a, stop).deepest(b), DepthSearch(b, stop).deepest(a));
 }
 
-void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, std::uint32_t max_contacts, Finding& finding) {
-    ContactSearch(a, b, max_contacts).run(finding);
+void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding) {
+    ContactSearch(a, b, request).run(finding);
 }
 
 }  // namespace octopair

@@ -1,50 +1,25 @@
 // What a mesh encloses: a ray from the point, in the world, along x, and how the closed parts wind around it.
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/exact/orientation.hpp"
 #include "geometry/exact/ray_parity.hpp"
 #include "geometry/shape/mesh_leaves.hpp"
 #include "geometry/shape/mesh_pair.hpp"
+#include "geometry/shape/world_boxes.hpp"
 
 namespace octopair {
 
 namespace {
 
-/// Boxes of a posed mesh, in the world: whether the ray may pass them.
-class RayTest {
-public:
-    RayTest(const PosedMesh& mesh, const Point3d& from) : pose_(mesh.pose), from_(from) {
-        origin_ = vector::posed(mesh.pose, mesh.tree.origin);
-        const MeshNode& root = mesh.tree.nodes[0];
-        for (int row = 0; row < 3; ++row) {
-            double made_of = std::abs(pose_.rows[row][3]) + std::abs(from[row]);
-            for (int axis = 0; axis < 3; ++axis) {
-                made_of +=
-                    std::abs(pose_.rows[row][axis]) *
-                    (std::abs(mesh.tree.origin[axis]) + std::abs(double(root.centre[axis])) + double(root.half[axis]));
-            }
-            slack_[row] = 64 * 0x1p-53 * made_of;  // fewer than 64 roundings
-        }
+/// Whether the ray may pass a box.
+bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Point3d& from) {
+    for (int row = 0; row < 3; ++row) {
+        const auto [low, high] = boxes.span(node, row);
+        if (high < from[row]) return false;
+        if (row > 0 && low > from[row]) return false;
     }
-
-    bool may_pass(const MeshNode& node) const {
-        for (int row = 0; row < 3; ++row) {
-            const auto& r = pose_.rows[row];
-            const double centre = origin_[row] + (r[0] * double(node.centre[0]) + r[1] * double(node.centre[1]) +
-                                                  r[2] * double(node.centre[2]));
-            const double half = std::abs(r[0]) * double(node.half[0]) + std::abs(r[1]) * double(node.half[1]) +
-                                std::abs(r[2]) * double(node.half[2]) + slack_[row];
-            if (centre + half < from_[row]) return false;
-            if (row > 0 && centre - half > from_[row]) return false;
-        }
-        return true;
-    }
-
-private:
-    const Pose& pose_;
-    Point3d from_, origin_, slack_;
-};
+    return true;
+}
 
 /// How often the surface was crossed: outward less inward, and of what does not know its outside, how often in all.
 struct Crossings {
@@ -70,13 +45,13 @@ void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const Point3d& from
 
 bool encloses(const PosedMesh& mesh, const Point3d& point) {
     if (!mesh.tree.parts.any_closed) return false;
-    const RayTest ray(mesh, point);
+    const WorldBoxes boxes(mesh);
     Crossings crossings;
     NodeStack<std::uint32_t> waiting;
     waiting.push(0);
     while (!waiting.empty()) {
         const MeshNode& node = mesh.tree.nodes[waiting.pop()];
-        if (!ray.may_pass(node)) continue;
+        if (!may_pass(boxes, node, point)) continue;
         if (node.is_leaf()) {
             count_leaf(mesh, node, point, crossings);
         } else {

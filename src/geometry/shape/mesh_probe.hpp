@@ -1,49 +1,76 @@
-// How far a point is from the surface of a posed mesh.
+// How far points are from the surface of a posed mesh. Close ones are asked best one after the other: the triangle that was
+// nearest to the last one is the first to be looked at.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "geometry/exact/triangle_gap.hpp"
-#include "geometry/shape/mesh_leaves.hpp"
+#include "geometry/shape/mesh_walk.hpp"
+#include "geometry/shape/world_boxes.hpp"
 
 namespace octopair {
 
-/// A mesh of one point, to be put anywhere.
-class Probe {
+class SurfaceProbe {
 public:
-    Probe() {
-        tree_.vertices.resize(1);
-        tree_.triangles = {{0, 0, 0}};
-        tree_.numbers = {0};
-        tree_.nodes = {{{0, 0, 0}, 0, {0, 0, 0}, 1}};
-    }
+    /// Of a mesh with triangles, which is borrowed.
+    explicit SurfaceProbe(const PosedMesh& mesh) : mesh_(mesh), boxes_(mesh) {}
 
-    void put(const Point3d& point) { tree_.vertices[0] = tree_.origin = point; }
-
-    /// 0 of a point on the surface; infinite where there is none.
-    double distance(const PosedMesh& mesh) const {
-        constexpr double infinity = std::numeric_limits<double>::infinity();
-        const auto gap = surface_gap({tree_, pose_}, mesh, infinity);
-        return gap ? gap->distance : infinity;
-    }
-
-    /// Whether that is at most so much; much cheaper, where it is less.
-    bool is_within(const PosedMesh& mesh, double reach) const {
-        const Point3d& point = tree_.vertices[0];
-        bool within = false;
-        visit_leaves({tree_, pose_}, mesh, round_up(reach), [&](const MeshNode&, const MeshNode& leaf) {
-            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count && !within; ++i) {
-                const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
-                within = triangle_gap({point, point, point}, triangle).distance <= reach;
+    /// The distance, 0 on the surface. Where it is no more than `enough`, any number from it to there: much cheaper.
+    double distance(const Point3d& point, double enough) {
+        double least = gap(point, nearest_);
+        NodeStack<Waiting> waiting;
+        waiting.push({0, 0});
+        while (least > enough && !waiting.empty()) {
+            const Waiting at = waiting.pop();
+            if (at.at_least >= least) continue;
+            const MeshNode& node = mesh_.tree.nodes[at.node];
+            if (node.is_leaf()) {
+                look_at(node, point, least);
+                continue;
             }
-            return !within;
-        });
-        return within;
+            const Waiting first = weigh(node.first, point), second = weigh(node.first + 1, point);
+            waiting.push(first.at_least <= second.at_least ? second : first);
+            waiting.push(first.at_least <= second.at_least ? first : second);
+        }
+        return least;
     }
 
 private:
-    MeshTree tree_;
-    Pose pose_;
+    struct Waiting {
+        std::uint32_t node;
+        double at_least;
+    };
+
+    double gap(const Point3d& point, std::uint32_t triangle) const {
+        return triangle_gap(point, mesh_.tree.world_triangle(mesh_.pose, triangle));
+    }
+
+    void look_at(const MeshNode& leaf, const Point3d& point, double& least) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            const double found = gap(point, i);
+            if (found < least) least = found, nearest_ = i;
+        }
+    }
+
+    Waiting weigh(std::uint32_t node, const Point3d& point) const {
+        double square = 0, largest = 0;
+        for (int row = 0; row < 3; ++row) {
+            const auto [low, high] = boxes_.span(mesh_.tree.nodes[node], row);
+            const double away = std::max({0.0, low - point[row], point[row] - high});
+            square += away * away;
+            largest = std::max(largest, away);
+        }
+        // Squares that are beyond float64 tell nothing, and roots are rounded.
+        const bool fits = square > 0x1p-900 && square < 0x1p900;
+        return {node, fits ? std::sqrt(square) * (1 - 0x1p-50) : largest * (1 - 0x1p-50)};
+    }
+
+    PosedMesh mesh_;
+    WorldBoxes boxes_;
+    std::uint32_t nearest_ = 0;
 };
 
 inline Point3d middle_of(const Triangle3d& triangle) {

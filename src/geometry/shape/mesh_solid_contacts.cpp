@@ -41,12 +41,11 @@ std::vector<Point3d> places_of(const BoxedSolid& solid) {
 }
 
 double deepest_in_mesh(const PosedMesh& mesh, const BoxedSolid& solid) {
-    Probe probe;
+    SurfaceProbe probe(mesh);
     double deepest = 0;
     for (const Point3d& place : places_of(solid)) {
-        probe.put(place);
-        if (probe.is_within(mesh, 0) || !encloses(mesh, place)) continue;
-        deepest = std::max(deepest, probe.distance(mesh) + solid.solid.radius);
+        const double distance = probe.distance(place, 0);
+        if (distance > 0 && encloses(mesh, place)) deepest = std::max(deepest, distance + solid.solid.radius);
     }
     return deepest;
 }

@@ -82,10 +82,10 @@ struct TwoMeshes {
         return contained_or_collision(holds_whole(a, b) || holds_whole(b, a));
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(a, b, most)); }
-    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
-        find_mesh_contacts(a, b, max_contacts, finding);
+    void find_contacts(const ContactRequest& request, Finding& finding) const {
+        find_mesh_contacts(a, b, request, finding);
     }
-    double contained_depth() const { return depth_of_meshes(a, b); }
+    double contained_depth(const std::stop_token& stop) const { return depth_of_meshes(a, b, stop); }
 };
 
 struct TwoSolids {
@@ -97,12 +97,12 @@ struct TwoSolids {
         return contained_or_collision(convex_holds(a, b) || convex_holds(b, a));
     }
     std::optional<Distance> gap(double) const { return from(std::optional(convex_gap(a, b))); }
-    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+    void find_contacts(const ContactRequest& request, Finding& finding) const {
         const ConvexContact contact = convex_contact(a, b);
-        set_contact(from(contact), max_contacts, finding);
+        set_contact(from(contact), request.max_contacts, finding);
         set_class(touch, finding);
     }
-    double contained_depth() const { return convex_contact(a, b).depth; }
+    double contained_depth(const std::stop_token&) const { return convex_contact(a, b).depth; }
 };
 
 struct MeshAndSolid {
@@ -115,13 +115,13 @@ struct MeshAndSolid {
         return encloses_solid(mesh, solid) ? Meeting(CollisionClass::contained) : std::nullopt;
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
-    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
+    void find_contacts(const ContactRequest& request, Finding& finding) const {
         find_mesh_solid_contacts(mesh, solid, touch, finding);
         set_class(touch, finding);
-        finding.more_contacts = finding.contacts.size() > max_contacts;
-        if (finding.more_contacts) finding.contacts.resize(max_contacts);
+        finding.more_contacts = finding.contacts.size() > request.max_contacts;
+        if (finding.more_contacts) finding.contacts.resize(request.max_contacts);
     }
-    double contained_depth() const { return depth_of_mesh_and_solid(mesh, solid); }
+    double contained_depth(const std::stop_token&) const { return depth_of_mesh_and_solid(mesh, solid); }
 };
 
 struct SolidAndPlane {
@@ -136,11 +136,11 @@ struct SolidAndPlane {
         std::swap(found->nearest[0], found->nearest[1]);
         return found;
     }
-    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
-        set_plane_contact(plane, span(), max_contacts, finding);
+    void find_contacts(const ContactRequest& request, Finding& finding) const {
+        set_plane_contact(plane, span(), request.max_contacts, finding);
         set_class(touch, finding);
     }
-    static double contained_depth() { return 0; }
+    static double contained_depth(const std::stop_token&) { return 0; }
 
     static void set_plane_contact(const PosedPlane& plane, const PlaneSpan& span, std::uint32_t max_contacts,
                                   Finding& finding) {
@@ -161,11 +161,11 @@ struct MeshAndPlane {
         if (found) std::swap(found->nearest[0], found->nearest[1]);
         return found;
     }
-    void find_contacts(std::uint32_t max_contacts, Finding& finding) const {
-        SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), max_contacts, finding);
+    void find_contacts(const ContactRequest& request, Finding& finding) const {
+        SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), request.max_contacts, finding);
         set_class(touch, finding);
     }
-    static double contained_depth() { return 0; }
+    static double contained_depth(const std::stop_token&) { return 0; }
 };
 
 /// Calls judge(pair) with the two as one of the kinds above, `first` being of no later kind than `second`. Planes are
@@ -234,14 +234,14 @@ std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) 
     return gap;
 }
 
-void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding) {
+void find_contacts(const PosedObject& a, const PosedObject& b, const ContactRequest& request, Finding& finding) {
     const bool in_order = kind_of(a) <= kind_of(b);
     if (!in_order) turn_round(finding);
     with_kind(in_order ? a : b, in_order ? b : a, 0, [&](const auto& pair) {
         if (finding.collision_class == CollisionClass::contained) {
-            finding.depth = pair.contained_depth();
+            finding.depth = pair.contained_depth(request.stop);
         } else {
-            pair.find_contacts(max_contacts, finding);
+            pair.find_contacts(request, finding);
         }
         return 0;
     });

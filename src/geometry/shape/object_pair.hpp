@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "geometry/shape/contact_request.hpp"
 #include "geometry/shape/prepared.hpp"
 #include "octopair/pipeline.hpp"
 
@@ -29,6 +30,6 @@ struct ObjectGap {
 std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b);
 
 /// Of two objects that meet, and whose class is known so far as judge_objects() finds it: sets class, depth and contacts.
-void find_contacts(const PosedObject& a, const PosedObject& b, std::uint32_t max_contacts, Finding& finding);
+void find_contacts(const PosedObject& a, const PosedObject& b, const ContactRequest& request, Finding& finding);
 
 }  // namespace octopair
