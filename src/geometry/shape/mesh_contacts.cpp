@@ -86,8 +86,14 @@ private:
 
     /// Few places are deeper than those before; the cheaper questions come first.
     void look_at(const Point3d& place) {
+        if (vector::length(vector::minus(place, outside_)) < outside_radius_) return;
         const double distance = probe_.distance(place, deepest_);
-        if (distance > deepest_ && encloses(outer_, place)) deepest_ = distance;
+        if (distance <= deepest_) return;
+        if (encloses(outer_, place)) {
+            deepest_ = distance;
+        } else {
+            outside_ = place, outside_radius_ = distance * (1 - 1e-9);
+        }
     }
 
     const PosedMesh& outer_;
@@ -95,6 +101,9 @@ private:
     Box3d box_;
     SurfaceProbe probe_;
     double deepest_ = 0;
+    // Around the last place outside, as far as no surface is: all of that is outside.
+    Point3d outside_ = {};
+    double outside_radius_ = 0;
 };
 
 /// Whether two triangles in one plane face the same side of it.

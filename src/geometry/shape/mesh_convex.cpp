@@ -36,10 +36,9 @@ bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid) {
 }
 
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
-                             const std::function<void(std::uint32_t at, const Triangle3d&)>& tell) {
+                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& tell) {
     visit_near(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
-        if (convex_meet(PosedConvex(triangle), posed(solid))) tell(at, triangle);
-        return true;
+        return !convex_meet(PosedConvex(triangle), posed(solid)) || tell(at, triangle);
     });
 }
 

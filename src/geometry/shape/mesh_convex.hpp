@@ -20,9 +20,10 @@ struct BoxedSolid {
 /// Whether some triangle meets the solid, which is full: one that lies inside does.
 bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid);
 
-/// Tells of all triangles that meet the solid, in an order that depends on the mesh alone: where it stands in the tree.
+/// Tells of all triangles that meet the solid, in an order that depends on the mesh alone: where it stands in the tree. Ends
+/// where `tell` returns false.
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
-                             const std::function<void(std::uint32_t at, const Triangle3d&)>& tell);
+                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& tell);
 
 /// Whether the solid lies inside the mesh, whose surface must not meet it.
 bool encloses_solid(const PosedMesh& mesh, const BoxedSolid& solid);

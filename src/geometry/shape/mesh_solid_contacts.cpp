@@ -91,7 +91,8 @@ double depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
     return mesh.tree.parts.any_closed ? std::max(in_solid, deepest_in_mesh(mesh, solid)) : in_solid;
 }
 
-void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, double touch, Finding& finding) {
+void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
+                              Finding& finding) {
     double deepest = 0;
     visit_meeting_triangles(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
         const bool oriented = mesh.tree.parts.sides[at] == MeshParts::Side::oriented;
@@ -99,8 +100,9 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, do
         const ConvexContact least = convex_contact(PosedConvex(triangle), posed(solid));
         Contact contact = {least.point, least.normal, least.depth, mesh.tree.numbers[at]};
         deepest = std::max(deepest, least.depth);
-        if (least.depth > touch) lead_out(triangle, outward, solid, contact);
+        if (least.depth > request.touch) lead_out(triangle, outward, solid, contact);
         finding.contacts.push_back(contact);
+        return !request.stop.stop_requested();
     });
     const double inside = mesh.tree.parts.any_closed ? depth_of_mesh_and_solid(mesh, solid) : 0;
     finding.depth = std::max(inside, deepest);

@@ -7,15 +7,20 @@
 //           into it. The deepest come first, then by number.
 #pragma once
 
-#include <cstdint>
+#include <stop_token>
 
 #include "geometry/shape/mesh_convex.hpp"
 #include "octopair/pipeline.hpp"
 
 namespace octopair {
 
-/// Sets depth and contacts of a finding; a is the mesh. Depths below `touch` are none.
-void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, double touch, Finding& finding);
+struct MeshSolidRequest {
+    double touch;                 ///< depths below it are none
+    const std::stop_token& stop;  ///< after a request the search ends soon, with any answer
+};
+/// Sets depth and contacts of a finding; a is the mesh.
+void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
+                              Finding& finding);
 
 /// How far the deepest place of either is inside the other; 0 if none is.
 double depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid);

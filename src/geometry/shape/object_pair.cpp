@@ -116,7 +116,7 @@ struct MeshAndSolid {
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
-        find_mesh_solid_contacts(mesh, solid, touch, finding);
+        find_mesh_solid_contacts(mesh, solid, {touch, request.stop}, finding);
         set_class(touch, finding);
         finding.more_contacts = finding.contacts.size() > request.max_contacts;
         if (finding.more_contacts) finding.contacts.resize(request.max_contacts);
