@@ -35,7 +35,8 @@ FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent
     }
     open_moving(paths);
     if (!moving_.empty()) return;
-    still_ = read_input_set(paths, content, 1, stop);
+    constexpr unsigned threads = 1;  // for shapes, and there are none
+    still_ = read_input_set(paths, content, threads, stop);
     objects_ = still_.scene.objects;
     wide_ = std::holds_alternative<Buffer<Box3d>>(still_.scene.boxes);
 }

@@ -54,12 +54,13 @@ struct InputSet {
 };
 
 /// Boxes are there, but of triangles that were asked for with what the exact stages need (SceneContent::shapes); where there
-/// is a JSON scene, all are read with shapes, made ready on so many threads (0: one a core). Throws what io::read_scene, io::join_scenes and make_shaped throw.
+/// is a JSON scene, all are read with shapes, made ready on so many threads (0: one a core). Throws what io::read_scene,
+/// io::join_scenes and make_shaped throw.
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content, unsigned threads,
                         const std::stop_token& stop);
 
-/// The objects of a slice of the set, of any files but JSON scenes; of .npy files no others are read. `names`: whether the scene gets the names of all
-/// objects of the set, or of none.
+/// The objects of a slice of the set, of any files but JSON scenes; of .npy files no others are read. `names`: whether the
+/// scene gets the names of all objects of the set, or of none.
 struct SliceRequest {
     SliceNumber number;
     bool names = false;

@@ -34,8 +34,9 @@ private:
     std::vector<Geometry> geometries_;
 };
 
-/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Triangles give boxes. Throws as ShapedSet
-/// does, and Error{bad_input} for poses that do not fit their shapes, with the file where there is but one.
+/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Triangles give
+/// boxes. Throws as ShapedSet does, and Error{bad_input} for poses that do not fit their shapes, with the file where there
+/// is but one.
 void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop);
 
 /// Both sets of a join anew, where they have shapes that boxes are made of: a plane has to reach as far as the other set.

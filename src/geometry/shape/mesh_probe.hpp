@@ -1,11 +1,10 @@
-// How far points are from the surface of a posed mesh. Close ones are asked best one after the other: the triangle that was
-// nearest to the last one is the first to be looked at.
+// How far points are from the surface of a posed mesh. The triangle that was nearest to the last point is the first to be
+// looked at, so it is well to ask for neighbours one after the other.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "geometry/exact/triangle_gap.hpp"
 #include "geometry/shape/mesh_walk.hpp"
