@@ -2,7 +2,7 @@
 //
 // Class     penetrating where two triangles pass through each other; of closed meshes also where two triangles lie in one
 //           plane with both insides on one side of it, or where a corner or the middle of a triangle of the one is inside
-//           the other. Else touching.
+//           the other, or the middle of one inside both. Else touching.
 // Depth     of those that penetrate: how far the deepest of those corners and middles, or the middle of one that lies in
 //           both, is from the other's surface, so both have to be moved by that much, or more, to end it. Where no such
 //           place is inside, and of open meshes, that of the deepest contact.
