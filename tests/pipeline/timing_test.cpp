@@ -1,0 +1,76 @@
+// How soon calls with filters end after a stop request.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "octopair/octopair.hpp"
+#include "pipeline/flow.hpp"
+#include "support/scale.hpp"
+
+namespace octopair::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
+
+/// How long after a stop request a call ends.
+Clock::duration time_to_cancel(const std::function<void(std::stop_token)>& call) {
+    std::stop_source source;
+    Clock::time_point asked;
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(milliseconds(100));
+        asked = Clock::now();
+        source.request_stop();
+    });
+    try {
+        call(source.get_token());
+        ADD_FAILURE() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+    }
+    const auto ended = Clock::now();
+    stopper.join();
+    return ended - asked;
+}
+
+/// Takes its time over every pair: busy for short ones, asleep for long ones.
+std::unique_ptr<Filter> slow_filter(Clock::duration of_a_pair) {
+    return make_filter("slow", [of_a_pair](Pair) {
+        const auto end = Clock::now() + of_a_pair;
+        if (of_a_pair >= milliseconds(1)) std::this_thread::sleep_until(end);
+        while (Clock::now() < end) {
+        }
+        return true;
+    });
+}
+
+class PipelineTiming : public ::testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Threads, PipelineTiming, ::testing::Values(1u, 2u, 7u));
+
+TEST_P(PipelineTiming, StopRequestsAreHeardInTime) {
+    const std::vector<Box3f> boxes = samples::make_scene("dense", 20'000, 1);
+    const auto engine = make_local_engine(2);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        Options options;
+        options.order = order;
+        options.buffer_bytes = 1 << 20;
+        for (const Clock::duration of_a_pair :
+             {Clock::duration(std::chrono::microseconds(20)), Clock::duration(milliseconds(10))}) {
+            Pipeline pipeline(GetParam());
+            pipeline.add(slow_filter(of_a_pair));
+            Clock::duration took{};
+            for (int attempt = 0; attempt < 3; ++attempt) {  // a machine busy with other work delays any thread
+                took = time_to_cancel(
+                    [&](std::stop_token stop) { pipeline.run(*engine, all_of(boxes), {}, options, stop); });
+                if (took <= patience) break;
+            }
+            EXPECT_LE(took, patience) << std::chrono::duration<double>(took).count() << " s";
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test
