@@ -42,7 +42,7 @@ public:
     }
     void write(std::span<const Pair> pairs, std::span<const Finding> findings) override {
         std::vector<io::Change> changes;
-        if (baseline_) changes = baseline_->compare(pairs, names_);
+        if (baseline_) changes = baseline_->compare(pairs, findings, names_);
         for (const auto& writer : writers_) writer->write({pairs, findings, changes});
         if (pairs_) pairs_->write(pairs);
     }

@@ -28,10 +28,24 @@ struct ObjectId {
     }
 };
 
+// A key begins with how the two objects stand: apart, together, or that nobody asked.
+constexpr char unasked = '?', apart = '-', together = '+';
+
+char standing_in(const JsonFields& row) {
+    if (row.find("class") == nullptr) return unasked;
+    return row.text("class") == word_of(CollisionClass::clearance) ? apart : together;
+}
+
+/// How those may have stood that a collision of this class is like, what fits best first.
+std::string_view standings_like(CollisionClass collision_class) {
+    if (collision_class == CollisionClass::unknown) return "?+-";
+    return meet(collision_class) ? "+?" : "-?";
+}
+
 std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
     std::string first = a.text(join ? "a" : ""), second = b.text(join ? "b" : "");
     if (second < first) std::swap(first, second);
-    return fmt::format("{}:{}{}", first.size(), first, second);
+    return fmt::format("{}{}:{}{}", unasked, first.size(), first, second);
 }
 
 ObjectId id_in(const JsonFields& row, const std::string& side) {
@@ -77,7 +91,9 @@ void Baseline::read(std::string_view text, std::string_view file, const std::sto
         if (row.find("frame") != nullptr) row.refuse_key("frame", "results of moving scenes cannot be compared");
         // Rows of a comparison that was itself written to a file.
         if (row.find("change") != nullptr && row.text("change") == word_of(Change::gone)) continue;
-        waiting_[key_of_ids(id_in(row, "a"), id_in(row, "b"), join_)].push_back(lines_.size());
+        std::string key = key_of_ids(id_in(row, "a"), id_in(row, "b"), join_);
+        key[0] = standing_in(row);
+        waiting_[key].push_back(lines_.size());
         lines_.emplace_back(line);
     }
     met_.resize(lines_.size());
@@ -89,22 +105,29 @@ std::string Baseline::key_of(Pair pair, const CollisionNames& names) const {
     return key_of_ids(id_of(pair.a, names.a), id_of(pair.b, names.b), join_);
 }
 
-std::vector<Change> Baseline::compare(std::span<const Pair> pairs, const CollisionNames& names) {
-    std::vector<Change> changes;
-    changes.reserve(pairs.size());
-    for (const Pair pair : pairs) {
-        const auto old = waiting_.find(key_of(pair, names));
-        if (old == waiting_.end() || old->second.empty()) {
-            changes.push_back(Change::begun);
-            ++counts_.begun;
-            continue;
-        }
-        met_[old->second.back()] = true;
-        old->second.pop_back();
-        changes.push_back(Change::same);
-        ++counts_.same;
-        --counts_.gone;
+bool Baseline::find_again(std::string key, CollisionClass collision_class) {
+    for (const char standing : standings_like(collision_class)) {
+        key[0] = standing;
+        const auto rows = waiting_.find(key);
+        if (rows == waiting_.end() || rows->second.empty()) continue;
+        met_[rows->second.back()] = true;
+        rows->second.pop_back();
+        return true;
     }
+    return false;
+}
+
+std::vector<Change> Baseline::compare(std::span<const Pair> pairs, std::span<const Finding> findings,
+                                      const CollisionNames& names) {
+    std::vector<Change> changes(pairs.size(), Change::begun);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const CollisionClass now = findings.empty() ? CollisionClass::unknown : findings[i].collision_class;
+        if (find_again(key_of(pairs[i], names), now)) changes[i] = Change::same;
+    }
+    const auto same = std::uint64_t(std::count(changes.begin(), changes.end(), Change::same));
+    counts_.same += same;
+    counts_.gone -= same;
+    counts_.begun += changes.size() - same;
     return changes;
 }
 

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         const std::size_t rows = baseline.gone().size();
         require(rows <= std::size_t(std::count(text.begin(), text.end(), '\n')) + 1);
         const Pair pairs[] = {{0, 1}, {0, 5}};
-        const auto changes = baseline.compare(pairs, {});
+        const auto changes = baseline.compare(pairs, {}, {});
         const auto same = std::size_t(std::count(changes.begin(), changes.end(), io::Change::same));
         require(changes.size() == 2 && baseline.gone().size() + same == rows && baseline.counts().same == same);
     } catch (const Error& error) {

@@ -104,9 +104,11 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
 
 class BaselineTest : public ::testing::Test {
 protected:
-    static std::string words(io::Baseline& baseline, const std::vector<Pair>& news, const io::CollisionNames& all) {
+    static std::string words(io::Baseline& baseline, const std::vector<Pair>& news, const io::CollisionNames& all,
+                             const std::vector<Finding>& findings = {}) {
         std::string text;
-        for (const io::Change change : baseline.compare(news, all)) text += std::string(io::word_of(change)) + ' ';
+        for (const io::Change change : baseline.compare(news, findings, all))
+            text += std::string(io::word_of(change)) + ' ';
         return text + std::to_string(baseline.gone().size()) + " gone";
     }
     static io::Baseline read(const std::string& text, bool join = false) {
@@ -133,6 +135,26 @@ TEST_F(BaselineTest, TheSameNamesAreCounted) {
     io::Baseline baseline = read(R"({"a":0,"b":3,"a_name":"bolt","b_name":"plate"}
 {"a":1,"b":3,"a_name":"bolt","b_name":"plate"})");
     EXPECT_EQ(words(baseline, {{0, 3}, {1, 3}, {2, 3}}, {{objects}, {objects}}), "same same new 0 gone");
+}
+
+TEST_F(BaselineTest, WhatWasNearAndMeetsIsNew) {
+    const std::string old = R"({"a":0,"b":1,"class":"clearance","distance":1}
+{"a":0,"b":2,"class":"touching"}
+{"a":0,"b":3,"class":"collision"}
+{"a":0,"b":4}
+{"a":0,"b":5})";
+    const std::vector<Pair> news = {{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
+    const std::vector<Finding> findings = {{.collision_class = CollisionClass::penetrating},
+                                           {.collision_class = CollisionClass::clearance},
+                                           {.collision_class = CollisionClass::contained},
+                                           {.collision_class = CollisionClass::clearance},
+                                           {.collision_class = CollisionClass::touching}};
+    io::Baseline baseline = read(old);
+    EXPECT_EQ(words(baseline, news, {}, findings), "new new same same same 2 gone");
+    EXPECT_EQ(baseline.gone()[0], old.substr(0, old.find('\n')));
+    // Pairs whose class nobody asked for are what they were, whatever that was.
+    io::Baseline unasked = read(old);
+    EXPECT_EQ(words(unasked, news, {}), "same same same same same 0 gone");
 }
 
 TEST_F(BaselineTest, ObjectsWithoutNamesAreKnownByNumber) {
