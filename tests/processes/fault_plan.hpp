@@ -18,7 +18,8 @@
 
 namespace octopair::testing {
 
-enum class FaultKind : std::uint32_t { kill, crash, stop };
+/// `mute`: the worker fails and does not say why; it lives on, so that this is no loss and not counted.
+enum class FaultKind : std::uint32_t { kill, crash, stop, mute };
 enum class Moment : std::uint32_t { begin, tick, end };
 
 struct Fault {
@@ -29,7 +30,7 @@ struct Fault {
     std::uint32_t pass_by = 0;  ///< shares of the step to let pass
 };
 
-/// How many faults happened, by step and kind.
+/// How many workers were lost, by step and kind.
 using FaultCounts = std::array<std::array<std::uint64_t, 3>, step_names.size()>;
 
 struct FaultPlan {

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "engine/processes/worker.hpp"
@@ -58,6 +59,7 @@ private:
     void happen() {
         const Fault fault = *fault_;
         fault_.reset();
+        if (fault.kind == FaultKind::mute) throw std::runtime_error("");
         plan_->happened.at(std::size_t(step_)).at(std::size_t(fault.kind)).fetch_add(1);
         switch (fault.kind) {
             case FaultKind::kill:
@@ -66,6 +68,9 @@ private:
                 end_by(SIGSEGV);
             case FaultKind::stop:
                 (void)::raise(SIGSTOP);
+                break;
+            case FaultKind::mute:
+                break;
         }
     }
 

@@ -82,6 +82,23 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     }
 }
 
+TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
+    const Scene scene("clustered", 6'000, 1);
+    testing::MappedPlan plan;
+    const auto engine = testing::make_faulty_engine(2);
+    for (const Step step : {Step::encode, Step::sort, Step::scan}) {
+        plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
+        try {
+            (void)testing::ask(*engine, scene, {});
+            ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
+            EXPECT_STREQ(error.what(), "a worker process failed and did not say why");
+        }
+        expect_right(*engine, scene, {});
+    }
+}
+
 TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     const Scene scene("world10", 6'000, 1);
     testing::MappedPlan plan;

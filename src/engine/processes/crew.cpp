@@ -1,7 +1,7 @@
 #include "engine/processes/crew.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstring>
 #include <thread>
 #include <utility>
 
@@ -302,8 +302,8 @@ void Crew::fail(std::exception_ptr failure) {
 
 void Crew::fail_as_worker(unsigned slot) {
     const Slot& part = view_.slot(slot);
-    std::array<char, 256> message = part.message;
-    message.back() = 0;
+    std::string message(part.message.data(), strnlen(part.message.data(), part.message.size()));
+    if (message.empty()) message = "a worker process failed and did not say why";
     switch (part.outcome) {
         case Outcome::bad_box:
             return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
@@ -314,8 +314,7 @@ void Crew::fail_as_worker(unsigned slot) {
             break;
     }
     const bool known = part.error_code <= unsigned(ErrorCode::cancelled) && part.outcome == Outcome::failed;
-    fail(std::make_exception_ptr(
-        Error(known ? ErrorCode(part.error_code) : ErrorCode::engine_failed, std::string(message.data()))));
+    fail(std::make_exception_ptr(Error(known ? ErrorCode(part.error_code) : ErrorCode::engine_failed, message)));
 }
 
 /// Workers that do not leave a pass that failed are killed.
