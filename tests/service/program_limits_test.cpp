@@ -14,6 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
+using std::chrono::seconds;
 using testing::comes_true;
 using testing::RawSocket;
 using testing::ServerProgram;
@@ -24,10 +25,15 @@ TEST(ServerProgramLimits, OfDescriptors) {
     testing::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     std::vector<RawSocket> held;
-    for (int i = 0; i < 100; ++i) held.emplace_back(server.address());
-    EXPECT_NE(held.back().receive(minutes(1)).find("no more descriptors"), std::string::npos);
-    const auto call = [&] { (void)connect(server.address(), {.patience = std::chrono::seconds(20)}); };
-    EXPECT_EQ(testing::code_of(call), ErrorCode::resource_limit);
+    std::optional<ErrorCode> code;
+    // The server ends connections that say nothing for 10 s, which a busy machine may need for this.
+    for (int attempt = 0; attempt < 3 && code != ErrorCode::resource_limit; ++attempt) {
+        held.clear();
+        for (int i = 0; i < 80; ++i) held.emplace_back(server.address());
+        EXPECT_NE(held.back().receive(minutes(1)).find("no more descriptors"), std::string::npos);
+        code = testing::code_of([&] { (void)connect(server.address(), {.connect_timeout = seconds(2)}); });
+    }
+    EXPECT_EQ(code, ErrorCode::resource_limit);
     EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
     EXPECT_TRUE(server.lives());
     held.clear();

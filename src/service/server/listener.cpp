@@ -30,7 +30,7 @@ namespace {
 constexpr int backlog = 1024;
 constexpr std::chrono::seconds apart(1);         // looks for what was closed, and words about refusals
 constexpr std::chrono::milliseconds leave(250);  // until a refused connection is told why, and until it is closed
-constexpr std::size_t most_leaving = 64;
+constexpr std::size_t most_leaving = 64, most_spares = 8;
 
 ino_t socket_of(int descriptor) {
     struct stat found {};
@@ -163,34 +163,36 @@ void Listener::take_connections() {
     }
 }
 
-/// There are no more descriptors for connections.
+/// There are no more descriptors for connections. While all spare ones are used for this, those who wish to connect wait.
 void Listener::refuse_one_more() {
-    if (!spare_.open()) return;
-    spare_ = {};
-    {
-        const Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-        if (connection.open() && is_ours(connection)) {
-            refuse(connection);
-            say_why(connection, "no more descriptors for connections");
-        }
+    if (spares_.empty()) return;
+    spares_.pop_back();
+    Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (connection.open() && is_ours(connection)) {
+        refuse(std::move(connection), "no more descriptors for connections");
+    } else {
+        connection = {};
+        take_spares();
     }
-    take_spare();
 }
 
-void Listener::take_spare() { spare_ = Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
+void Listener::take_spares() {
+    while (spares_.size() < most_spares) {
+        Descriptor spare(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+        if (!spare.open()) return;
+        spares_.push_back(std::move(spare));
+    }
+}
 
 void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
     const std::uint64_t most = terms_.most_connections;
     if (known_.size() >= forget_from_ || (most > 0 && known_.size() >= most)) forget_closed();
     if (most > 0 && known_.size() >= most) {
-        refuse(connection);
-        leaving_.push_back({std::move(connection), std::chrono::steady_clock::now()});
-        if (leaving_.size() > most_leaving) see_out(leaving_.front());
-        if (leaving_.size() > most_leaving) leaving_.pop_front();
+        refuse(std::move(connection), "at most " + std::to_string(most) + " connections");
         return;
     }
-    if (!spare_.open()) take_spare();
+    take_spares();
     if (!address_.is_unix()) {
         const int on = 1;
         (void)::setsockopt(connection.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
@@ -216,7 +218,7 @@ void Listener::forget_closed() {
     forget_from_ = std::max<std::size_t>(64, 2 * known_.size());
 }
 
-void Listener::refuse(const Descriptor& connection) {
+void Listener::refuse(Descriptor connection, std::string why) {
     ++refused_;
     const auto now = std::chrono::steady_clock::now();
     if (terms_.refused && now - told_ >= apart) {
@@ -224,11 +226,11 @@ void Listener::refuse(const Descriptor& connection) {
         terms_.refused();
     }
     if (!terms_.encrypted) send(connection, empty_settings);
-}
-
-void Listener::say_why(const Descriptor& connection, const std::string& why) const {
-    if (!terms_.encrypted) send(connection, goaway("octopair: " + why));
-    (void)::shutdown(connection.number(), SHUT_WR);
+    leaving_.push_back({std::move(connection), std::move(why), now});
+    if (leaving_.size() > most_leaving) {
+        see_out(leaving_.front());
+        leaving_.pop_front();
+    }
 }
 
 void Listener::see_out(Refused& refused) const {
@@ -236,7 +238,8 @@ void Listener::see_out(Refused& refused) const {
     // What is unread when it is closed would reset the connection, and the words with it. gRPC's greeting is short.
     std::array<char, 1 << 16> said;
     (void)::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT);
-    say_why(refused.connection, "at most " + std::to_string(terms_.most_connections) + " connections");
+    if (!terms_.encrypted) send(refused.connection, goaway("octopair: " + refused.why));
+    (void)::shutdown(refused.connection.number(), SHUT_WR);
 }
 
 void Listener::see_out_refused() {
@@ -244,7 +247,10 @@ void Listener::see_out_refused() {
     for (Refused& refused : leaving_) {
         if (now - refused.since >= leave) see_out(refused);
     }
-    while (!leaving_.empty() && now - leaving_.front().since >= 2 * leave) leaving_.pop_front();
+    while (!leaving_.empty() && now - leaving_.front().since >= 2 * leave) {
+        leaving_.pop_front();
+        take_spares();
+    }
 }
 
 }  // namespace octopair::service

@@ -54,10 +54,11 @@ private:
         ino_t socket;
     };
 
-    /// One that is beyond the limit. It is told why a little later, or gRPC would connect again at once, thousands of times a
+    /// One too many. It is told why a little later, or gRPC would connect again at once, thousands of times a
     /// second; and closed later still, or its own words would find nobody, and it would not read ours.
     struct Refused {
         Descriptor connection;
+        std::string why;
         std::chrono::steady_clock::time_point since;
         bool told = false;
     };
@@ -69,16 +70,15 @@ private:
     bool is_ours(const Descriptor& connection) const;
     void forget_closed();
     void refuse_one_more();
-    void take_spare();
-    void refuse(const Descriptor& connection);
-    void say_why(const Descriptor& connection, const std::string& why) const;
+    void take_spares();
+    void refuse(Descriptor connection, std::string why);
     void see_out(Refused& refused) const;
     void see_out_refused();
 
     Address address_;
     Terms terms_;
     Descriptor lock_, socket_, wake_;
-    Descriptor spare_;  // given up to tell one more that there are no more
+    std::vector<Descriptor> spares_;  // given up, one at a time, to tell others that there are no more
     std::vector<Known> known_;
     std::deque<Refused> leaving_;
     std::chrono::steady_clock::time_point told_;  // of a refusal
