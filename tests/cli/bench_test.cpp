@@ -45,7 +45,8 @@ TEST_F(Bench, AResultThatCannotBeWrittenIsKnownBefore) {
 
 TEST_F(Bench, Interrupted) {
     const Outcome outcome = shell(
-        "\"$P\" bench paper --objects 100000 --rounds 1000 --threads 1 --json f & sleep 1; kill -INT $!; wait $!");
+        "\"$P\" bench paper --objects 100000 --rounds 1000 --threads 1 --json f & child=$!; hears $child; sleep 0.5; "
+        "kill -INT $child; wait $child");
     EXPECT_EQ(outcome.status, 130) << outcome.err;
     EXPECT_EQ(outcome.err, "octopair: interrupted\n");
     EXPECT_EQ(directory_.names(), std::vector<std::string>{});

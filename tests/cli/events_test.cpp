@@ -263,7 +263,7 @@ TEST_F(Events, Interrupted) {
     write_file(file("e.csv"), "old");
     const Outcome outcome = shell(
         "\"$P\" detect m.npy --events --margin 0.02 --output e.csv --threads 1 & child=$!; "
-        "sleep 0.4; kill -INT $child; wait $child");
+        "hears $child; sleep 0.2; kill -INT $child; wait $child");
     EXPECT_EQ(outcome.status, 130);
     EXPECT_EQ(outcome.err, "octopair: interrupted\n");
     EXPECT_EQ(content("e.csv"), "old");
@@ -275,8 +275,8 @@ TEST_F(Events, InterruptedWhileAPipeIsFull) {
     // The reader waits until the program has ended, so only the stop request can end it.
     const Outcome outcome = shell(
         "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
-        "\"$P\" detect m.npy --events >pipe & child=$!; sleep 0.4; kill -INT $child; wait $child; status=$?; "
-        "echo >status; exit $status");
+        "\"$P\" detect m.npy --events >pipe & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child; "
+        "status=$?; echo >status; wait; exit $status");
     EXPECT_EQ(outcome.status, 130) << outcome.err;
 }
 

@@ -129,8 +129,9 @@ TEST_F(Failure, AnInterruptLeavesTheOldFile) {
     generate("coincident", 60000);  // 1,799,970,000 pairs: seconds of work
     write_file(file("p.npy"), "old");
     for (const std::string signal : {"INT", "TERM"}) {
-        const Outcome outcome = shell("\"$P\" detect big.npy --output p.npy & child=$!; sleep 0.4; kill -" + signal +
-                                      " $child; wait $child");
+        const Outcome outcome =
+            shell("\"$P\" detect big.npy --output p.npy & child=$!; hears $child; sleep 0.2; kill -" + signal +
+                  " $child; wait $child");
         EXPECT_EQ(outcome.status, 130);
         EXPECT_EQ(outcome.err, "octopair: interrupted\n");
         EXPECT_EQ(content("p.npy"), "old");
@@ -143,8 +144,8 @@ TEST_F(Failure, AnInterruptWhileAPipeIsFull) {
     // The reader waits until the program has ended, so only the stop request can end it.
     const Outcome outcome = shell(
         "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
-        "\"$P\" detect big.npy >pipe & child=$!; sleep 0.4; kill -INT $child; wait $child; status=$?; echo >status; "
-        "exit $status");
+        "\"$P\" detect big.npy >pipe & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child; status=$?; "
+        "echo >status; wait; exit $status");
     EXPECT_EQ(outcome.status, 130) << outcome.err;
 }
 
@@ -152,7 +153,7 @@ TEST_F(Failure, ASecondInterruptKills) {
     // A stopped process takes both signals when it goes on; so there is no time to end by itself in between.
     generate("coincident", 60000);
     const Outcome outcome = shell(
-        "\"$P\" detect big.npy --output p.npy & child=$!; sleep 0.4; kill -STOP $child; "
+        "\"$P\" detect big.npy --output p.npy & child=$!; hears $child; sleep 0.2; kill -STOP $child; "
         "kill -TERM $child; kill -INT $child; kill -CONT $child; wait $child");
     EXPECT_TRUE(outcome.status == 128 + 2 || outcome.status == 128 + 15) << outcome.status;
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"big.npy"});

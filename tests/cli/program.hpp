@@ -19,10 +19,13 @@ struct Outcome {
 
 class ProgramTest : public testing::Test {
 protected:
-    /// Runs a line of sh in the directory; $P is the program.
+    /// Runs a line of sh in the directory; $P is the program, and `hears PID` waits until it takes SIGINT as a request.
     Outcome shell(const std::string& line) const {
-        const std::string script = "cd '" + directory_.path() + "' && P='" OCTOPAIR_PROGRAM "' && { " + line +
-                                   "\n} >'" + streams_.file("out") + "' 2>'" + streams_.file("err") + "'";
+        const std::string hears =
+            "hears() { for i in $(seq 1000); do grep -q '^SigBlk:.*[2367abef]$' /proc/$1/status && break; sleep 0.01; "
+            "done; }";
+        const std::string script = "cd '" + directory_.path() + "' && P='" OCTOPAIR_PROGRAM "' && " + hears + " && { " +
+                                   line + "\n} >'" + streams_.file("out") + "' 2>'" + streams_.file("err") + "'";
         const int status = std::system(script.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(streams_.file("out")),
                 read_file(streams_.file("err"))};

@@ -115,7 +115,7 @@ TEST_F(Replay, AnInterrupt) {
     { (void)Scene({1, Precision::float32, 0, file("step.rec")}).step(); }
     write_file(file("long.rec"), content("long.rec") + content("step.rec").substr(32, 24));
     const Outcome outcome =
-        shell("\"$P\" replay long.rec --threads 1 & child=$!; sleep 0.2; kill -INT $child; wait $child");
+        shell("\"$P\" replay long.rec --threads 1 & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child");
     EXPECT_EQ(outcome.status, 130);
     EXPECT_EQ(outcome.err, "octopair: interrupted\n");
 }

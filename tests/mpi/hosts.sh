@@ -157,7 +157,7 @@ echo "so they do with 5 ms and 100 Mbit/s between them"
 # Between two hosts that mpirun's host both reaches: only a limit of the whole time helps.
 slow_down 1 10
 lose_each_other() { in_network beta ip neighbour replace 10.77.0.3 dev eth0 lladdr 02:00:00:00:00:99 nud permanent; }
-settings=(--timeout 3)
+settings=(--timeout 8)
 cut_short many.npy lose_each_other
 in_network beta ip neighbour delete 10.77.0.3 dev eth0
 

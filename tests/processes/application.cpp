@@ -30,7 +30,7 @@ void print_workers() {
         // A child that keeps the sockets open, longer than the application lives; what tests read from is not its to keep.
         (void)::close(1);
         (void)::close(2);
-        (void)::sleep(5);
+        (void)::sleep(20);
         ::_exit(0);
     }
     for (;;) {

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(, ServerClock, ::testing::Values("+1d", "-1d"),
 TEST_P(ServerClock, IsSetWhileAJobRuns) {
     ServerProgram& server = serve("");
     const auto engine = connect(server.address(), {.patience = minutes(1)});
-    const std::vector<Box3f> heap(60'000);
+    const std::vector<Box3f> heap(120'000);
     Job job = engine->submit_stream(heap, {});
     const auto channel = testing::open_channel(server.address());
     const auto spec = testing::spec_of(1000);

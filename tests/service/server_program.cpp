@@ -1,7 +1,9 @@
 #include "service/server_program.hpp"
 
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,6 +60,14 @@ std::uint64_t ServerProgram::memory() const {
     std::uint64_t mapped = 0, resident = 0;
     std::ifstream("/proc/" + std::to_string(id_) + "/statm") >> mapped >> resident;
     return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void ServerProgram::limit_memory(std::uint64_t more) const {
+    std::uint64_t mapped = 0;
+    std::ifstream("/proc/" + std::to_string(id_) + "/statm") >> mapped;
+    const rlim_t most = mapped * std::uint64_t(::sysconf(_SC_PAGESIZE)) + more;
+    const rlimit limit{most, most};
+    EXPECT_EQ(::prlimit(id_, RLIMIT_AS, &limit, nullptr), 0);
 }
 
 std::size_t ServerProgram::descriptors() const {

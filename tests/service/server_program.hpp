@@ -39,6 +39,8 @@ public:
     std::string log() const { return test::read_file(folder_.file("log")); }
     /// Resident memory in bytes, and open descriptors; 0 if it does not live.
     std::uint64_t memory() const;
+    /// From now on it may map no more than so many bytes beyond what it has mapped.
+    void limit_memory(std::uint64_t more) const;
     std::size_t descriptors() const;
 
 private:

@@ -103,7 +103,8 @@ private:
     std::vector<Member> crew_;
     std::vector<std::weak_ptr<Region>> regions_;
     std::uint32_t next_region_ = desk_region + 1;
-    std::uint32_t number_ = 0;  // of the pass
+    /// Of the pass. Not small, as what a broken worker writes where it should not often is.
+    std::uint32_t number_ = 0x50000000;
     std::uint32_t job_ = 0;
     std::uint64_t shares_ = 0;
     Pass last_pass_;

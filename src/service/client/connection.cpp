@@ -113,8 +113,8 @@ v1::ServerDescription Connection::describe() {
     return description;
 }
 
-void Connection::give_up(const grpc::Status& status) const {
-    if (takes_no_more(status)) {
+void Connection::give_up(const grpc::Status& status, bool refused) const {
+    if (refused) {
         throw Error(ErrorCode::resource_limit, server_ + ": the server takes no more connections");
     }
     throw Error(ErrorCode::engine_failed, server_ + ": no server answers: " + status.error_message());
@@ -123,17 +123,22 @@ void Connection::give_up(const grpc::Status& status) const {
 void Connection::Patience::wait_or_throw(const grpc::Status& status, const std::stop_token& stop) {
     throw_if_stopped(stop);
     if (!may_come_back(status)) throw_status(status, connection_.server_);
-    if (was_connected(status)) connection_.met();
     constexpr std::chrono::milliseconds apart(50);
     const auto now = Clock::now();
-    if (away_since_ == Clock::time_point() || connection_.heard_.load() > away_since_) away_since_ = now;
+    if (away_since_ == Clock::time_point() || connection_.heard_.load() > away_since_) {
+        away_since_ = now;
+        refused_ = false;
+    }
+    if (takes_no_more(status)) refused_ = true;
+    // A connection that is refused may also be lost before the words come.
+    if (was_connected(status) && !refused_) connection_.met();
     // gRPC would connect again at once, thousands of times a second.
     std::this_thread::sleep_for(takes_no_more(status) ? 4 * apart : apart);
     // gRPC only connects while somebody waits in it; a call to a server that never answers would wait for longer.
     do {
         throw_if_stopped(stop);
         if (Clock::now() - away_since_ >= (connection_.met_ ? connection_.patience_ : connection_.connect_timeout_))
-            connection_.give_up(status);
+            connection_.give_up(status, refused_);
     } while (!connection_.channel_->WaitForConnected(std::chrono::system_clock::now() + apart));
 }
 

@@ -65,10 +65,11 @@ private:
     private:
         Connection& connection_;
         Clock::time_point away_since_{};
+        bool refused_ = false;  // since then the server has said that it takes no more connections
     };
 
     void met() { met_ = true; }
-    [[noreturn]] void give_up(const grpc::Status& status) const;
+    [[noreturn]] void give_up(const grpc::Status& status, bool refused) const;
 
     std::string server_;
     std::string token_;

@@ -64,7 +64,7 @@ private:
 TEST(Killed, LosesAndRepeatsNothing) {
     ServeProgram server;
     JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
-    const std::vector<Box3f> heap(scaled(4000, 2)), crowd(60'000);  // 64 MB of pairs; seconds of work
+    const std::vector<Box3f> heap(scaled(4000, 2)), crowd(150'000);  // 64 MB of pairs; seconds of work
     const std::vector<Box3f> scene = make_boxes("dense", scaled(400'000, 10), 1);
     const Work of_heap(Objects{std::span(heap), {}}), of_scene(Objects{std::span(scene), {}});
     const std::string streamed = submit(client, of_heap);
