@@ -38,9 +38,10 @@ TEST(Waiting, CanBeCancelled) {
     const Host host;
     const auto client = host.client();
     // Of so many equal boxes all pairs are counted for hours.
-    const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}}), few = {{{0, 0, 0}, {1, 1, 1}}};
-    const std::string running = client->submit({std::span(same), {}}, {}, {.count_only = true}),
-                      queued = client->submit({std::span(few), {}});
+    const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    const JobTerms count{.count_only = true};
+    const std::string running = client->submit({std::span(same), {}}, {}, count),
+                      queued = client->submit({std::span(same), {}}, {}, count);
     ASSERT_TRUE(comes_true([&] { return client->status(running).state == JobState::running; }));
     EXPECT_EQ(client->status(queued).queued_before, 0u);
     EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { client->release(queued); }).find("has not ended"),
