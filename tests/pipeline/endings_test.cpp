@@ -101,7 +101,7 @@ TEST_P(Endings, WhatTheEngineThrowsReachesTheCaller) {
     }
 }
 
-/// Where none is the last: timing_test.cpp asks how soon.
+/// In the midst of a call; how soon it ends, timing_test.cpp asks.
 TEST_P(Endings, RequestsDuringACallHold) {
     std::stop_source source;
     Pipeline pipeline(GetParam().threads);

@@ -42,7 +42,7 @@ TEST(ServerProgramLimits, OfDescriptors) {
 
 TEST(ServerProgramLimits, OfAddressSpace) {
     if (testing::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
-    // Of an arena for every thread nothing would be left.
+    // With an arena of malloc for every thread, gRPC itself would want for room.
     ServerProgram server({.arguments = "--engine local --threads 1", .before = "export MALLOC_ARENA_MAX=2;"});
     testing::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});

@@ -30,7 +30,8 @@ namespace {
 constexpr int backlog = 1024;
 constexpr std::chrono::seconds apart(1);         // looks for what was closed, and words about refusals
 constexpr std::chrono::milliseconds leave(250);  // until a refused connection is told why, and until it is closed
-constexpr std::size_t most_leaving = 64, most_spares = 8;
+constexpr std::size_t most_leaving = 64;         // refused connections at once
+constexpr std::size_t most_spares = 8;           // descriptors kept to refuse with
 
 ino_t socket_of(int descriptor) {
     struct stat found {};

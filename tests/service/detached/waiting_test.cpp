@@ -8,7 +8,7 @@
 namespace octopair::testing {
 namespace {
 
-/// So many that pairs are found for seconds.
+/// Some tenths of a second of work, more than a lane for small jobs takes.
 std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
 
 TEST(Waiting, IsForMemory) {
