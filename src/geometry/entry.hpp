@@ -3,14 +3,13 @@
 // `min` and `max` are the caller's box in float32, moved to a near origin, widened by margin and padding and rounded
 // outward, so boxes of a pair that counts always overlap here (box_source.hpp).
 //
-// `mask` makes the scan report a pair where, and only where, it should: two entries of one octant are a pair only if
-// (a.mask & b.mask) == 0.
-//   bits 0..2  the box begins before the octant on x, y, z. The low corner of two boxes' intersection lies in the
-//   octant
-//              exactly if on each axis at least one of them begins there, so each pair is reported by one octant only
-//              (the entry classes of Tsitsigkos et al., arXiv 2307.09256).
+// `mask` decides which octant reports a pair: an octant reports two of its entries only if (a.mask & b.mask) == 0.
+//   bits 0..2  class bits, one an axis: the box begins before this octant, or before one of the octants around it, up to
+//              the outermost octree. A bit that is set stays set on the way down. An octant then reports a pair exactly if
+//              it holds the low corner of the boxes' intersection, whatever octrees are nested in it (docs/design.md has
+//              the argument). The classes are those of Tsitsigkos et al., arXiv 2307.09256.
 //   bit 3, 4   the object belongs to the first, the second set of a join: pairs within a set do not count.
-//   bit 5      the object is a fixed one of a scene: likewise.
+//   bit 5      the object is fixed in a scene: pairs of fixed objects do not count.
 #pragma once
 
 #include <algorithm>

@@ -18,14 +18,6 @@ constexpr std::size_t prefetched = 32;           // objects ahead whose places a
 constexpr std::size_t prefetched_ghosts = 8;     // and ghosts
 constexpr std::size_t ghosts_at_once = 1 << 14;  // committed; more than a batch can have
 
-/// The mask of an entry put into `node`: its class bits there, on top of those it brought where the node lies on the
-/// frame's low border (the box then begins before the octant that this frame was made within).
-std::uint32_t mask_in(const Node& node, std::uint32_t brought, std::uint32_t begins) {
-    std::uint32_t border = 0;
-    for (unsigned axis = 0; axis < 3; ++axis) border |= std::uint32_t(node.lo[axis] == 0) << axis;
-    return (brought & ~begins_before) | begins | (brought & border);
-}
-
 /// A block's ghosts, in the order in which they are found.
 class GhostList {
 public:
@@ -143,7 +135,6 @@ std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const 
 
 void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) const {
     const auto above = NodeIndex(memory.nodes);
-    const auto nodes = directory.nodes();
     const ObjectBlock& objects = block.objects;
     const std::span<Entry> entries_out = target.entries;
     auto home_at = places_of(memory.home_part(memory.places, block.number), target);
@@ -167,9 +158,6 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
             const NodeIndex node = homes[i].node();
             std::uint64_t& at = home_at[node];
             entries_out[std::size_t(at)] = entries[i];
-            if ((entries[i].mask & begins_before) != 0 && node != above) {
-                entries_out[std::size_t(at)].mask = mask_in(nodes[node], entries[i].mask, 0);
-            }
             at += node != above ? 1 : 0;
             crossers[crossing] = std::uint32_t(i);
             crossing += homes[i].crosses() ? 1 : 0;
@@ -183,7 +171,7 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
                 const NodeIndex node = ghosts[ghost].node();
                 Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
                 entry = entries[i];
-                entry.mask = mask_in(nodes[node], entry.mask, ghosts[ghost].begins());
+                entry.mask |= ghosts[ghost].begins();  // on top of the bits that it brought: see entry.hpp
             }
         }
     }

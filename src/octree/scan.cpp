@@ -40,8 +40,8 @@ public:
             const NodeIndex parent = octree_.nodes()[node].parent;
             (void)at(parent);
             lists_[level].clear();
-            hand(lists_[level - 1], parent, node);
-            hand(octree_.entries(parent), parent, node);
+            hand(lists_[level - 1], node);
+            hand(octree_.entries(parent), node);
         }
         owners_[level] = node;
         return lists_[level];
@@ -50,28 +50,22 @@ public:
 private:
     static constexpr NodeIndex none = ~NodeIndex(0);
 
-    void hand(std::span<const Entry> from, NodeIndex parent, NodeIndex to) {
+    void hand(std::span<const Entry> from, NodeIndex to) {
         std::array<CellBox, 64> cells;
         while (!from.empty()) {
             const auto some = from.first(std::min(from.size(), cells.size()));
             octree_.frame().cells(some, cells);
-            for (std::size_t i = 0; i < some.size(); ++i) hand(some[i], cells[i], parent, to);
+            for (std::size_t i = 0; i < some.size(); ++i) hand(some[i], cells[i], to);
             from = from.subspan(some.size());
         }
     }
 
-    void hand(const Entry& entry, const CellBox& box, NodeIndex parent, NodeIndex to) {
+    void hand(const Entry& entry, const CellBox& box, NodeIndex to) {
         const Node& node = octree_.nodes()[to];
-        const Node& above = octree_.nodes()[parent];
         if (!node.touches(box)) return;
+        // Bits are added, never taken back: see entry.hpp.
         Entry& handed = lists_[node.level].emplace_back(entry);
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            // Beginning before the octant above, it begins before the lower half of it as well; the upper half's own
-            // first cell decides.
-            const std::uint32_t bit = 1u << axis;
-            if (node.lo[axis] != above.lo[axis])
-                handed.mask = (handed.mask & ~bit) | (box.lo[axis] < node.lo[axis] ? bit : 0);
-        }
+        for (unsigned axis = 0; axis < 3; ++axis) handed.mask |= std::uint32_t(box.lo[axis] < node.lo[axis]) << axis;
     }
 
     const LinearOctree& octree_;
