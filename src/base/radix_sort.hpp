@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "base/memory.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
@@ -24,10 +26,11 @@ public:
     /// What take() gave, in order, where keys agree in the bits from `end_bit` on and are in order of those below
     /// `first_bit`.
     std::span<const Key> sort(unsigned first_bit, unsigned end_bit) {
-        if (keys_.size() < radix_from) {
+        if (keys_.size() < tuning().output.radix_from) {
             std::sort(keys_.span().begin(), keys_.span().end());
             return keys_.span();
         }
+        count_path(Path::radix_sorted);
         other_.resize_discard(keys_.size());
         for (unsigned shift = first_bit; shift < end_bit; shift += digit_bits) {
             pass(shift);
@@ -37,7 +40,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t radix_from = 512;  // keys
     static constexpr unsigned digit_bits = 11;
 
     void pass(unsigned shift) {

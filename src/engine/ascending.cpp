@@ -21,9 +21,9 @@ private:
     Pair* fresh() override {
         constexpr std::size_t pages_at_once = 64;  // a whole block
         if (--left_ < 0) throw OverBudget{};
-        if (block_.empty()) block_ = list_.take_block(pages_at_once * page_pairs).first(pages_at_once * page_pairs);
+        if (block_.empty()) block_ = list_.take_block(pages_at_once * page_pairs()).first(pages_at_once * page_pairs());
         Pair* page = block_.data();
-        block_ = block_.subspan(page_pairs);
+        block_ = block_.subspan(page_pairs());
         return page;
     }
 
@@ -58,7 +58,7 @@ private:
 class AscendingExecutor::Buckets {
 public:
     Buckets(unsigned threads, PairList::Storage& list, const AscendingBounds& bounds)
-        : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.most / page_pairs)) {
+        : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.most / page_pairs())) {
         for (unsigned i = 0; i < threads; ++i) workers_.push_back(std::make_unique<Worker>(plan_, list, pages_left_));
     }
 

@@ -4,14 +4,12 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr unsigned objects_a_bucket_bits = 12;   // unless that makes too many buckets
-constexpr unsigned split_bits = 6;               // of a bucket too large to be sorted at once
-constexpr std::size_t sorted_at_once = 1 << 18;  // pairs
 
 std::size_t size_of(const std::vector<PageString>& strings) {
     std::size_t size = 0;
@@ -22,11 +20,12 @@ std::size_t size_of(const std::vector<PageString>& strings) {
 }  // namespace
 
 BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(bounds.rows, bounds.columns) {
-    const std::uint64_t spare_pages = bounds.most / page_pairs / 4 / fillers;
+    const std::uint64_t spare_pages = bounds.most / page_pairs() / 4 / fillers;
     const unsigned row_bits = keys_.row_bits();
-    const unsigned for_rows = row_bits - std::min(row_bits, objects_a_bucket_bits);
-    const unsigned for_pairs = std::min(row_bits, unsigned(std::bit_width(bounds.expected / sorted_at_once * 2)));
-    const unsigned wanted = std::min(std::max(for_rows, for_pairs), most_bits);
+    const unsigned for_rows = row_bits - std::min(row_bits, tuning().output.bucket_row_bits);
+    const unsigned for_pairs =
+        std::min(row_bits, unsigned(std::bit_width(bounds.expected / tuning().output.sorted_at_once * 2)));
+    const unsigned wanted = std::min(std::max(for_rows, for_pairs), tuning().output.bucket_bits);
     bits_ = std::clamp(wanted, 1u, unsigned(std::bit_width(spare_pages | 2)) - 1);
 }
 
@@ -51,14 +50,19 @@ void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, Task& ta
     const std::size_t size = size_of(strings);
     if (size == 0) return;
     throw_if_stopped(task.stop);
-    if (size > sorted_at_once && bits > 0) return split(std::move(strings), bits, task);
+    if (size > tuning().output.sorted_at_once && bits > 0) {
+        count_path(Path::bucket_split);
+        return split(std::move(strings), bits, task);
+    }
+    count_path(Path::bucket_sorted);
+    count_path(bits <= 32 ? Path::keys_narrow : Path::keys_wide);
     if (bits <= 32) return sort_at_once(strings, bits, narrow_, task);
     sort_at_once(strings, bits, wide_, task);
 }
 
 void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& task) {
-    const unsigned low_bits = bits - std::min(bits, split_bits);
-    std::array<PageString, 1u << split_bits> parts;
+    const unsigned low_bits = bits - std::min(bits, tuning().output.bucket_split_bits);
+    std::vector<PageString> parts(std::size_t(1) << tuning().output.bucket_split_bits);
     for (const PageString& string : strings) {
         for (std::size_t i = 0; i < string.pages().size(); ++i) {
             throw_if_stopped(task.stop);
@@ -93,7 +97,7 @@ void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned b
     std::span<const Key> sorted = radix.sort(0, bits);
     while (!sorted.empty()) {
         Pair* const page = pages_.take();
-        const auto part = sorted.first(std::min(sorted.size(), page_pairs));
+        const auto part = sorted.first(std::min(sorted.size(), page_pairs()));
         for (std::size_t i = 0; i < part.size(); ++i) page[i] = plan_.keys().pair(above | part[i]);
         task.sorted.emplace_back(page, part.size());
         sorted = sorted.subspan(part.size());

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/radix_sort.hpp"
+#include "base/tuning.hpp"
 #include "engine/ascending_bounds.hpp"
 #include "engine/pair_pages.hpp"
 
@@ -42,7 +43,7 @@ public:
     /// `fillers`: how many fill buckets, each their own.
     BucketPlan(const AscendingBounds& bounds, unsigned fillers);
 
-    static constexpr unsigned most_bits = 10;
+    static constexpr unsigned most_bits = default_tuning.output.bucket_bits;
     const PairKeys& keys() const { return keys_; }
     std::size_t buckets() const { return std::size_t(1) << bits_; }
     std::size_t bucket(const Pair& pair) const { return std::size_t(keys_.key(pair) >> key_bits()); }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/tuning.hpp"
+
 namespace octopair {
 
 PairList::PairList() : storage_(std::make_unique<Storage>()) {}
@@ -29,7 +31,7 @@ void PairList::Storage::reset() {
 }
 
 std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
-    constexpr std::size_t block_pairs = (std::size_t(1) << 18) / sizeof(Pair);
+    const std::size_t block_pairs = tuning().output.list_block;
     const std::lock_guard lock(mutex_);
     const auto free = blocks_.begin() + std::ptrdiff_t(taken_);
     auto found = std::find_if(free, blocks_.end(), [&](const auto& block) { return block.size() >= pairs; });

@@ -7,11 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/tuning.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
 
-constexpr std::size_t page_pairs = 512;
+/// Pairs of a page.
+constexpr std::size_t page_pairs() { return tuning().output.page; }
 
 /// The pages in one thread's hands: taken fresh, and given back to be taken again.
 class Pages {
@@ -40,8 +42,8 @@ public:
     /// `size` pairs in pages that have room for them.
     PageString(std::vector<Pair*> pages, std::size_t size) : pages_(std::move(pages)) {
         if (pages_.empty()) return;
-        end_ = pages_.back() + page_pairs;
-        next_ = end_ - (pages_.size() * page_pairs - size);
+        end_ = pages_.back() + page_pairs();
+        next_ = end_ - (pages_.size() * page_pairs() - size);
     }
 
     void add(const Pair& pair, Pages& pages) {
@@ -49,14 +51,14 @@ public:
         *next_++ = pair;
     }
 
-    std::size_t size() const { return pages_.size() * page_pairs - std::size_t(end_ - next_); }
+    std::size_t size() const { return pages_.size() * page_pairs() - std::size_t(end_ - next_); }
     std::span<Pair* const> pages() const { return pages_; }
-    std::span<Pair> page(std::size_t i) const { return {pages_[i], std::min(page_pairs, size() - i * page_pairs)}; }
+    std::span<Pair> page(std::size_t i) const { return {pages_[i], std::min(page_pairs(), size() - i * page_pairs())}; }
 
 private:
     void grow(Pages& pages) {
         next_ = pages.take();
-        end_ = next_ + page_pairs;
+        end_ = next_ + page_pairs();
         pages_.push_back(next_);
     }
 

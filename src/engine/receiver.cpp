@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/timed.hpp"
+#include "base/tuning.hpp"
 #include "engine/pair_list.hpp"
 
 namespace octopair {
@@ -25,10 +26,9 @@ void Receiver::flush() {
 }
 
 void Receiver::deliver(std::span<const Pair> pairs) {
-    constexpr std::size_t worth_a_call = 1 << 13;  // pairs; small batches are put together
     if (output_.list != nullptr) return keep(pairs);
-    if (held_.size() + pairs.size() > worth_a_call) flush();
-    if (pairs.size() >= worth_a_call) {
+    if (held_.size() + pairs.size() > tuning().output.batch) flush();
+    if (pairs.size() >= tuning().output.batch) {
         give(pairs);
     } else {
         held_.insert(held_.end(), pairs.begin(), pairs.end());

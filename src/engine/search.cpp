@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/test_hooks.hpp"
 #include "base/timed.hpp"
+#include "base/tuning.hpp"
 #include "engine/pair_pages.hpp"
 #include "engine/receiver.hpp"
 #include "octopair/error.hpp"
@@ -12,7 +14,6 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t least_buffer_bytes = 1 << 20;
 constexpr double built = 0.3;  // of the progress
 /// Of the progress of an ascending stream: what follows is the receiver's, who may take long over pairs.
 constexpr double collected = 0.6;
@@ -20,7 +21,7 @@ constexpr double collected = 0.6;
 }  // namespace
 
 std::uint64_t Call::buffer_pairs() const {
-    return std::max(request.options.buffer_bytes, least_buffer_bytes) / sizeof(Pair);
+    return std::max(request.options.buffer_bytes, tuning().output.least_buffer) / sizeof(Pair);
 }
 
 namespace {
@@ -95,6 +96,7 @@ void Search::find_ascending(Call& call) {
     try {
         passes_.list_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, collected);
     } catch (const OverBudget&) {
+        count_path(Path::buffer_over);
         return find_windows(call, receiver);
     }
     hand_out_held(call, receiver, 1);
@@ -111,12 +113,11 @@ void Search::collect_counted(Call& call, const AscendingBounds& bounds, double p
 }
 
 void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
-    constexpr std::size_t at_once = 1 << 16;  // pairs, so that progress is told in small steps
     call.progress.stage(progress, held_.storage().size);
     receive(call, receiver, [&] {
         for (auto chunk : held_.storage().chunks) {
             while (!chunk.empty()) {
-                const auto some = chunk.first(std::min(chunk.size(), at_once));
+                const auto some = chunk.first(std::min(chunk.size(), tuning().output.handed_out));
                 receiver.take(some);
                 call.progress.add(some.size());
                 chunk = chunk.subspan(some.size());
@@ -136,13 +137,15 @@ void Search::find_windows(Call& call, Receiver& receiver) {
     ObjectRange window{0, 0};
     while (window.end < objects && !call.summary.truncated) {
         window.begin = window.end;
+        if (planted(Fault::stream_windows_overlap) && window.begin > 0) --window.begin;
         std::uint64_t pairs = 0;
         while (window.end < objects && (pairs == 0 || pairs + counts[window.end] <= most)) {
             pairs += counts[window.end++];
         }
         if (pairs == 0) break;
+        count_path(pairs > most ? Path::window_of_one : Path::window);
         // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
-        const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs;
+        const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs();
         const AscendingBounds bounds{window, objects, room, pairs};
         const auto done = [&](double of_window) {
             const double covered = double(window.begin) + of_window * double(window.end - window.begin);
@@ -158,6 +161,7 @@ void Search::receive(Call& call, Receiver& receiver, Give&& give) {
     try {
         give();
     } catch (const Receiver::LimitReached&) {
+        count_path(Path::limit_reached);
     }
     receiver.flush();
     call.summary.pairs = receiver.pairs();

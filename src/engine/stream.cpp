@@ -11,6 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "engine/writers.hpp"
 #include "octopair/error.hpp"
 
@@ -73,8 +75,13 @@ private:
         LeadWriter(OrderedStream& stream, const StreamExecutor::Deliver& deliver, std::size_t share)
             : stream_(stream), deliver_(deliver), share_(share), held_(stream.lead_held_) {}
         void write(std::span<const Pair> pairs) override {
-            if (stream_.head_ == share_) return deliver_(pairs);
+            if (stream_.head_ == share_) {
+                count_path(Path::stream_lead_wrote);
+                return deliver_(pairs);
+            }
+            count_path(Path::stream_lead_held);
             if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_) {
+                count_path(Path::stream_lead_full);
                 while (stream_.head_ < share_) stream_.hand_out(deliver_, true);
                 deliver_(held_);
                 held_.clear();
@@ -96,8 +103,10 @@ private:
         BufferedWriter(OrderedStream& stream, std::size_t share, std::vector<Pair>& held)
             : stream_(stream), share_(share), held_(held) {}
         void write(std::span<const Pair> pairs) override {
-            if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_)
+            if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_) {
+                count_path(Path::stream_helper_full);
                 stream_.hand_over(share_, held_, false);
+            }
             held_.insert(held_.end(), pairs.begin(), pairs.end());
         }
         void finish() { stream_.hand_over(share_, held_, true); }
@@ -181,7 +190,7 @@ StreamExecutor::StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer
     : TeamExecutor(team), deliver_(std::move(deliver)), buffer_pairs_(buffer_pairs), abandon_(std::move(abandon)) {}
 
 void StreamExecutor::for_each_writing(std::size_t count, const Body& body) {
-    const std::size_t ahead = std::size_t(width()) * 4;
+    const std::size_t ahead = std::size_t(width()) * tuning().output.shares_ahead;
     // A share holds what it fills and what is ready; the calling thread has one such buffer in hand beside.
     const std::size_t buffer = std::max<std::size_t>(1, std::size_t(buffer_pairs_ / (2 * ahead + 1)));
     OrderedStream stream(count, body, ahead, buffer);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/test_hooks.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -66,7 +67,10 @@ public:
         : list_(list), block_(block), runs_(runs) {}
 
     void write(std::span<const Pair> pairs) override {
-        if (block_.size() < pairs.size()) block_ = list_.take_block(pairs.size());
+        if (block_.size() < pairs.size()) {
+            if (!block_.empty()) count_path(Path::list_block_full);
+            block_ = list_.take_block(pairs.size());
+        }
         std::copy(pairs.begin(), pairs.end(), block_.begin());
         const std::span<const Pair> written = block_.first(pairs.size());
         block_ = block_.subspan(pairs.size());

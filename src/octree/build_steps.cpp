@@ -6,6 +6,8 @@
 #include <array>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octree/octants_of.hpp"
 
 namespace octopair {
@@ -13,7 +15,7 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
-constexpr std::size_t batch_size = 256;          // objects loaded at a time: they stay in the first cache
+constexpr std::size_t most_batch = default_tuning.build.batch;
 constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
 constexpr std::size_t prefetched_ghosts = 8;     // and ghosts
 constexpr std::size_t ghosts_at_once = 1 << 14;  // committed; more than a batch can have
@@ -26,7 +28,7 @@ public:
 
     /// Makes room for a batch.
     void prepare() {
-        if (size_ + most_ghosts * batch_size <= committed_) return;
+        if (size_ + most_ghosts * most_batch <= committed_) return;
         const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
         ghosts_.commit(begin_ + committed_, more);
         committed_ += more;
@@ -62,12 +64,13 @@ void BuildSteps::encode(const NumberedBlock& block) const {
     std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
     std::vector<std::uint64_t> ghost_counts(above, 0);
     GhostList ghosts(memory, objects);
-    std::array<Entry, batch_size> batch;
-    std::array<CellBox, batch_size> cells;
-    std::array<Directory::Leaf, batch_size> leaves;
-    std::array<std::uint32_t, batch_size> crossers;
+    const std::size_t batch_size = tuning().build.batch;
+    std::array<Entry, most_batch> batch;
+    std::array<CellBox, most_batch> cells;
+    std::array<Directory::Leaf, most_batch> leaves;
+    std::array<std::uint32_t, most_batch> crossers;
     for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
-        if ((begin - objects.begin) % check_interval == 0) throw_if_stopped(stop);
+        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
         const std::size_t count = std::min(batch_size, objects.end - begin);
         if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
             frame.cells(boxes, cells);
@@ -95,6 +98,7 @@ void BuildSteps::encode(const NumberedBlock& block) const {
                 ++ghost_counts[node];
                 ghosts.add(node, begins);
             });
+            count_path(home == above ? Path::kept_above_leaf : Path::ghost_entries);
             ghosts.end_box();
         }
     }
@@ -142,12 +146,13 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
     auto ghost_at = places_of(memory.ghost_part(memory.places, block.number), target);
     const std::span<const Ghost> ghosts =
         std::as_const(memory.ghosts).span().subspan(most_ghosts * objects.begin, memory.ghost_counts[block.number]);
-    std::array<Entry, batch_size> batch;
-    std::array<std::uint32_t, batch_size> crossers;
+    const std::size_t batch_size = tuning().build.batch;
+    std::array<Entry, most_batch> batch;
+    std::array<std::uint32_t, most_batch> crossers;
     std::size_t ghost = 0;
     memory.valid[block.number] = 0;
     for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
-        if ((begin - objects.begin) % check_interval == 0) throw_if_stopped(stop);
+        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
         const std::span<Entry> entries(batch.data(), std::min(batch_size, objects.end - begin));
         if (!source.load(begin, entries)) return;
         const auto homes = std::as_const(memory.homes).span().subspan(begin, entries.size());
@@ -171,6 +176,7 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
                 const NodeIndex node = ghosts[ghost].node();
                 Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
                 entry = entries[i];
+                if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;
                 entry.mask |= ghosts[ghost].begins();  // on top of the bits that it brought: see entry.hpp
             }
         }

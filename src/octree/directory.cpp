@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
-
-namespace {
-
-constexpr std::uint64_t cells_a_node = 4;  // of the table from cells to leaves
-
-}  // namespace
 
 Directory::Directory(const Frame& frame, const OctantShape& shape) {
     if (shape.size() >= most_nodes) throw Error(ErrorCode::resource_limit, "more octants than can be numbered");
@@ -74,7 +70,7 @@ void Directory::make_table(const Frame& frame) {
     unsigned depth = 0;
     for (const Node& node : nodes_) depth = std::max(depth, node.level);
     const auto rows = [&](unsigned level, unsigned axis) { return (frame.last_cell(axis) >> (deepest - level)) + 1; };
-    const std::uint64_t most_cells = cells_a_node * nodes_.size();
+    const std::uint64_t most_cells = tuning().split.table_cells * nodes_.size();
     unsigned level = 0;
     while (level < depth && std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= most_cells) {
         ++level;
@@ -111,6 +107,7 @@ void Directory::fill_table(NodeIndex index, const Table& table) {
 
 /// A further table, below an octant of `table`. Returns the element that tells of it.
 std::uint32_t Directory::add_table(NodeIndex index, const Table& table) {
+    count_path(Path::table_further);
     const std::size_t begin = table_.size();
     table_.resize(begin + (std::size_t(1) << 3 * table_levels));
     constexpr std::uint32_t side = 1u << table_levels;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/test_hooks.hpp"
 #include "octree/frame.hpp"
 #include "octree/octant_growth.hpp"
 
@@ -34,9 +35,15 @@ struct Node {
         bool touched = true;
         for (unsigned axis = 0; axis < 3; ++axis) {
             const std::uint32_t last = lo[axis] + ((cells_per_axis >> level) - 1);
-            touched &= box.lo[axis] <= last && box.hi[axis] >= lo[axis];
+            touched &= box.lo[axis] <= last && box.hi[axis] >= lo[axis] + (planted(Fault::octant_border_open) ? 1 : 0);
         }
         return touched;
+    }
+    /// The axes, as class bits (entry.hpp), on which a box begins before this octant.
+    std::uint32_t begins_before(const CellBox& box) const {
+        std::uint32_t axes = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) axes |= std::uint32_t(box.lo[axis] < lo[axis]) << axis;
+        return axes;
     }
 };
 

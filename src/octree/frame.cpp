@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "base/tuning.hpp"
+
 namespace octopair {
 
 namespace {
-
-constexpr std::size_t most_samples = 4096;  // of the sample: enough for quantiles
 
 /// How far the bulk of the objects reaches on one axis, and how long a typical one is.
 struct AxisFit {
@@ -31,7 +31,7 @@ AxisFit fit_axis(std::span<const FrameSample::Measured, FrameSample::measures> m
 
 }  // namespace
 
-FrameSample::FrameSample(std::size_t sampled) : stride_(sampled / most_samples + 1) {}
+FrameSample::FrameSample(std::size_t sampled) : stride_(sampled / tuning().sampling.frame + 1) {}
 
 FrameSample::Measured FrameSample::measure(std::span<const Interval> intervals, Measure what) {
     std::vector<double> values;

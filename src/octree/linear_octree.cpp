@@ -5,21 +5,17 @@
 #include <numeric>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t sample_stride = 64;          // one object of so many is sampled, but
-constexpr std::size_t most_samples = 1 << 21;      // no more than these, but
-constexpr std::size_t most_stride = 2048;          // objects: as many as crowd an octant
-constexpr std::size_t blocks_per_thread = 2;       // each counts entries per octant
-constexpr std::size_t least_block = 2048;          // objects
-constexpr std::size_t counts_per_range = 1 << 16;  // to be merged; fewer are not worth sharing out
-
 std::vector<NumberedBlock> blocks_of(std::size_t objects, unsigned width) {
-    const std::size_t enough = std::max<std::size_t>(1, objects / least_block);
-    std::vector<NumberedBlock> blocks(std::min<std::size_t>(width == 1 ? 1 : width * blocks_per_thread, enough));
+    const std::size_t enough = std::max<std::size_t>(1, objects / tuning().build.least_block);
+    std::vector<NumberedBlock> blocks(
+        std::min<std::size_t>(width == 1 ? 1 : width * tuning().build.blocks_per_thread, enough));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         blocks[i] = {i, {objects * i / blocks.size(), objects * (i + 1) / blocks.size()}};
     }
@@ -27,7 +23,7 @@ std::vector<NumberedBlock> blocks_of(std::size_t objects, unsigned width) {
 }
 
 std::vector<NumberedNodes> ranges_of(std::size_t nodes, std::size_t blocks, unsigned width) {
-    const std::size_t enough = nodes * blocks / counts_per_range + 1;
+    const std::size_t enough = nodes * blocks / tuning().build.counts_per_range + 1;
     std::vector<NumberedNodes> ranges(std::min<std::size_t>(width, enough));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         ranges[i] = {i, NodeIndex(nodes * i / ranges.size()), NodeIndex(nodes * (i + 1) / ranges.size())};
@@ -54,7 +50,9 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 }  // namespace
 
 Sample octant_sample(std::uint64_t objects) {
-    return {std::size_t(objects), sample_stride, std::max(most_samples, std::size_t(objects) / most_stride)};
+    const Tuning::Sampling& sampling = tuning().sampling;
+    return {std::size_t(objects), sampling.stride,
+            std::max(sampling.most, std::size_t(objects) / sampling.most_stride)};
 }
 
 OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop) {
@@ -99,6 +97,7 @@ void LinearOctree::build(PlantedOctants octants, const EntrySource& source, Exec
 }
 
 void LinearOctree::refill(const EntrySource& source, Executor& executor, std::stop_token stop) {
+    count_path(Path::refilled);
     fill(source, executor, stop, std::chrono::steady_clock::now());
 }
 
@@ -106,6 +105,8 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     const auto blocks = blocks_of(source.size(), executor.width());
     const auto ranges = ranges_of(nodes().size(), blocks.size(), executor.width());
     memory_.resize(source.size(), blocks.size(), nodes().size(), ranges.size());
+    count_path(blocks.size() == 1 ? Path::build_one_block : Path::build_blocks);
+    if (ranges.size() > 1) count_path(Path::merge_ranges);
     const BuildSteps steps{source, frame(), directory(), memory_, stop};
     executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode(blocks[i]); });
     seconds_.encode = seconds_since(clock);
@@ -126,7 +127,10 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
     }
     memory_.ghosts.clear();
-    if (crowded()) memory_.homes.clear();  // the scan needs the memory more
+    if (crowded()) {
+        count_path(Path::crowded_octree);
+        memory_.homes.clear();  // the scan needs the memory more
+    }
     seconds_.sort = seconds_since(clock);
 }
 

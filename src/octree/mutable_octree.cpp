@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/octants_of.hpp"
 
@@ -13,10 +15,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_visits = 128;  // of a change, to be listed
-
 // How many visits before its turn what a visit reads is fetched.
-constexpr std::size_t most_hits = 1 << 16;  // of a run, and what one visit more finds
 constexpr std::size_t ahead_head = 24, ahead_first = 14, ahead_next = 6;
 
 /// Whether two boxes, or what lies between them, are no larger than the two together on each axis.
@@ -42,7 +41,11 @@ template <typename Visit>
 void MutableOctree::for_each_unit_of(NodeIndex node, const CellBox& box, Visit&& visit) const {
     const Plot& plot = plots_[node];
     const GridRange range = plot.range_of(box);
-    if (!plot.keeps_in(range)) return visit(plot.own_unit(), node);
+    if (!plot.keeps_in(range)) {
+        count_path(plot.inner ? Path::unit_of_inner : Path::unit_of_leaf);
+        return visit(plot.own_unit(), node);
+    }
+    count_path(Path::unit_in_cell);
     plot.for_each_cell(range, [&](const Unit& unit, const auto&) { visit(unit, node); });
 }
 
@@ -261,8 +264,8 @@ void MutableOctree::list_node(NodeIndex node, const Work& work, Visits& out) con
     if (put.own && !plot.used) out.first_used.push_back(node);
     if (plot.inner) return;
     const GridRange range = plot.range_of(work.wanted);
-    if (range.count() > most_visits) {
-        out.visits.resize(out.visits.size() + most_visits + 1);  // which is too many
+    if (range.count() > tuning().dynamic.listed_visits) {
+        out.visits.resize(out.visits.size() + tuning().dynamic.listed_visits + 1);  // which is too many
         return;
     }
     plot.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
@@ -272,7 +275,7 @@ void MutableOctree::list_node(NodeIndex node, const Work& work, Visits& out) con
 
 bool MutableOctree::list(const Work& work, Visits& out) const {
     const std::size_t visits = out.visits.size(), first_used = out.first_used.size();
-    const auto too_many = [&] { return out.visits.size() > visits + most_visits; };
+    const auto too_many = [&] { return out.visits.size() > visits + tuning().dynamic.listed_visits; };
     for_each_touched_node(work.wanted, [&](NodeIndex node) {
         if (!too_many()) list_node(node, work, out);
     });
@@ -288,6 +291,7 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
     const CellBox *const before = &change.before, *const after = &change.after;
     bool listed = true;
     if (change.existed && change.exists && near(*before, *after)) {
+        count_path(Path::change_joined);
         listed = list({number, change.object, both, joined(*before, *after), before, after}, out);
     } else {
         if (change.existed) listed = list({number, change.object, around_before, *before, before, nullptr}, out);
@@ -295,6 +299,7 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
             listed = list({number, change.object, around_after, *after, nullptr, after}, out);
         }
     }
+    count_path(listed ? Path::change_listed : Path::change_alone);
     if (listed) return true;
     out.visits.resize(visits);
     out.first_used.resize(first_used);
@@ -311,7 +316,7 @@ std::size_t MutableOctree::run(std::span<const UnitVisit> visits, std::span<cons
     const auto visit_at = [&](std::size_t i) -> const UnitVisit& { return visits[std::uint32_t(order[i])]; };
     const auto unit_at = [&](std::size_t i) { return std::uint32_t(order[i] >> 32); };
     std::size_t i = 0;
-    for (; i < order.size() && hits.size() < most_hits; ++i) {
+    for (; i < order.size() && hits.size() < tuning().dynamic.hits; ++i) {
         if (i + ahead_head < order.size()) {
             units_.prefetch_head(unit_at(i + ahead_head));
             hwy::Prefetch(&visit_at(i + ahead_head));
@@ -327,6 +332,7 @@ std::size_t MutableOctree::run(std::span<const UnitVisit> visits, std::span<cons
         if (visit.take) units_.take(visit.unit, visit.object);
         if (visit.put) units_.put(visit.unit, visit.entry, visit.object);
     }
+    if (i < order.size()) count_path(Path::run_stopped);
     return i;
 }
 

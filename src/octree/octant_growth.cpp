@@ -5,17 +5,12 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
 namespace {
-
-// Found by measurement on the scenes of docs/scenes.md; they change the shape of the tree, never the set of pairs.
-constexpr double always_split = 2048;  // objects: more would not stay in the cache while they are swept
-constexpr double never_split = 512;    // objects
-constexpr double crowded_window = 40;  // objects that a sweep tests for each object
-constexpr double ghost_growth = 1.6;   // entries below an octant for each object that begins in it
-constexpr double handed_growth = 1.5;  // entries and boxes handed down, after a division against before
 
 using Boxes = SampledOctant::Boxes;
 
@@ -64,12 +59,15 @@ OctantCounts OctantCounts::of(const SampledOctant& sampled, const std::array<Sam
     return counts;
 }
 
-bool OctantGrowth::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > always_split; }
+bool OctantGrowth::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > tuning().split.always; }
 
 bool OctantGrowth::crowded(const SampledOctant& sampled) const {
     const Octant& octant = sampled.octant;
     const double objects = double(sampled.inside.size()) * weight_;
-    if (objects <= never_split) return false;
+    if (objects <= tuning().split.never) {
+        count_path(Path::octant_too_small);
+        return false;
+    }
     if (is_crowd(sampled.inside.size())) return true;
     double window = objects;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -86,12 +84,15 @@ bool OctantGrowth::crowded(const SampledOctant& sampled) const {
         const double extent = double(extents) / double(sampled.inside.size());
         window = std::min(window, objects * extent / (double(last - first) + extent));
     }
-    return window > crowded_window;
+    const bool wide = window > tuning().split.crowded_window;
+    if (!wide) count_path(Path::octant_well_swept);
+    return wide;
 }
 
 bool OctantGrowth::worth_dividing(const OctantCounts& counts) {
-    return double(counts.inside_below) <= ghost_growth * double(counts.beginning) &&
-           double(counts.inside_below + counts.kept_below) <= handed_growth * double(counts.inside + counts.kept);
+    return double(counts.inside_below) <= tuning().split.most_entries * double(counts.beginning) &&
+           double(counts.inside_below + counts.kept_below) <=
+               tuning().split.handed_growth * double(counts.inside + counts.kept);
 }
 
 void OctantGrowth::grow(SampledOctant sampled, OctantShape& shape) const {
@@ -99,9 +100,11 @@ void OctantGrowth::grow(SampledOctant sampled, OctantShape& shape) const {
     const std::size_t index = shape.size();
     shape.push_back(0);
     sampled.keep();
-    if (sampled.octant.level >= deepest || !crowded(sampled)) return;
+    if (sampled.octant.level >= deepest) return count_path(Path::octant_deepest);
+    if (!crowded(sampled)) return;
     std::array<SampledOctant, 8> below = sampled.divided();
-    if (!worth_dividing(OctantCounts::of(sampled, below))) return;
+    if (!worth_dividing(OctantCounts::of(sampled, below))) return count_path(Path::octant_multiplies);
+    count_path(Path::octant_divided);
     sampled = {};
     shape[index] = 1;
     for (SampledOctant& child : below) grow(std::exchange(child, {}), shape);

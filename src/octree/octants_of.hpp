@@ -59,9 +59,7 @@ void for_each_octant_of(const CellBox& box, const Directory& directory, Director
         level = finest;
     }
     for (const auto& [corner, node] : std::span(corners).first(count)) {
-        const Cell& first = directory.nodes()[node].lo;
-        unsigned begins = 0;
-        for (unsigned axis = 0; axis < 3; ++axis) begins |= unsigned(box.lo[axis] < first[axis]) << axis;
+        const unsigned begins = directory.nodes()[node].begins_before(box);
         if ((corner & ~begins) == 0) place(node, begins);
     }
 }

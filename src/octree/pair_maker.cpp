@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair {
 
@@ -33,18 +37,25 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
+    const std::span<HitMask> room = std::span(hits_).first(tuning().sweep.hits);
     const Depths depths = context_.rule.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {
-        const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, hits_));
+        const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, room));
         if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
         if (!context_.rule.exact()) drop_rounded(sweep, depths, hits);
+        if (has_test_hooks && context_.outermost) check(sweep, hits);
         drain(sweep, hits);
-        if (cursor.row < sweep.rows.size()) throw_if_stopped(context_.stop);
+        if (cursor.row < sweep.rows.size()) {
+            count_path(Path::sweep_resumed);
+            throw_if_stopped(context_.stop);
+            if (planted(Fault::sweep_repeats_block)) cursor.in_row = false;
+        }
     }
 }
 
 void PairMaker::drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation) {
     for (HitMask& hit : hits) {
+        count_path(Path::hit_turned);
         filter(hit, hit.bits(), [&](std::size_t row, std::size_t column) {
             return oriented(sweep.rows.entry(row), sweep.columns.entry(column), orientation);
         });
@@ -57,24 +68,50 @@ void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span
     keep_deep(sweep, depths, certain);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
+            count_path(Path::hit_settled);
             return context_.rule.counts(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
     }
 }
 
+void OutermostOctant::check(const Entry& a, const Entry& b) const {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const std::uint32_t low = frame.map().cell(std::max(a.min[axis], b.min[axis]), axis);
+        if (low >= node.lo[axis] && low - node.lo[axis] < cells_per_axis >> node.level) continue;
+        throw Error(ErrorCode::engine_failed, "objects " + std::to_string(a.object) + " and " +
+                                                  std::to_string(b.object) +
+                                                  " are reported in an octant without the "
+                                                  "low corner of their intersection");
+    }
+}
+
+void PairMaker::check(const Sweep& sweep, std::span<const HitMask> hits) const {
+    for (const HitMask& hit : hits) {
+        const Entry column = sweep.columns.entry(hit.column());
+        for (std::uint32_t bits = hit.bits(); bits != 0; bits &= bits - 1) {
+            const std::size_t row = hit.first_row() + unsigned(std::countr_zero(bits));
+            context_.outermost->check(sweep.rows.entry(row), column);
+        }
+    }
+}
+
 void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
     if (writer_.counting()) {
+        count_path(Path::pairs_counted);
         std::uint64_t pairs = 0;
         for (const HitMask& hit : hits) pairs += std::uint64_t(std::popcount(hit.bits()));
         writer_.write_count(pairs);
         return;
     }
     while (!hits.empty()) {
-        const std::size_t room = (pairs_.size() - held_) / most_hits;
+        const std::size_t room = (tuning().sweep.pairs + most_hits - held_) / most_hits;
         const auto some = hits.first(std::min(hits.size(), room));
         held_ += pairs_of_hits(sweep, some, context_.rule.second_begin(), pairs_.data() + held_);
         hits = hits.subspan(some.size());
-        if (!hits.empty()) flush();
+        if (!hits.empty()) {
+            count_path(Path::pairs_flushed);
+            flush();
+        }
     }
 }
 

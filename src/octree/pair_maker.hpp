@@ -6,10 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 
+#include "base/tuning.hpp"
 #include "geometry/pair_rule.hpp"
+#include "octree/directory.hpp"
 #include "octree/executor.hpp"
 #include "octree/sweep.hpp"
 
@@ -23,10 +26,23 @@ inline Orientation reversed(Orientation orientation) {
     return orientation;
 }
 
+/// An octant of the outermost octree. Tests check that the pairs reported within it have the low corners of their
+/// intersections in it.
+struct OutermostOctant {
+    Frame frame;
+    Node node;
+
+    /// Throws Error{engine_failed} if another octant is to report this pair.
+    void check(const Entry& a, const Entry& b) const;
+};
+
 /// What every share of a scan needs to know.
 struct ScanContext {
     const PairRule& rule;
     std::stop_token stop;
+    unsigned nesting = 0;  ///< octrees that hold the octant which the scanned octree is made of
+    double growth = 1;     ///< entries of the scanned octree for each entry of the outermost one
+    std::optional<OutermostOctant> outermost = {};  ///< with test hooks
 };
 
 class PairMaker {
@@ -42,14 +58,15 @@ public:
 private:
     void drop_turned(const Sweep& sweep, std::span<HitMask> hits, const Orientation& orientation);
     void drop_rounded(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits);
+    void check(const Sweep& sweep, std::span<const HitMask> hits) const;
     void drain(const Sweep& sweep, std::span<const HitMask> hits);
 
     const ScanContext& context_;
     RoundingSlack slack_;
     PairWriter& writer_;
-    std::array<HitMask, 1024> hits_;
-    std::array<HitMask, 1024> certain_;
-    std::array<Pair, 2048 + most_hits> pairs_;
+    std::array<HitMask, default_tuning.sweep.hits> hits_;
+    std::array<HitMask, default_tuning.sweep.hits> certain_;
+    std::array<Pair, default_tuning.sweep.pairs + most_hits> pairs_;
     std::size_t held_ = 0;
 };
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/tuning.hpp"
+
 namespace octopair {
 
 namespace {
 
-constexpr double wanted_in_cell = 6;     // objects
-constexpr double most_growth = 2.2;      // entries an object, where a grid cuts a leaf
-constexpr unsigned most_grid_bits = 18;  // of all axes together
-constexpr float small_numbers = 254;     // of a SmallBox, beside the 0 of what begins before, and one for rounding
+constexpr float small_numbers = 254;  // of a SmallBox, beside the 0 of what begins before, and one for rounding
 
 }  // namespace
 
@@ -67,7 +66,7 @@ Plot Plot::cut(const Node& node, std::uint32_t begin, std::span<const CellBox> b
         sides[axis] = double(cells_per_axis >> node.level);
     }
     double objects = double(boxes.size());
-    for (unsigned bits = 0; bits < most_grid_bits && objects > wanted_in_cell; ++bits) {
+    for (unsigned bits = 0; bits < tuning().dynamic.grid_bits && objects > tuning().dynamic.cell_objects; ++bits) {
         unsigned longest = 0;
         for (unsigned axis = 1; axis < 3; ++axis) {
             if (sides[axis] * extents[longest] > sides[longest] * extents[axis]) longest = axis;
@@ -75,7 +74,7 @@ Plot Plot::cut(const Node& node, std::uint32_t begin, std::span<const CellBox> b
         sides[longest] /= 2;
         double growth = 1;
         for (unsigned axis = 0; axis < 3; ++axis) growth *= 1 + extents[axis] / sides[axis];
-        if (growth > most_growth || sides[longest] < 1) break;
+        if (growth > tuning().dynamic.most_growth || sides[longest] < 1) break;
         ++plot.bits[longest];
         objects /= 2;
     }

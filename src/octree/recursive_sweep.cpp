@@ -6,24 +6,24 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t tile = 4096;            // boxes: their arrays stay in the second cache
-constexpr std::size_t small_set = 512;        // boxes: a sweep is good whatever its windows
-constexpr std::uint64_t cheap_window = 64;    // tests a box
-constexpr std::uint64_t tests_per_pair = 16;  // two registers a pair
-constexpr std::size_t large_join = 1 << 15;   // boxes: shared out among threads
-
 /// The part of `order` that is tile `t`; a set of up to two tiles is one.
 std::span<const SortKey> tile_of(std::span<const SortKey> order, std::size_t t) {
+    const std::size_t tile = tuning().sweep.tile;
     if (order.size() <= 2 * tile) return order;
     return order.subspan(t * tile, std::min(tile, order.size() - t * tile));
 }
 
-std::size_t tile_count(std::size_t size) { return size == 0 ? 0 : size <= 2 * tile ? 1 : (size + tile - 1) / tile; }
+std::size_t tile_count(std::size_t size) {
+    const std::size_t tile = tuning().sweep.tile;
+    return size == 0 ? 0 : size <= 2 * tile ? 1 : (size + tile - 1) / tile;
+}
 
 /// One share: a tile of rows against the tiles of columns that it reaches.
 struct TileSweep {
@@ -52,8 +52,12 @@ struct TileSweep {
         const float begin = low_of(row_tile.front());
         for (std::size_t c = first; c < tile_count(columns.size()); ++c) {
             const auto column_tile = tile_of(columns, c);
-            if (low_of(column_tile.back()) < begin) continue;
-            if (low_of(column_tile.front()) > reach) break;
+            if (low_of(column_tile.back()) < begin) {
+                count_path(Path::tile_skipped);
+                continue;
+            }
+            const float tile_begin = low_of(column_tile.front());
+            if (tile_begin > reach || (planted(Fault::tile_end_open) && tile_begin == reach)) break;
             column_set.assign(column_entries, column_tile, axis);
             maker.sweep({row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind}, orientation);
         }
@@ -117,6 +121,7 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
     part_by_span(join, axis, range, parts);
 
     if (!parts[0].empty()) {
+        count_path(Path::recursion_spanning);
         OwnedJoin spanning = join;
         spanning.rows = share(std::move(parts[0]));
         spanning.settled = join.settled + 1;
@@ -134,6 +139,7 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
         }
     }
     if (!parts[1].empty()) {
+        count_path(Path::recursion_halved);
         const float split = middle(join, axis, range);
         Positions low_rows, high_rows, low_columns, high_columns;
         for (const std::uint32_t i : parts[1]) {
@@ -169,8 +175,9 @@ SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, const std::stop
             choice.axis = axis;
         }
     }
-    choice.good = size <= small_set || least <= cheap_window * size ||
-                  least / tests_per_pair <= estimated_hits(join.rows, join.columns, stop);
+    const Tuning::Sweep& limits = tuning().sweep;
+    choice.good = size <= limits.small_set || least <= limits.cheap_window * size ||
+                  least / limits.tests_per_pair <= estimated_hits(join.rows, join.columns, stop);
     return choice;
 }
 
@@ -183,20 +190,25 @@ public:
         throw_if_stopped(context_.stop);
         // On settled axes all boxes overlap: no sweep along them thins anything.
         const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
+        if (open.empty()) count_path(Path::recursion_settled);
         const SweepChoice choice =
             open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, context_.stop, open);
-        if (choice.good) return tiled_sweep(context_, join.join(), choice.axis, executor_);
+        if (choice.good) {
+            count_path(Path::recursion_swept);
+            return tiled_sweep(context_, join.join(), choice.axis, executor_);
+        }
         std::vector<OwnedJoin> parts = step(join);
         // Large parts one after another, each shared out; runs of small ones as shares of one part each.
         for (std::size_t i = 0; i < parts.size();) {
             std::size_t end = i;
-            while (end < parts.size() && parts[end].size() <= large_join) ++end;
+            while (end < parts.size() && parts[end].size() <= tuning().sweep.large_join) ++end;
             if (end == i || executor_.width() == 1) {
                 const OwnedJoin part = std::move(parts[i]);
                 run(part);
                 ++i;
                 continue;
             }
+            count_path(Path::recursion_shared);
             executor_.for_each_writing(end - i, [&](std::size_t k, PairWriter& writer) {
                 SerialExecutor serial(writer);
                 Recursion(context_, serial).run(parts[i + k]);
@@ -247,6 +259,7 @@ SweepChoice choose_sweep(const Join& join, SweepOrder& order, const std::stop_to
 void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor) {
     SweepOrder row_order(context.stop);
     const auto rows = row_order.sort(join.rows, axis, executor);
+    count_path(tile_count(rows.size()) > 1 ? Path::tiles : Path::one_tile);
     if (join.self) {
         const TileSweep sweep{context,         join.rows.entries, rows, join.rows.entries, rows, axis,
                               SweepKind::self, join.orientation};

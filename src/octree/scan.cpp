@@ -6,25 +6,21 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octree/recursive_sweep.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t large_node = 1 << 15;     // entries: shared out among threads on its own
-constexpr std::size_t share_entries = 1 << 13;  // entries of a share at most, so that stops are seen soon
-constexpr std::size_t shares_per_thread = 64;
-constexpr std::size_t hot_node = 4096;      // entries: swept at once where the first axis does
-constexpr std::uint64_t good_window = 192;  // tests a box
-constexpr double worth_splitting = 0.75;    // of the entries may be left in the largest octant of an own octree
-
 using Handed = std::vector<Entry>;
 
 /// The boxes handed down to the nodes on one path, level by level; each with its class bits in that node.
 class HandedDown {
 public:
-    explicit HandedDown(const LinearOctree& octree) : octree_(octree) {}
+    /// `moved`: by how many cells the frame is to be off, as a planted fault.
+    HandedDown(const LinearOctree& octree, std::uint32_t moved) : octree_(octree), moved_(moved) {}
 
     /// Those that touch `node`, kept by the octants above. Nodes must come in pre-order, from any first one.
     const Handed& at(NodeIndex node) {
@@ -55,20 +51,32 @@ private:
         while (!from.empty()) {
             const auto some = from.first(std::min(from.size(), cells.size()));
             octree_.frame().cells(some, cells);
-            for (std::size_t i = 0; i < some.size(); ++i) hand(some[i], cells[i], to);
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                if (has_test_hooks) move(cells[i]);
+                hand(some[i], cells[i], to);
+            }
             from = from.subspan(some.size());
         }
     }
 
     void hand(const Entry& entry, const CellBox& box, NodeIndex to) {
         const Node& node = octree_.nodes()[to];
-        if (!node.touches(box)) return;
+        if (node.touches(box) == planted(Fault::handed_to_wrong_child)) return;
+        count_path(Path::handed_down);
         // Bits are added, never taken back: see entry.hpp.
         Entry& handed = lists_[node.level].emplace_back(entry);
-        for (unsigned axis = 0; axis < 3; ++axis) handed.mask |= std::uint32_t(box.lo[axis] < node.lo[axis]) << axis;
+        handed.mask |= node.begins_before(box);
+    }
+
+    void move(CellBox& box) const {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            box.lo[axis] += moved_;
+            box.hi[axis] += moved_;
+        }
     }
 
     const LinearOctree& octree_;
+    std::uint32_t moved_;
     std::vector<Handed> lists_;
     std::vector<NodeIndex> owners_;
 };
@@ -97,19 +105,41 @@ private:
 /// Scans single nodes, keeping its memory from node to node. One thread at a time.
 class NodeScan {
 public:
-    NodeScan(const ScanContext& context, Executor& executor)
-        : context_(context), executor_(executor), order_(context.stop) {}
+    NodeScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
+        : octree_(octree), context_(context), executor_(executor), order_(context.stop) {}
 
+    void scan(NodeIndex node, std::span<const Entry> handed) {
+        if constexpr (has_test_hooks) {
+            if (context_.nesting == 0) context_.outermost = OutermostOctant{octree_.frame(), octree_.nodes()[node]};
+        }
+        const auto own = octree_.entries(node);
+        const unsigned axis = octree_.frame().long_axis();
+        context_.rule.join() ? scan_join(own, handed, axis) : scan_self(own, handed, axis);
+    }
+
+private:
     /// Pairs of the octant's own entries, and of these with what was handed down.
-    void scan(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
+    void scan_self(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
         const EntryList own_list{own}, handed_list{handed};
         const bool laid_out = lay_out(own_list, axis, own_set_);
-        if (own.size() > 1 && !(laid_out && swept({{own_set_, own_set_, SweepKind::self}}))) {
-            crowded({own_list, own_list, true, {}});
-        }
-        if (!handed.empty() && !(laid_out && lay_out(handed_list, axis, handed_set_) && swept_between())) {
+        if (!laid_out) count_path(Path::own_too_large);
+        if (own.size() > 1 && !(laid_out && own_swept())) crowded({own_list, own_list, true, {}});
+        if (!handed.empty() && !(laid_out && handed_swept(handed_list, axis))) {
             crowded({handed_list, own_list, false, {}});
         }
+    }
+
+    bool own_swept() {
+        const bool done = swept({{own_set_, own_set_, SweepKind::self}});
+        count_path(done ? Path::own_swept : Path::own_window_too_wide);
+        return done;
+    }
+
+    bool handed_swept(const EntryList& handed, unsigned axis) {
+        const bool laid_out = lay_out(handed, axis, handed_set_);
+        const bool done = laid_out && swept_between();
+        count_path(done ? Path::handed_swept : laid_out ? Path::handed_window_too_wide : Path::handed_too_large);
+        return done;
     }
 
     /// The same for pairs between the sets of a join: the sets are never swept against themselves.
@@ -121,7 +151,6 @@ public:
         join(of_set(handed, second_set, positions_[3]), own_first, axis);
     }
 
-private:
     static EntryList of_set(std::span<const Entry> entries, std::uint32_t set, std::vector<std::uint32_t>& positions) {
         positions.clear();
         for (std::uint32_t i = 0; i < entries.size(); ++i) {
@@ -132,12 +161,13 @@ private:
 
     void join(const EntryList& rows, const EntryList& columns, unsigned axis) {
         if (rows.size() == 0 || columns.size() == 0) return;
-        if (lay_out(rows, axis, handed_set_) && lay_out(columns, axis, own_set_) && swept_between()) return;
-        crowded({rows, columns, false, {}});
+        const bool done = lay_out(rows, axis, handed_set_) && lay_out(columns, axis, own_set_) && swept_between();
+        count_path(done ? Path::join_swept : Path::join_crowded);
+        if (!done) crowded({rows, columns, false, {}});
     }
 
     bool lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-        if (list.size() > hot_node) return false;
+        if (list.size() > tuning().scan.hot_node) return false;
         order_.lay_out(list, axis, set);
         return true;
     }
@@ -154,7 +184,7 @@ private:
             tests += sampled_windows(sweep);
             rows += sweep.rows.size();
         }
-        if (tests > good_window * rows) return false;
+        if (tests > tuning().scan.good_window * rows) return false;
         executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
             PairMaker maker(context_, writer);
             for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
@@ -166,14 +196,17 @@ private:
     /// A join too costly for the quick way. Parts of one shape are joined on their own: boxes as long as the octant
     /// keep any sweep and any split from thinning the others.
     void crowded(const Join& join) {
-        if (swept(join)) return;
+        if (swept(join)) return count_path(Path::crowd_swept);
+        count_path(Path::crowd_parted);
         const auto rows = part_by_shape(join.rows);
         throw_if_stopped(context_.stop);
         const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns);
         for (unsigned i = 0; i < rows.size(); ++i) {
             const EntryList row_list{join.rows.entries, rows[i], false};
             if (join.self) crowded_part({row_list, row_list, true, {}}, true);
-            for (unsigned k = join.self ? i + 1 : 0; k < rows.size(); ++k) {
+            const unsigned first = join.self && !planted(Fault::part_joined_twice) ? i + 1 : 0;
+            for (unsigned k = first; k < rows.size(); ++k) {
+                if (join.self && k == i) continue;
                 const EntryList column_list{join.columns.entries, join.self ? rows[k] : columns[k], false};
                 crowded_part({row_list, column_list, false, {}}, i == k);
             }
@@ -181,10 +214,12 @@ private:
     }
 
     void crowded_part(const Join& join, bool same_shape) {
-        if (join.rows.size() == 0 || join.columns.size() == 0 || swept(join)) return;
+        if (join.rows.size() == 0 || join.columns.size() == 0) return;
+        if (swept(join)) return count_path(Path::part_swept);
         // An octree tells apart the two sets of the caller's join, but not others.
         const bool separable = join.self || context_.rule.join();
         if (same_shape && separable && split_afresh(join)) return;
+        count_path(Path::part_recursive);
         recursive_sweep(context_, join, executor_);
     }
 
@@ -194,21 +229,42 @@ private:
         return choice.good;
     }
 
-    /// Scans a linear octree of the join's own entries; false, with nothing done, where it would not thin them.
+    /// Scans a nested octree, one of the join's own entries; false, with nothing done, where it would not thin them.
     bool split_afresh(const Join& join) {
+        if (context_.nesting >= tuning().scan.most_nesting) {
+            count_path(Path::not_nested_depth);
+            return false;
+        }
         const EntriesOf entries(join);
         LinearOctree octree;
         octree.build(entries, executor_, context_.stop);
+        if (!thins(octree, entries.size())) return false;
+        ScanContext within = context_;
+        ++within.nesting;
+        within.growth *= double(octree.entry_count()) / double(entries.size());
+        constexpr std::array nested = {Path::nested_once, Path::nested_twice, Path::nested_thrice};
+        count_path(within.nesting <= nested.size() ? nested[within.nesting - 1] : Path::nested_deeper);
+        if (!join.self) count_path(Path::nested_join);
+        octopair::scan(octree, within, executor_, {});
+        return true;
+    }
+
+    /// Whether a nested octree of so many entries leaves less to do in its octants, and does not multiply the entries.
+    bool thins(const LinearOctree& octree, std::size_t entries) const {
         std::size_t largest = 0;
         for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
             largest = std::max(largest, octree.entries(node).size());
         }
-        if (double(largest) > worth_splitting * double(entries.size())) return false;
-        octopair::scan(octree, context_, executor_, {});
-        return true;
+        const bool thinner = double(largest) <= tuning().scan.largest_part * double(entries);
+        const double growth = context_.growth * double(octree.entry_count()) / double(entries);
+        const bool bounded = growth <= tuning().scan.most_growth;
+        if (!thinner) count_path(Path::not_nested_largest);
+        if (thinner && !bounded) count_path(Path::not_nested_growth);
+        return thinner && bounded;
     }
 
-    const ScanContext& context_;
+    const LinearOctree& octree_;
+    ScanContext context_;
     Executor& executor_;
     SweepOrder order_;
     SweepSet own_set_;
@@ -225,13 +281,13 @@ struct Share {
 std::vector<Share> shares_of(const OctreeRange& octants, unsigned width) {
     const LinearOctree& octree = octants.octree;
     const std::uint64_t even =
-        octree.entry_count(octants.begin, octants.end) / (std::uint64_t(width) * shares_per_thread) + 1;
-    const std::uint64_t most = std::min<std::uint64_t>(even, share_entries);
+        octree.entry_count(octants.begin, octants.end) / (std::uint64_t(width) * tuning().scan.shares_per_thread) + 1;
+    const std::uint64_t most = std::min<std::uint64_t>(even, tuning().scan.share_entries);
     std::vector<Share> shares;
     std::uint64_t held = 0;
     for (NodeIndex node = octants.begin; node < octants.end; ++node) {
         const std::size_t size = octree.entries(node).size();
-        const bool large = size > large_node;
+        const bool large = size > tuning().scan.large_node;
         if (shares.empty() || large || shares.back().large || held + size > most) {
             shares.push_back({node, node, large});
             held = 0;
@@ -249,23 +305,22 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
     const LinearOctree& octree = octants.octree;
     const std::vector<Share> shares = shares_of(octants, executor.width());
     const auto scan_share = [&](const Share& share, Executor& within) {
-        HandedDown handed(octree);
-        NodeScan nodes(context, within);
+        HandedDown handed(octree, planted(Fault::nested_frame_moved) && context.nesting > 0 ? 1 : 0);
+        NodeScan nodes(octree, context, within);
         for (NodeIndex node = share.begin; node < share.end; ++node) {
             const Handed& above = handed.at(node);
-            const auto own = octree.entries(node);
-            if (own.empty()) continue;
-            const unsigned axis = octree.frame().long_axis();
-            context.rule.join() ? nodes.scan_join(own, above, axis) : nodes.scan(own, above, axis);
+            if (!octree.entries(node).empty()) nodes.scan(node, above);
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));
     };
     for (std::size_t i = 0; i < shares.size();) {
         if (shares[i].large) {
+            count_path(Path::large_octant);
             scan_share(shares[i++], executor);
             continue;
         }
+        count_path(Path::share_of_octants);
         std::size_t end = i;
         while (end < shares.size() && !shares[end].large) ++end;
         executor.for_each_writing(end - i, [&](std::size_t k, PairWriter& writer) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
@@ -13,14 +15,14 @@ namespace {
 
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digits = std::size_t(1) << digit_bits;
-constexpr std::size_t block_keys = 1 << 16;  // at least: fewer are not worth a task
 
 /// Of a block of keys: first how many there are of each digit, then where the next one goes.
 using Places = std::array<std::size_t, digits>;
 
 /// One digit, from keys to sorted; false, with nothing done, if it is the same in all.
 bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shift, Executor& executor) {
-    std::vector<Places> blocks(std::clamp<std::size_t>(keys.size() / block_keys, 1, executor.width()));
+    std::vector<Places> blocks(std::clamp<std::size_t>(keys.size() / tuning().sweep.radix_block, 1, executor.width()));
+    if (blocks.size() > 1) count_path(Path::radix_blocks);
     const auto digit_of = [&](SortKey key) { return std::size_t(key >> shift) & (digits - 1); };
     const auto block = [&](std::size_t i) {
         const std::size_t begin = keys.size() * i / blocks.size();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/tuning.hpp"
+
 namespace octopair {
 
 namespace {
@@ -76,7 +78,7 @@ std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span
         const std::size_t rows_end = std::min(cursor.row + block_size, rows.size());
         const float reach = *std::max_element(rows.high(0) + cursor.row, rows.high(0) + rows_end);
         for (; cursor.column < columns.size() && columns.low(0)[cursor.column] <= reach; ++cursor.column) {
-            if (written == hits.size() || ++tests > tests_per_call) return written;
+            if (written == hits.size() || ++tests > tuning().sweep.tests_per_call) return written;
             std::uint32_t bits = 0;
             for (std::size_t row = cursor.row; row < rows_end; ++row) {
                 bits |= std::uint32_t(hit(sweep, row, cursor.column)) << (row - cursor.row);

@@ -78,9 +78,6 @@ private:
     std::uint32_t rows_;
 };
 
-/// Blocks of rows times columns that are tested in a few milliseconds: then the caller looks for a stop.
-inline constexpr std::size_t tests_per_call = std::size_t(1) << 20;
-
 /// Where a sweep stands: the next block of rows, and the next column for it. Rows before `row` are done.
 struct SweepCursor {
     std::size_t row = 0;

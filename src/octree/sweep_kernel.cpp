@@ -16,6 +16,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octree/sweep.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -147,6 +149,9 @@ HWY_INLINE Reach reach_of(D d, const Bounds& rows) {
     }
     reach.most = hn::GetLane(hn::MaxOfLanes(d, most));
     reach.all = hn::GetLane(hn::MaxOfLanes(d, all));
+    if (planted(Fault::window_end_open)) {
+        for (float* const end : {&reach.most, &reach.all}) *end = std::nextafter(*end, none);
+    }
     return reach;
 }
 
@@ -162,7 +167,7 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
     const auto lane_numbers = hn::Iota(words, 0);
     HitMask* hit_at = hits.data();
     HitMask* const hits_end = hits.data() + (hits.size() - most_columns);
-    std::size_t tests_left = tests_per_call;
+    std::size_t tests_left = tuning().sweep.tests_per_call;
     Reach next = reach_of(d, Bounds(sweep.rows, cursor.row));
     for (; cursor.row < sweep.rows.size(); cursor.row += block_size, cursor.in_row = false) {
         start_rows(sweep, cursor);

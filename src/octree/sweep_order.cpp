@@ -5,21 +5,17 @@
 #include <cfloat>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_buckets = 4096;  // so that they stay in the first cache
-constexpr std::size_t few = 24;             // boxes: so many at most are sorted by comparison
-constexpr std::size_t in_cache = 1 << 13;   // boxes: so many at most are sorted by buckets
-constexpr std::size_t sampled_rows = 16;    // each against all sampled columns
-constexpr std::size_t sampled_stride = 13;  // rows of a set that is laid out, at least, and
-constexpr std::size_t most_sampled = 24;    // so many of them at most
-
 /// The boxes of a list that are looked at to measure it.
 Sample measured(const EntryList& list) {
-    return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, 256, 4096)};
+    const Tuning::Sweep& limits = tuning().sweep;
+    return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, limits.measured_least, limits.measured_most)};
 }
 
 }  // namespace
@@ -31,7 +27,8 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
         first = std::min(first, list[i].min[axis]);
         last = std::max(last, list[i].min[axis]);
     }
-    const std::size_t count = std::min(most_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
+    const std::size_t count =
+        std::min(tuning().sweep.most_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
     Buckets buckets;
     buckets.begin = first;
     buckets.last = std::uint32_t(count - 1);
@@ -56,9 +53,10 @@ std::uint64_t SweepOrder::windows(const EntryList& rows, const EntryList& column
 }
 
 std::span<const SortKey> SweepOrder::sort(const EntryList& list, unsigned axis, Executor& executor) {
-    if (list.size() <= in_cache) {
+    if (list.size() <= tuning().sweep.in_cache) {
         sort_in_cache(list, axis);
     } else {
+        count_path(Path::sort_radix);
         make_keys(list, axis);
         radix_sort(keys_, executor, stop_);
     }
@@ -79,7 +77,10 @@ void SweepOrder::make_keys(const EntryList& list, unsigned axis) {
 /// some bucket is crowded, sorts by comparison.
 void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
     make_keys(list, axis);
-    if (list.size() <= few) return std::sort(keys_.data(), keys_.data() + keys_.size());
+    if (list.size() <= tuning().sweep.few) {
+        count_path(Path::sort_few);
+        return std::sort(keys_.data(), keys_.data() + keys_.size());
+    }
     const Buckets buckets = buckets_for(list, axis);
     counts_.assign(buckets.last + 2, 0);
     buckets_.resize(list.size());
@@ -89,7 +90,11 @@ void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
         most = std::max(most, counts_[i]);
         counts_[i] += counts_[i - 1];
     }
-    if (most > few) return std::sort(keys_.data(), keys_.data() + keys_.size());
+    if (most > tuning().sweep.few) {
+        count_path(Path::sort_full_bucket);
+        return std::sort(keys_.data(), keys_.data() + keys_.size());
+    }
+    count_path(Path::sort_buckets);
     scratch_.resize_discard(list.size());
     for (std::size_t i = 0; i < list.size(); ++i) scratch_[counts_[buckets_[i]]++] = keys_[i];
     std::swap(keys_, scratch_);
@@ -107,7 +112,7 @@ std::uint64_t sampled_windows(const Sweep& sweep) {
     const float* const end = lows + columns.size();
     std::uint64_t sum = 0;
     std::size_t samples = 0;
-    const std::size_t stride = std::max(sampled_stride, rows.size() / most_sampled);
+    const std::size_t stride = std::max(tuning().sweep.window_stride, rows.size() / tuning().sweep.windows);
     for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
         const float* const first = kind == SweepKind::self ? lows + i + 1 : std::lower_bound(lows, end, rows.low(0)[i]);
         sum += std::uint64_t(std::upper_bound(first, end, rows.high(0)[i]) - first);
@@ -116,7 +121,7 @@ std::uint64_t sampled_windows(const Sweep& sweep) {
 }
 
 std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop) {
-    const Sample row_sample(rows.size(), 1, sampled_rows), column_sample = measured(columns);
+    const Sample row_sample(rows.size(), 1, tuning().sweep.tried_rows), column_sample = measured(columns);
     std::uint64_t hits = 0;
     for (std::size_t r = 0; r < row_sample.size(); ++r) {
         throw_if_stopped(stop);
@@ -124,7 +129,10 @@ std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, co
         for (std::size_t i = 0; i < column_sample.size(); ++i) {
             hits += overlap(row, columns[column_sample[i]]) ? 1 : 0;
         }
-        if (r == 3 && hits <= 4) return 0;  // no more than the rows themselves: certainly few
+        if (r == 3 && hits <= 4) {
+            count_path(Path::hits_few);
+            return 0;  // no more than the rows themselves: certainly few
+        }
     }
     return hits * row_sample.stride() * column_sample.stride();
 }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/reserve.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "scene/object_table.hpp"
 
 namespace octopair {
@@ -51,11 +53,12 @@ public:
     }
 
 private:
-    static constexpr double most_part = 0.125;
-    static constexpr double least = 256;
-    static double most(const ObjectTable& table) { return most_part * double(table.indices()) + least; }
+    static double most(const ObjectTable& table) {
+        return tuning().scene.log_part * double(table.indices()) + tuning().scene.log_least;
+    }
 
     void overflow(ObjectTable& table) {
+        count_path(Path::log_overflowed);
         forget(table);
         overflowed_ = true;
     }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/stop.hpp"
+#include "base/tuning.hpp"
 #include "geometry/pair_rule.hpp"
 #include "scene/scene_source.hpp"
 
@@ -12,8 +13,6 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t share_size = 2048;  // visits
-constexpr std::size_t run_size = 256;     // visits between looks at the limits
 constexpr std::size_t listed_ahead = 8;   // changes
 constexpr std::size_t judged_ahead = 16;  // hits whose objects are fetched before they are judged
 
@@ -146,6 +145,7 @@ void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const 
     octree.reserve(puts);
     // One thread may as well go from change to change.
     const auto order = team_.threads() == 1 ? keys : sort_.sort(32, 32 + unsigned(std::bit_width(octree.units())));
+    const std::size_t share_size = tuning().scene.share_visits, run_size = tuning().scene.run_visits;
     const auto make_share = [&](std::size_t i, unsigned worker) {
         const std::size_t end = share_begin(order, (i + 1) * share_size);
         auto& hits = workers_[worker].hits;

@@ -4,14 +4,13 @@
 #include <utility>
 
 #include "base/reserve.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr std::uint64_t most_waiting = 16;      // one of so many pairs, but
-constexpr std::uint64_t few_waiting = 1 << 14;  // at least these
 
 /// Goes through the pairs of a list.
 class Reader {
@@ -139,7 +138,13 @@ void PairHistory::take_over(PairChanges& changes) {
 }
 
 void PairHistory::prepare(bool little) {
-    if (began_.size() + ended_.size() > std::max(few_waiting, size_ / most_waiting)) merge();
+    const std::uint64_t waiting = began_.size() + ended_.size();
+    if (waiting > std::max(tuning().scene.waiting_least, size_ / tuning().scene.waiting_part)) {
+        count_path(Path::pairs_merged);
+        merge();
+    } else if (waiting > 0) {
+        count_path(Path::pairs_waited);
+    }
     if (little && !settled_) settle();
 }
 

@@ -5,13 +5,12 @@
 #include <functional>
 #include <limits>
 
+#include "base/tuning.hpp"
 #include "geometry/query_rules.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr std::size_t share_size = 64;  // queries
 
 bool wanted(const SceneQueries::Scene& scene, std::uint32_t index) {
     return scene.table.alive(index) && (scene.table.traits(index).groups & scene.groups) != 0;
@@ -157,6 +156,7 @@ void SceneQueries::answer(std::size_t queries, std::vector<Answer> Worker::*coll
                           Find&& find) {
     for (Worker& worker : workers_) (worker.*collected).clear();
     parts_.resize(queries);
+    const std::size_t share_size = tuning().scene.share_queries;
     const auto find_share = [&](std::size_t share, unsigned number) {
         Worker& worker = workers_[number];
         const std::size_t end = std::min((share + 1) * share_size, queries);

@@ -13,6 +13,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "base/tuning.hpp"
 #include "octopair/scene.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/mutable_octree.hpp"
@@ -50,8 +51,6 @@ private:
     void build(const SceneSource& source, const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
 
-    static constexpr unsigned most_refills = 8;
-
     double margin_;
     SceneObjects objects_;
 
@@ -60,7 +59,7 @@ private:
     SceneQueries queries_;
     LinearOctree linear_;
     MutableOctree octree_;
-    unsigned refills_ = most_refills;  // of the octants of linear_ since they were made; at most as many
+    unsigned refills_ = tuning().scene.refills;  // of the octants of linear_ since they were made; at most as many
     EntryRounding rounding_;
     bool planted_ = false;  // octree_ holds the objects as they were at the last step
     bool fresh_ = false;    // octree_ holds them as they are now

@@ -4,6 +4,8 @@
 #include <new>
 #include <utility>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "engine/ascending.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan.hpp"
@@ -18,10 +20,14 @@ constexpr double worth_it = 0.9;  // may the search for changes cost
 constexpr double pays = 0.5;      // would the last step's changes have cost, so that an octree for the next ones pays
 constexpr double most_patience = 4;  // may the search take, where it turns out dearer than that
 
-constexpr double least_patience = 0.02;          // seconds beside, in which others may have had the processor
-constexpr double guessed_cost = 10;              // of an object that changed, in those of one in a full detection
-constexpr std::uint64_t least_visits = 1 << 14;  // of units, for which there is memory in small scenes too
-constexpr std::uint64_t least_found = 1 << 20;   // pairs that change: the same
+constexpr double least_patience = 0.02;  // seconds beside, in which others may have had the processor
+constexpr double guessed_cost = 10;      // of an object that changed, in those of one in a full detection
+
+/// What measured seconds say, unless tuning says otherwise.
+bool is_wanted_incremental(bool measured) {
+    const StepChoice choice = tuning().scene.step;
+    return choice == StepChoice::measured ? measured : choice == StepChoice::incremental;
+}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -48,11 +54,13 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const double expected = changed * seconds_a_change_;
     const std::uint64_t before = history_.size();
     const bool unlike = rounding_.exact && objects_.table().any_padding();  // boxes in the octree have not been widened
-    bool full = !planted_ || unlike || objects_.log().overflowed() || expected > worth_it * full_seconds_;
+    const bool cheap = is_wanted_incremental(expected <= worth_it * full_seconds_);
+    bool full = !planted_ || unlike || objects_.log().overflowed() || !cheap;
     try {
         history_.prepare(planted_);
         const bool found = !full && find_changes(stop);
         if (!found) find_all(stop);
+        count_path(found ? Path::step_incremental : Path::step_full);
         full = !found;
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
@@ -80,11 +88,12 @@ void Scene::State::find_all(const std::stop_token& stop) {
     const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
     // What was learned fades, so that it is tried again.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    const bool plant = double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_;
+    const bool plant = is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_);
     if (plant) {
+        count_path(Path::octree_planted);
         octree_.build(linear_, stop);
         linear_ = {};
-        refills_ = most_refills;
+        refills_ = tuning().scene.refills;
         built_ = false;
     }
     history_.take_over(found_);  // the last step: one that fails before has changed nothing
@@ -95,9 +104,9 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
     TeamExecutor executor(team_);
     const EntryRounding rounding{source.boxes().exact(), source.boxes().rounding()};
     // Where boxes are moved to an origin, it is another one each time.
-    const bool refill = refills_ < most_refills && rounding.exact && rounding_.exact;
+    const bool refill = refills_ < tuning().scene.refills && rounding.exact && rounding_.exact;
     const unsigned refills = refill ? refills_ + 1 : 0;
-    refills_ = most_refills;
+    refills_ = tuning().scene.refills;
     built_ = false;
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;
@@ -108,6 +117,7 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
 SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
     const bool follows = planted_ && !objects_.log().overflowed();
     if (!follows && !fresh_) {
+        count_path(Path::octree_for_queries);
         planted_ = false;
         if (!built_) build(SceneSource(objects_.table(), margin_), {});
         octree_.build(linear_, {});
@@ -122,11 +132,13 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     const std::size_t changed = objects_.log().formers().size();
     const auto patience = std::chrono::duration<double>(most_patience * full_seconds_ + least_patience);
     const ChangeSearch::Limits limits{begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience),
-                                      objects_.table().size() / 2 + least_visits, history_.size() + least_found, stop};
+                                      objects_.table().size() / 2 + tuning().scene.visits,
+                                      history_.size() + tuning().scene.changed_pairs, stop};
     planted_ = false;  // until all of this is done
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
     } catch (const ChangeSearch::TooDear&) {
+        count_path(Path::step_too_dear);
         seconds_a_change_ = std::max(seconds_a_change_, full_seconds_ / double(changed));
         return false;
     }

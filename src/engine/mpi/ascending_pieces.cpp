@@ -5,17 +5,14 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "base/tuning.hpp"
 #include "engine/ascending.hpp"
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/even_cuts.hpp"
 
 namespace octopair {
 
-namespace {
-
-constexpr std::size_t share_pairs = 1 << 16;  // to sort
-
-}  // namespace
+namespace {}  // namespace
 
 PiecePlan::PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, const PieceGrid& grid)
     : bins_(bins),
@@ -105,6 +102,7 @@ void AscendingPieces::sort_received(PairList::Storage& piece, const ObjectRange&
     AscendingBounds bounds{rows, columns_};
     bounds.expected = all.size();
     AscendingExecutor executor(team_, piece, bounds);
+    const std::size_t share_pairs = tuning().ranks.share_pairs;
     executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, PairWriter& writer) {
         throw_if_stopped(stop);
         const std::size_t begin = i * share_pairs;

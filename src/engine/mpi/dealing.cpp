@@ -3,13 +3,12 @@
 #include <algorithm>
 
 #include "base/stop.hpp"
+#include "base/tuning.hpp"
 #include "engine/mpi/agreement.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr std::uint64_t round_bytes = std::uint64_t(16) << 20;
 
 Assignment::Set set_of(const Objects* objects) {
     if (objects == nullptr) return {};
@@ -80,7 +79,7 @@ void Deal::deal_set(unsigned set, const Objects* all, Buffer<Box<Real>>& boxes) 
 /// What is sent in a round is the parts of some ranks' slices, one after another, as they lie.
 template <typename Item>
 void Deal::deal(std::span<const Item> all, std::uint64_t size, std::span<Item> own) {
-    constexpr std::uint64_t step = round_bytes / sizeof(Item);
+    const std::uint64_t step = tuning().ranks.round_bytes / sizeof(Item);
     for (std::uint64_t from = begin(size, 1), to = from; from < size; from = to) {
         Agreement(comm_).together([&] { throw_if_stopped(stop_); });
         to = std::min(size, from + step);

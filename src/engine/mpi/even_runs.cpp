@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/tuning.hpp"
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/even_cuts.hpp"
 
@@ -10,15 +11,13 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_samples = 64;  // of a rank
-
 /// A key, and how many of its rank's it stands for.
 struct SampledKey {
     std::uint64_t key, weight;
 };
 
 std::vector<SampledKey> sample_of(std::span<const std::uint64_t> keys) {
-    std::vector<SampledKey> samples(std::min(keys.size(), most_samples));
+    std::vector<SampledKey> samples(std::min(keys.size(), tuning().ranks.key_samples));
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t begin = i * keys.size() / samples.size(), end = (i + 1) * keys.size() / samples.size();
         samples[i] = {keys[begin], end - begin};

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/even_cuts.hpp"
 #include "octree/octant_growth.hpp"
@@ -15,9 +17,6 @@
 namespace octopair {
 
 namespace {
-
-constexpr std::uint64_t octants_a_rank = 1;  // to deal out, at least, where they can be divided: more cost more than
-                                             // they balance
 
 /// This rank's part of the sample.
 struct OwnSample {
@@ -185,6 +184,7 @@ private:
         octants_[i].size = counts.inside + counts.kept;
         if (octant.level >= deepest || octants_[i].size <= most_ || !growth_.is_crowd(counts.inside)) return;
         const bool divided = OctantGrowth::worth_dividing(counts);
+        if (divided) count_path(Path::ranks_top_divided);
         octants_[i].state = divided ? State::divided : State::whole;
         octants_[i].below = std::uint32_t(octants_.size());
         for (unsigned digit = 0; divided && digit < 8; ++digit) octants_.push_back({octant.child(digit)});
@@ -302,7 +302,7 @@ PlantedOctants plant_together(Communicator& comm, const JointCall& call, const B
         octants.frame.cells(sample.boxes, cells);
     });
     const OctantGrowth growth = octant_growth(call.objects(), stop);
-    const std::uint64_t most = octant_sample(call.objects()).size() / (octants_a_rank * comm.size());
+    const std::uint64_t most = octant_sample(call.objects()).size() / (tuning().ranks.octants * comm.size());
     const Top top(comm, growth, most, cells);
     std::vector<SampledOctant> own_octants = deal_out(comm, top);
     OctantShape own_shapes;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/test_hooks.hpp"
 #include "base/timed.hpp"
 #include "engine/mpi/agreement.hpp"
 #include "engine/mpi/ascending_pieces.hpp"
@@ -183,7 +184,9 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     const OctantOwners& owners = *cut;
     PairNumbers numbers;
     if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
-    return {std::move(octants), owners.begin(comm_.rank()), owners.end(comm_.rank()), numbers};
+    NodeIndex end = owners.end(comm_.rank());
+    if (planted(Fault::rank_takes_neighbour) && comm_.rank() + 1 < comm_.size()) ++end;
+    return {std::move(octants), owners.begin(comm_.rank()), end, numbers};
 }
 
 void RankSearch::exchange_objects(Task& task, const Routing& routing) {
@@ -387,6 +390,7 @@ std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& 
             listed = list_octal(call, call.buffer_pairs());
         }
     });
+    if (comm_.rank() != 0) count_path(listed ? Path::relay_listed : Path::relay_found_again);
     const Give give = listed ? Give(hand_out(found_)) : own.stream;
     for (unsigned from = 1; from < comm_.size(); ++from) {
         task.relay->hand_on(from, [&](const PairSink& sink) {
@@ -465,6 +469,7 @@ void RankSearch::find_windows(Task& task, Call& call) {
     AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
     for (unsigned window = 0; window < windows; ++window) {
         if (!plan.is_wanted(window, limit)) continue;
+        count_path(Path::ranks_window);
         std::vector<std::uint8_t> marks;
         PairList sorted;
         task.agreement.together([&] {

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+
 namespace octopair {
-
-namespace {
-
-constexpr std::size_t most_at_once = std::size_t(1) << 20;  // pairs
-
-}  // namespace
 
 void Relay::hand_on(unsigned from, const Give& give) {
     if (from == 0) {
@@ -32,10 +29,13 @@ void Relay::send(unsigned from, const Give& give) {
     try {
         give([&](std::span<const Pair> pairs) {
             while (!pairs.empty()) {
-                const auto some = pairs.first(std::min(pairs.size(), most_at_once - held_.size()));
+                const auto some = pairs.first(std::min(pairs.size(), tuning().ranks.relayed - held_.size()));
                 held_.insert(held_.end(), some.begin(), some.end());
                 pairs = pairs.subspan(some.size());
-                if (held_.size() == most_at_once) pass_on();
+                if (held_.size() == tuning().ranks.relayed) {
+                    count_path(Path::relay_full);
+                    pass_on();
+                }
             }
         });
     } catch (...) {
@@ -64,7 +64,7 @@ void Relay::receive(unsigned from) {
         agreement_.together([&] {
             if (!first) return;
             if (size > 0) take_(received_.span().first(std::size_t(size)));
-            received_.resize_discard(most_at_once);
+            received_.resize_discard(tuning().ranks.relayed);
         });
         comm_.broadcast(std::span(&size, 1), from);
         if (size == 0) return;

@@ -4,6 +4,8 @@
 #include <mutex>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "geometry/box_kernel.hpp"
 #include "octree/octants_of.hpp"
 
@@ -11,10 +13,8 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t batch_size = 256;
-constexpr std::size_t least_counted = 1 << 14;   // objects: so many tell where a rank's lie
+constexpr std::size_t most_batch = default_tuning.ranks.batch;
 constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
-constexpr std::size_t block_size = 1 << 16;      // objects
 
 }  // namespace
 
@@ -27,8 +27,9 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOc
       stop_(std::move(stop)),
       blocks_(memory.blocks_),
       places_(memory.places_) {
-    counted_stride_ = std::max<std::size_t>(1, source.size() / least_counted);
+    counted_stride_ = std::max<std::size_t>(1, source.size() / tuning().ranks.counted);
     places_.resize_discard(source.size());
+    const std::size_t block_size = tuning().ranks.block;
     std::size_t count = 0, end = 0;
     for (unsigned set = 0; set < 2; ++set) {
         std::size_t begin = end;
@@ -66,7 +67,7 @@ bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, 
         frame.cells(boxes, cells);
         return are_boxes(boxes);
     }
-    std::array<Entry, batch_size> entries;
+    std::array<Entry, most_batch> entries;
     const std::span<Entry> loaded = std::span(entries).first(cells.size());
     const bool good = source.load(begin, loaded);
     frame.cells(loaded, cells);
@@ -77,11 +78,12 @@ bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, 
 
 void Routing::find(Block& block, std::span<OctantLoad> loads) {
     const Directory& directory = octants_.directory;
-    std::array<CellBox, batch_size> cells, ends;
-    std::array<Directory::Leaf, batch_size> homes, end_leaves;
-    std::array<std::uint32_t, batch_size> crossers;
+    const std::size_t batch_size = tuning().ranks.batch;
+    std::array<CellBox, most_batch> cells, ends;
+    std::array<Directory::Leaf, most_batch> homes, end_leaves;
+    std::array<std::uint32_t, most_batch> crossers;
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
-        if ((begin - block.objects.begin) % check_interval == 0) throw_if_stopped(stop_);
+        if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);
         if (!load_cells(source_, octants_.frame, begin, std::span(cells).first(count))) {
             block.bad = begin;
@@ -158,6 +160,7 @@ void Routing::share(Block& block, std::span<const Crosser> crossers) const {
         }
         block.owners.push_back(std::uint32_t(owners.size()));
         block.owners.insert(block.owners.end(), owners.begin(), owners.end());
+        if (owners.size() > 1) count_path(Path::object_on_ranks);
         block.shared += owners.size() > 1 ? 1 : 0;
         for (const std::uint32_t owner : owners) ++block.counts[owner];
     }

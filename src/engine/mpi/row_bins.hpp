@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/tuning.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -13,7 +14,7 @@ namespace octopair {
 class RowBins {
 public:
     explicit RowBins(std::uint64_t rows) : rows_(rows) {
-        const unsigned bits = unsigned(std::bit_width(rows));
+        const unsigned bits = unsigned(std::bit_width(rows)), most_bits = tuning().ranks.row_bin_bits;
         shift_ = bits > most_bits ? bits - most_bits : 0;
     }
 
@@ -26,7 +27,6 @@ public:
     }
 
 private:
-    static constexpr unsigned most_bits = 14;
     std::uint64_t rows_;
     unsigned shift_;
 };

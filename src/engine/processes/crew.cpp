@@ -112,7 +112,7 @@ void Crew::announce(const Pass& pass) {
     desk.pass = pass;
     desk.next_block.store(0);
     desk.next_run.store(0);
-    desk.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs, std::uint64_t(1) << 62)));
+    desk.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs(), std::uint64_t(1) << 62)));
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         Slot& part = view_.slot(slot);
         part.outcome = Outcome::none;

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "engine/processes/ring_reader.hpp"
 #include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
@@ -11,10 +13,6 @@
 namespace octopair {
 
 namespace {
-
-constexpr std::uint64_t objects_per_worker = 4096;  // at least: fewer are not worth another worker
-constexpr std::uint64_t worth_keeping = 1 << 15;    // pairs: fewer are copied, so that lists do not hold whole regions
-constexpr std::size_t most_regions = 4;             // of pairs, held by lists; further lists get copies
 
 [[noreturn]] void throw_damaged() {
     throw Error(ErrorCode::engine_failed, "what worker processes left in shared memory makes no sense");
@@ -30,7 +28,8 @@ void ProcessPasses::build(Call& call, double) {
     pass_ = {};
     inputs_.place(call, crew_, pass_, regions_);
     pass_.job = crew_.begin_job();
-    pass_.workers = unsigned(std::clamp<std::uint64_t>(call.source.size() / objects_per_worker, 1, crew_.workers()));
+    pass_.workers = unsigned(
+        std::clamp<std::uint64_t>(call.source.size() / tuning().processes.objects_per_worker, 1, crew_.workers()));
     pass_.margin = call.request.options.margin;
     pass_.arena_region = arena_->number;
 }
@@ -162,7 +161,8 @@ void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<R
             size += run.count;
         }
     }
-    const bool keep = size >= worth_keeping && pairs_.size() <= most_regions;
+    const bool keep = size >= tuning().processes.worth_keeping && pairs_.size() <= tuning().processes.kept_regions;
+    count_path(keep ? Path::region_kept : Path::region_copied);
     if (keep) list.keep(pairs);
     for (const auto run : runs) list.append(keep ? run : list.copy(run));
 }

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr unsigned most_at_once = 16;  // blocks; then the client has a look at other things
 
 [[noreturn]] void throw_damaged() {
     throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
@@ -17,9 +17,8 @@ constexpr unsigned most_at_once = 16;  // blocks; then the client has a look at 
 }  // namespace
 
 RingSize ring_size(std::uint64_t pairs, unsigned slots) {
-    constexpr std::uint64_t most_block = 1 << 15;
     const std::uint64_t a_slot = std::max<std::uint64_t>(2, pairs / slots);
-    const std::uint64_t block = std::clamp<std::uint64_t>(a_slot / 16, 1, most_block);
+    const std::uint64_t block = std::clamp<std::uint64_t>(a_slot / 16, 1, tuning().processes.ring_block);
     return {std::clamp<std::uint64_t>(a_slot / block, 2, most_ring_blocks), block};
 }
 
@@ -46,7 +45,7 @@ bool RingReader::take_next() {
             ++share_;
         } else if (!take_block(state.slot)) {
             return false;
-        } else if (++blocks == most_at_once) {
+        } else if (++blocks == tuning().processes.blocks_at_once) {
             crew_.view().desk().for_client.raise();
             return true;
         }
@@ -80,6 +79,7 @@ bool RingReader::take_block(unsigned number) {
     if (entry.share > share_) throw_damaged();
     if (entry.share == share_) {
         const std::uint64_t taken = crew_.view().slot(number).ring_taken.load();
+        if (taken >= pass_.ring_blocks) count_path(Path::ring_wrapped);
         const std::uint64_t block = number * pass_.ring_blocks + taken % pass_.ring_blocks;
         const std::span<const Pair> pairs{
             pairs_.array<const Pair>(block * pass_.block_pairs * sizeof(Pair), pass_.block_pairs),

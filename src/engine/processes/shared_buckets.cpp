@@ -10,7 +10,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t page_bytes = page_pairs * sizeof(Pair);
+std::uint64_t page_bytes() { return page_pairs() * sizeof(Pair); }
 
 [[noreturn]] void throw_damaged() {
     throw Error(ErrorCode::engine_failed, "what a worker left of its buckets makes no sense");
@@ -31,7 +31,7 @@ public:
     }
     std::uint64_t taken() const { return taken_.load(); }
     std::uint32_t number(const Pair* page) const {
-        return std::uint32_t((reinterpret_cast<const std::byte*>(page) - place_.pairs.data()) / page_bytes);
+        return std::uint32_t((reinterpret_cast<const std::byte*>(page) - place_.pairs.data()) / page_bytes());
     }
 
 private:
@@ -42,7 +42,7 @@ private:
         }
         if (block_.empty()) block_ = take_block(place_);
         Pair* const page = block_.data();
-        block_ = block_.subspan(page_pairs);
+        block_ = block_.subspan(page_pairs());
         return page;
     }
 
@@ -130,11 +130,11 @@ SharedBuckets::Strings SharedBuckets::committed_strings(unsigned slot) const {
     std::vector<std::vector<Pair*>> pages(plan_.buckets());
     for (const LoggedPage& logged : place_.view.log(slot, commit.log_size)) {
         if (logged.bucket >= pages.size()) throw_damaged();
-        pages[logged.bucket].push_back(place_.pairs.array<Pair>(logged.page * page_bytes, page_pairs));
+        pages[logged.bucket].push_back(place_.pairs.array<Pair>(logged.page * page_bytes(), page_pairs()));
     }
     for (std::size_t bucket = 0; bucket < strings.size(); ++bucket) {
         const std::uint64_t size = commit.sizes[bucket];
-        if ((size + page_pairs - 1) / page_pairs != pages[bucket].size()) throw_damaged();
+        if ((size + page_pairs() - 1) / page_pairs() != pages[bucket].size()) throw_damaged();
         strings[bucket] = PageString(std::move(pages[bucket]), size);
     }
     return strings;

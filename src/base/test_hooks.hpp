@@ -1,0 +1,100 @@
+// Test hooks: how tests see which paths a call takes, make every path short, and plant faults.
+//
+// Only a build with OCTOPAIR_TEST_HOOKS has them; elsewhere count_path() and planted() are empty constants that the
+// compiler removes. The state, one TestHooks, lies in a file that processes share if OCTOPAIR_TEST_HOOKS_FILE names one:
+// so the worker processes of a test use its tuning and faults, and it counts their paths.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "base/tuning.hpp"
+
+namespace octopair {
+
+/// The choices between paths, by the file that makes them. A test of tiny scenes takes each of them.
+#define OCTOPAIR_PATHS(path)                                                                                          \
+    /* octree/octant_growth.cpp, octree/directory.hpp */                                                              \
+    path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest)  \
+        path(table_further) /* octree/linear_octree.cpp, octree/build_steps.cpp */                                    \
+        path(build_one_block) path(build_blocks) path(merge_ranges) path(kept_above_leaf) path(ghost_entries)         \
+            path(refilled) path(crowded_octree) /* octree/scan.cpp */                                                 \
+        path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large)               \
+            path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide)          \
+                path(join_swept) path(join_crowded) path(crowd_swept) path(crowd_parted) path(part_swept)             \
+                    path(part_recursive) path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) \
+                        path(nested_join) path(not_nested_largest) path(not_nested_growth)                            \
+                            path(not_nested_depth) /* octree/recursive_sweep.cpp */                                   \
+        path(one_tile) path(tiles) path(tile_skipped) path(recursion_settled) path(recursion_swept)                   \
+            path(recursion_spanning) path(recursion_halved)                                                           \
+                path(recursion_shared) /* octree/sweep_order.cpp, octree/sort_key.cpp */                              \
+        path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks)                  \
+            path(hits_few) /* octree/sweep_kernel.cpp, octree/pair_maker.cpp */                                       \
+        path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed)                                    \
+            path(pairs_counted) /* octree/mutable_octree.cpp */                                                       \
+        path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell)               \
+            path(unit_of_leaf) path(unit_of_inner) /* engine/ */                                                      \
+        path(list_block_full) path(bucket_sorted) path(bucket_split) path(keys_narrow) path(keys_wide)                \
+            path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote)            \
+                path(stream_lead_held) path(stream_lead_full) path(stream_helper_full)                                \
+                    path(radix_sorted)                                               /* engine/processes/ */          \
+        path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) /* engine/mpi/ */                \
+        path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed)          \
+            path(relay_found_again) /* scene/ */                                                                      \
+        path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_planted)          \
+            path(octree_for_queries) path(pairs_waited) path(pairs_merged)
+
+enum class Path : unsigned {
+#define OCTOPAIR_PATH(name) name,
+    OCTOPAIR_PATHS(OCTOPAIR_PATH)
+#undef OCTOPAIR_PATH
+};
+
+inline constexpr auto path_names = std::to_array<std::string_view>({
+#define OCTOPAIR_PATH(name) #name,
+    OCTOPAIR_PATHS(OCTOPAIR_PATH)
+#undef OCTOPAIR_PATH
+});
+
+/// Errors that a test can have the code make, to see that a check finds them.
+enum class Fault : unsigned {
+    none,
+    begins_bit_cleared,      ///< a ghost loses the class bits that it brought into a nested octree
+    octant_border_open,      ///< a box that ends in the first cell of an octant does not touch it
+    window_end_open,         ///< a column that begins where the rows of a block end is not tested
+    tile_end_open,           ///< a tile that begins where a tile of rows ends is not swept
+    handed_to_wrong_child,   ///< an entry is handed down to an octant that it does not touch
+    nested_frame_moved,      ///< class bits of handed down entries come from a frame that is a cell off
+    stream_windows_overlap,  ///< a window begins with the last object of the one before
+    sweep_repeats_block,     ///< a resumed sweep begins its block of rows again
+    part_joined_twice,       ///< two parts of a crowd are joined in both directions
+    rank_takes_neighbour,    ///< a rank's run of octants includes the first one of the next rank
+};
+inline constexpr unsigned fault_count = 11;
+
+/// What tests set and read. Trivial but for the counters, so that it can lie in a file.
+struct TestHooks {
+    Tuning tuning;
+    Fault fault = Fault::none;
+    std::array<std::atomic<std::uint64_t>, path_names.size()> paths = {};  ///< how often each was taken
+};
+
+#ifdef OCTOPAIR_TEST_HOOKS
+inline constexpr bool has_test_hooks = true;
+/// Of this process and those that share its file. Throws std::system_error if the file cannot be used.
+/// Thread safety: set nothing during a call.
+TestHooks& test_hooks();
+/// Counts that a path was taken. Thread-safe.
+void count_path(Path path);
+/// Whether the fault is to be made.
+bool planted(Fault fault);
+#else
+inline constexpr bool has_test_hooks = false;
+constexpr void count_path(Path) {}
+constexpr bool planted(Fault) { return false; }
+#endif
+
+}  // namespace octopair
