@@ -16,36 +16,43 @@
 namespace octopair {
 
 /// The choices between paths, by the file that makes them. A test of tiny scenes takes each of them.
-#define OCTOPAIR_PATHS(path)                                                                                          \
-    /* octree/octant_growth.cpp, octree/directory.hpp */                                                              \
-    path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest)  \
-        path(table_further) /* octree/linear_octree.cpp, octree/build_steps.cpp */                                    \
-        path(build_one_block) path(build_blocks) path(merge_ranges) path(kept_above_leaf) path(ghost_entries)         \
-            path(refilled) path(crowded_octree) /* octree/scan.cpp */                                                 \
-        path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large)               \
-            path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide)          \
-                path(join_swept) path(join_crowded) path(crowd_swept) path(crowd_parted) path(part_swept)             \
-                    path(part_recursive) path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) \
-                        path(nested_join) path(not_nested_largest) path(not_nested_growth)                            \
-                            path(not_nested_depth) /* octree/recursive_sweep.cpp */                                   \
-        path(one_tile) path(tiles) path(tile_skipped) path(recursion_settled) path(recursion_swept)                   \
-            path(recursion_spanning) path(recursion_halved)                                                           \
-                path(recursion_shared) /* octree/sweep_order.cpp, octree/sort_key.cpp */                              \
-        path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks)                  \
-            path(hits_few) /* octree/sweep_kernel.cpp, octree/pair_maker.cpp */                                       \
-        path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed)                                    \
-            path(pairs_counted) /* octree/mutable_octree.cpp */                                                       \
-        path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell)               \
-            path(unit_of_leaf) path(unit_of_inner) /* engine/ */                                                      \
-        path(list_block_full) path(bucket_sorted) path(bucket_split) path(keys_narrow) path(keys_wide)                \
-            path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote)            \
-                path(stream_lead_held) path(stream_lead_full) path(stream_helper_full)                                \
-                    path(radix_sorted)                                               /* engine/processes/ */          \
-        path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) /* engine/mpi/ */                \
-        path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed)          \
-            path(relay_found_again) /* scene/ */                                                                      \
-        path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_planted)          \
-            path(octree_for_queries) path(pairs_waited) path(pairs_merged)
+// clang-format off
+#define OCTOPAIR_PATHS(path) \
+    /* octree/octant_growth.cpp, octree/directory.cpp */ \
+    path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
+    path(table_further) \
+    /* octree/linear_octree.cpp, octree/build_steps.cpp */ \
+    path(build_one_block) path(build_blocks) path(merge_ranges) path(kept_above_leaf) path(ghost_entries) \
+    path(refilled) path(crowded_octree) path(class_bits_brought) \
+    /* octree/scan.cpp */ \
+    path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
+    path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \
+    path(join_swept) path(join_crowded) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
+    path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) path(nested_join) \
+    path(not_nested_largest) path(not_nested_growth) path(not_nested_depth) \
+    /* octree/recursive_sweep.cpp */ \
+    path(one_tile) path(tiles) path(tile_skipped) path(recursion_settled) path(recursion_swept) \
+    path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
+    /* octree/sweep_order.cpp, octree/sort_key.cpp */ \
+    path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
+    /* octree/sweep_kernel.cpp, octree/pair_maker.cpp */ \
+    path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed) path(pairs_counted) \
+    /* octree/mutable_octree.cpp */ \
+    path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
+    path(unit_of_leaf) path(unit_of_inner) \
+    /* engine/ */ \
+    path(list_block_full) path(bucket_sorted) path(bucket_split) path(keys_narrow) path(keys_wide) \
+    path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) \
+    path(stream_lead_held) path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
+    /* engine/processes/ */ \
+    path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) \
+    /* engine/mpi/ */ \
+    path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
+    path(relay_found_again) \
+    /* scene/ */ \
+    path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_planted) \
+    path(octree_for_queries) path(pairs_waited) path(pairs_merged)
+// clang-format on
 
 enum class Path : unsigned {
 #define OCTOPAIR_PATH(name) name,

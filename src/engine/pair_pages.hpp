@@ -13,7 +13,7 @@
 namespace octopair {
 
 /// Pairs of a page.
-constexpr std::size_t page_pairs() { return tuning().output.page; }
+inline std::size_t page_pairs() { return tuning().output.page; }
 
 /// The pages in one thread's hands: taken fresh, and given back to be taken again.
 class Pages {

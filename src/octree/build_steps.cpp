@@ -176,6 +176,7 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
                 const NodeIndex node = ghosts[ghost].node();
                 Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
                 entry = entries[i];
+                if ((entry.mask & begins_before) != 0) count_path(Path::class_bits_brought);
                 if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;
                 entry.mask |= ghosts[ghost].begins();  // on top of the bits that it brought: see entry.hpp
             }

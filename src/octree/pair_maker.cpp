@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
@@ -37,6 +38,7 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
+    bool repeated = false;  // as a planted fault
     const std::span<HitMask> room = std::span(hits_).first(tuning().sweep.hits);
     const Depths depths = context_.rule.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {
@@ -48,7 +50,7 @@ void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
         if (cursor.row < sweep.rows.size()) {
             count_path(Path::sweep_resumed);
             throw_if_stopped(context_.stop);
-            if (planted(Fault::sweep_repeats_block)) cursor.in_row = false;
+            if (planted(Fault::sweep_repeats_block) && !std::exchange(repeated, true)) cursor.in_row = false;
         }
     }
 }

@@ -1,0 +1,59 @@
+// Faults that are planted on purpose: each must be found by the checks of small scenes. The test says by which, and after
+// how many scenes.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "exactness/small_scenes.hpp"
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+namespace octopair {
+namespace {
+
+struct Planted {
+    const char* name;
+    Fault fault;
+};
+
+std::string name_of(const ::testing::TestParamInfo<Planted>& info) { return info.param.name; }
+
+class PlantedFault : public ::testing::TestWithParam<Planted> {};
+
+TEST_P(PlantedFault, IsFound) {
+    constexpr std::uint64_t most = 1000;  // a tenth of the scenes of SmallScenes
+    const testing::EngineFor engines = testing::local_engines();
+    std::map<std::string, std::uint64_t> found_by;
+    std::uint64_t first = most;
+    {
+        const testing::FaultScope planted(GetParam().fault);
+        for (std::uint64_t seed = 0; seed < most; ++seed) {
+            const auto finding = testing::check_small_cases(seed, 1, engines);
+            if (!finding) continue;
+            if (found_by.empty()) first = seed;
+            ++found_by[finding->check];
+        }
+    }
+    EXPECT_LT(first, most);
+    std::string checks;
+    for (const auto& [check, count] : found_by) checks += "\n  " + std::to_string(count) + " scenes: " + check;
+    std::printf("%s: found by scene %llu; of %llu scenes%s\n", GetParam().name, static_cast<unsigned long long>(first),
+                static_cast<unsigned long long>(most), checks.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(, PlantedFault,
+                         ::testing::Values(Planted{"begins_bit_cleared", Fault::begins_bit_cleared},
+                                           Planted{"octant_border_open", Fault::octant_border_open},
+                                           Planted{"window_end_open", Fault::window_end_open},
+                                           Planted{"tile_end_open", Fault::tile_end_open},
+                                           Planted{"handed_to_wrong_child", Fault::handed_to_wrong_child},
+                                           Planted{"nested_frame_moved", Fault::nested_frame_moved},
+                                           Planted{"stream_windows_overlap", Fault::stream_windows_overlap},
+                                           Planted{"sweep_repeats_block", Fault::sweep_repeats_block},
+                                           Planted{"part_joined_twice", Fault::part_joined_twice}),
+                         name_of);
+
+}  // namespace
+}  // namespace octopair
+
+#endif

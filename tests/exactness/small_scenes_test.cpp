@@ -1,0 +1,93 @@
+// Small scenes with tiny tuning on the local engine, against brute force: every path of crowded scenes, in a few boxes.
+#include <gtest/gtest.h>
+
+#include "exactness/small_scenes.hpp"
+#include "support/scale.hpp"
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+namespace octopair {
+namespace {
+
+constexpr std::uint64_t usual = testing::scaled(10'000, 20);
+
+TEST(SmallScenes, AreWhatBruteForceFinds) {
+    const std::uint64_t first = testing::case_count(2) == 1 ? testing::case_seed("", 0) : 0;
+    const auto finding = testing::check_small_cases(first, testing::case_count(usual), testing::local_engines());
+    ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
+    if (testing::case_count(usual) < usual) return;
+    using enum Path;
+    EXPECT_EQ(testing::paths_not_taken({octant_divided,
+                                        octant_too_small,
+                                        octant_well_swept,
+                                        octant_multiplies,
+                                        octant_deepest,
+                                        table_further,
+                                        build_one_block,
+                                        build_blocks,
+                                        merge_ranges,
+                                        kept_above_leaf,
+                                        ghost_entries,
+                                        crowded_octree,
+                                        share_of_octants,
+                                        large_octant,
+                                        handed_down,
+                                        own_swept,
+                                        own_too_large,
+                                        own_window_too_wide,
+                                        handed_swept,
+                                        handed_too_large,
+                                        handed_window_too_wide,
+                                        join_swept,
+                                        join_crowded,
+                                        crowd_swept,
+                                        crowd_parted,
+                                        part_swept,
+                                        part_recursive,
+                                        nested_once,
+                                        nested_twice,
+                                        nested_thrice,
+                                        nested_deeper,
+                                        nested_join,
+                                        not_nested_largest,
+                                        not_nested_growth,
+                                        not_nested_depth,
+                                        one_tile,
+                                        tiles,
+                                        tile_skipped,
+                                        recursion_settled,
+                                        recursion_swept,
+                                        recursion_spanning,
+                                        recursion_halved,
+                                        recursion_shared,
+                                        sort_few,
+                                        sort_buckets,
+                                        sort_full_bucket,
+                                        sort_radix,
+                                        radix_blocks,
+                                        hits_few,
+                                        sweep_resumed,
+                                        hit_turned,
+                                        hit_settled,
+                                        pairs_flushed,
+                                        pairs_counted,
+                                        list_block_full,
+                                        bucket_sorted,
+                                        bucket_split,
+                                        keys_narrow,
+                                        buffer_over,
+                                        window,
+                                        window_of_one,
+                                        limit_reached,
+                                        stream_lead_wrote,
+                                        stream_lead_held,
+                                        stream_lead_full,
+                                        stream_helper_full,
+                                        radix_sorted}),
+              "");
+}
+
+}  // namespace
+}  // namespace octopair
+
+#endif

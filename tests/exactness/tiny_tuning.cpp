@@ -1,0 +1,169 @@
+#include "exactness/tiny_tuning.hpp"
+
+#include <initializer_list>
+
+#include "samples/random.hpp"
+
+namespace octopair::testing {
+
+namespace {
+
+/// Replaces constants by one of some small values each.
+class Shrinker {
+public:
+    explicit Shrinker(std::uint64_t seed)
+        : random_(seed, 0), kept_(random_.below(3) == 0 ? 0.4 * random_.uniform() : 0) {}
+
+    template <typename Value>
+    void one_of(Value& constant, std::initializer_list<Value> values) {
+        const std::uint64_t chosen = random_.below(values.size());
+        if (random_.uniform() >= kept_) constant = values.begin()[chosen];
+    }
+
+private:
+    samples::RandomStream random_;
+    double kept_;  // part of the constants that stay as they are
+};
+
+void shrink(Tuning::Sampling& sampling, Shrinker& to) {
+    to.one_of<std::size_t>(sampling.stride, {1, 1, 2, 3, 7});
+    to.one_of<std::size_t>(sampling.most, {8, 20, 1000});
+    to.one_of<std::size_t>(sampling.most_stride, {1, 2, 5});
+    to.one_of<std::size_t>(sampling.frame, {1, 5, 60});
+}
+
+void shrink(Tuning::Split& split, Shrinker& to) {
+    to.one_of<double>(split.always, {1, 2, 5, 12});
+    to.one_of<double>(split.never, {0, 1, 3});
+    to.one_of<double>(split.crowded_window, {0, 0.5, 3});
+    to.one_of<double>(split.most_entries, {1.6, 3, 8});
+    to.one_of<double>(split.handed_growth, {1.5, 3, 8});
+    to.one_of<std::uint64_t>(split.table_cells, {1, 2});
+}
+
+void shrink(Tuning::Build& build, Shrinker& to) {
+    to.one_of<std::size_t>(build.blocks_per_thread, {1, 3});
+    to.one_of<std::size_t>(build.least_block, {1, 3, 17});
+    to.one_of<std::size_t>(build.counts_per_range, {1, 8, 50});
+    to.one_of<std::size_t>(build.batch, {1, 3, 16});
+}
+
+void shrink(Tuning::Scan& scan, Shrinker& to) {
+    to.one_of<std::size_t>(scan.large_node, {1, 4, 20, 60});
+    to.one_of<std::size_t>(scan.share_entries, {1, 5, 30});
+    to.one_of<std::size_t>(scan.shares_per_thread, {1, 3});
+    to.one_of<std::size_t>(scan.hot_node, {1, 4, 16, 50});
+    to.one_of<std::uint64_t>(scan.good_window, {0, 1, 3, 8});
+    to.one_of<double>(scan.largest_part, {0.6, 0.8, 0.95, 1});
+    to.one_of<double>(scan.most_growth, {1.5, 4, 16, 64});
+    to.one_of<unsigned>(scan.most_nesting, {1, 2, 3, 5, 8});
+}
+
+void shrink(Tuning::Sweep& sweep, Shrinker& to) {
+    to.one_of<std::size_t>(sweep.tile, {1, 2, 5, 16});
+    to.one_of<std::size_t>(sweep.small_set, {1, 3, 8});
+    to.one_of<std::uint64_t>(sweep.cheap_window, {0, 1, 3});
+    to.one_of<std::uint64_t>(sweep.tests_per_pair, {1, 4});
+    to.one_of<std::size_t>(sweep.large_join, {1, 4, 20});
+    to.one_of<std::size_t>(sweep.tests_per_call, {1, 2, 7});
+    to.one_of<std::size_t>(sweep.hits, {8, 9, 20});
+    to.one_of<std::size_t>(sweep.pairs, {1, 9, 30});
+    to.one_of<std::size_t>(sweep.most_buckets, {2, 4, 16});
+    to.one_of<std::size_t>(sweep.few, {1, 2, 5});
+    to.one_of<std::size_t>(sweep.in_cache, {1, 4, 20});
+    to.one_of<std::size_t>(sweep.radix_block, {1, 5});
+    to.one_of<std::size_t>(sweep.measured_least, {1, 4, 16});
+    to.one_of<std::size_t>(sweep.measured_most, {16, 40});
+    to.one_of<std::size_t>(sweep.tried_rows, {1, 5});
+    to.one_of<std::size_t>(sweep.window_stride, {1, 3});
+    to.one_of<std::size_t>(sweep.windows, {1, 5});
+}
+
+void shrink(Tuning::Dynamic& dynamic, Shrinker& to) {
+    to.one_of<std::size_t>(dynamic.listed_visits, {1, 2, 5, 20});
+    to.one_of<std::size_t>(dynamic.hits, {1, 3, 10});
+    to.one_of<double>(dynamic.cell_objects, {1, 2});
+    to.one_of<double>(dynamic.most_growth, {1.1, 3, 8});
+    to.one_of<unsigned>(dynamic.grid_bits, {0, 1, 4});
+}
+
+void shrink(Tuning::Output& output, Shrinker& to) {
+    to.one_of<std::uint64_t>(output.least_buffer, {8, 64, 1000, 10000});
+    to.one_of<std::size_t>(output.batch, {1, 3, 50});
+    to.one_of<std::size_t>(output.handed_out, {1, 4, 100});
+    to.one_of<std::size_t>(output.list_block, {1, 5, 100});
+    to.one_of<std::size_t>(output.page, {1, 2, 8});
+    to.one_of<unsigned>(output.bucket_row_bits, {0, 1, 3});
+    to.one_of<unsigned>(output.bucket_bits, {1, 2, 4});
+    to.one_of<unsigned>(output.bucket_split_bits, {1, 2});
+    to.one_of<std::size_t>(output.sorted_at_once, {1, 3, 20});
+    to.one_of<std::size_t>(output.radix_from, {1, 4});
+    to.one_of<std::size_t>(output.shares_ahead, {1, 2});
+}
+
+void shrink(Tuning::Processes& processes, Shrinker& to) {
+    to.one_of<std::uint64_t>(processes.objects_per_worker, {1, 10, 50});
+    to.one_of<std::uint64_t>(processes.worth_keeping, {1, 30});
+    to.one_of<std::size_t>(processes.kept_regions, {1, 2});
+    to.one_of<std::uint64_t>(processes.ring_block, {1, 5});
+    to.one_of<unsigned>(processes.blocks_at_once, {1, 2});
+}
+
+void shrink(Tuning::Ranks& ranks, Shrinker& to) {
+    to.one_of<std::uint64_t>(ranks.round_bytes, {48, 500});
+    to.one_of<std::size_t>(ranks.batch, {1, 5});
+    to.one_of<std::size_t>(ranks.counted, {1, 10});
+    to.one_of<std::size_t>(ranks.block, {1, 10});
+    to.one_of<std::size_t>(ranks.share_pairs, {1, 10});
+    to.one_of<std::uint64_t>(ranks.octants, {1, 4, 20});
+    to.one_of<std::size_t>(ranks.key_samples, {1, 3});
+    to.one_of<std::size_t>(ranks.relayed, {1, 10});
+    to.one_of<unsigned>(ranks.row_bin_bits, {0, 2, 5});
+}
+
+void shrink(Tuning::Scene& scene, Shrinker& to) {
+    to.one_of<StepChoice>(scene.step, {StepChoice::full, StepChoice::incremental, StepChoice::incremental});
+    to.one_of<unsigned>(scene.refills, {0, 1, 3});
+    to.one_of<double>(scene.log_part, {0, 0.5});
+    to.one_of<double>(scene.log_least, {1, 10, 1000});
+    to.one_of<std::uint64_t>(scene.visits, {1, 20, 100000});
+    to.one_of<std::uint64_t>(scene.changed_pairs, {1, 30, 100000});
+    to.one_of<std::size_t>(scene.share_visits, {1, 7});
+    to.one_of<std::size_t>(scene.run_visits, {1, 3});
+    to.one_of<std::uint64_t>(scene.waiting_part, {1, 100});
+    to.one_of<std::uint64_t>(scene.waiting_least, {1, 10});
+    to.one_of<std::size_t>(scene.share_queries, {1, 2});
+}
+
+/// Hardly any sweep is good enough, and samples see little: octants are crowded, and octrees nest in them.
+void favour_crowds(Tuning& tuning) {
+    tuning.sampling.stride = 5;
+    tuning.scan.hot_node = 1;
+    tuning.scan.good_window = 0;
+    tuning.scan.largest_part = 0.9;
+    tuning.scan.most_growth = 64;
+    tuning.sweep.small_set = 2;
+    tuning.sweep.cheap_window = 0;
+    tuning.sweep.tests_per_pair = 1;
+}
+
+}  // namespace
+
+Tuning tiny_tuning(std::uint64_t seed) {
+    Tuning tuning;
+    Shrinker to(seed);
+    shrink(tuning.sampling, to);
+    shrink(tuning.split, to);
+    shrink(tuning.build, to);
+    shrink(tuning.scan, to);
+    shrink(tuning.sweep, to);
+    shrink(tuning.dynamic, to);
+    shrink(tuning.output, to);
+    shrink(tuning.processes, to);
+    shrink(tuning.ranks, to);
+    shrink(tuning.scene, to);
+    if (seed % 3 == 0) favour_crowds(tuning);
+    return tuning;
+}
+
+}  // namespace octopair::testing
