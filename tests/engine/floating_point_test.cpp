@@ -47,10 +47,11 @@ std::vector<Box<Real>> grid_boxes(Real step) {
 }
 
 std::vector<Asked> all_asked() {
-    std::vector<double> paddings;
-    for (int i = 0; i < 400; ++i) paddings.push_back(0.05 * double(i % 3));
-    std::vector<double> tiny;
-    for (int i = 0; i < 400; ++i) tiny.push_back(DBL_TRUE_MIN * double(i % 3));
+    std::vector<double> paddings(400), tiny(400);
+    for (std::size_t i = 0; i < paddings.size(); ++i) {
+        paddings[i] = 0.05 * double(i % 3);
+        tiny[i] = DBL_TRUE_MIN * double(i % 3);
+    }
     return {{"float32", testing::make_boxes("uniform", 400, 1), {}, {}, 0},
             {"float32 subnormal", grid_boxes<float>(FLT_TRUE_MIN), {}, {}, 0},
             {"float32 with margin", grid_boxes<float>(0.1f), {}, {}, 0.1},
