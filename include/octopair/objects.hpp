@@ -1,9 +1,10 @@
 // Objects in, pairs out: the plain data of every call.
 //
 // Units     lengths are the caller's own; `margin` and `padding` are in the same unit. Objects are positions in a span.
-// Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b),
-// each
+// Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b), each
 //           operation in float64; without margin and padding: when the closed boxes overlap, touching included.
+// State     the caller's floating-point state (rounding, subnormal numbers taken for 0, traps) changes no result. Calls set
+//           the default state and restore the caller's at the end; sinks, progress and filters are called in the default.
 // Ownership boxes and padding are borrowed and never modified; a PairList owns its pairs.
 #pragma once
 

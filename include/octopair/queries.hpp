@@ -1,12 +1,13 @@
 // Queries of a scene: what overlaps a box or a sphere, what a ray hits, and what is nearest.
 //
-// Rules     on the objects' boxes themselves, without margin and paddings, in float64:
+// Rules     on the objects' boxes themselves, without margin and paddings. Boxes, spheres and distances are decided exactly:
+//           each float64 is taken for the real number that it is, whatever its size.
 //             box      the closed boxes overlap, touching included
-//             sphere   hypot(dx, dy, dz) <= radius, of the gaps between its centre and the box
+//             sphere   the squared distance between its centre and the box is at most the squared radius
+//             nearest  by the Euclidean distance between boxes, 0 where they overlap
 //             ray      no box that it touches is missed; one that it passes may be hit if rounding hides the gap (about
 //                      4e-16 of the numbers that it is made of). Where `along` is beyond float64 is no hit.
-//             nearest  by the Euclidean distance between boxes, 0 where they overlap
-// Order     ascending index; hits by `along`, neighbours by `distance`, then index.
+// Order     ascending index; hits by `along`, then index; neighbours by the exact distance, then index.
 // Units     those of the scene.
 #pragma once
 
@@ -44,7 +45,7 @@ struct RayHit {
 
 struct Neighbor {
     std::uint32_t index;
-    double distance;
+    double distance;  ///< the float64 nearest to the exact one; infinite where that is beyond float64
 
     bool operator==(const Neighbor&) const = default;
 };

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "base/memory.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/job_task.hpp"
@@ -43,8 +44,9 @@ void check_request(const Engine::Request& request) {
 void Engine::check(const Request& request) const { check_request(request); }
 
 /// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
-/// after.
+/// after. Sinks and progress are called in the default floating-point state, too.
 Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
+    const FloatingPointScope scope;
     if (output.list != nullptr) output.list->storage().reset();
     check(request);
     try {
@@ -96,6 +98,7 @@ namespace {
 
 template <typename Work>
 Job Engine::submit_work(Work work) {
+    const FloatingPointScope scope;
     const Objects first = view(work.first);
     const Objects second = work.second ? view(*work.second) : Objects{};
     check({first, work.second ? &second : nullptr, work.options});

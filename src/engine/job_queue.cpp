@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/floating_point.hpp"
 #include "engine/job_task.hpp"
 #include "octopair/error.hpp"
 
@@ -46,6 +47,7 @@ void JobQueue::start_thread() {
 }
 
 void JobQueue::run_jobs() {
+    const FloatingPointScope scope;
     while (const auto task = next()) {
         if (!task->run(engine_) && skipped_) skipped_();
     }

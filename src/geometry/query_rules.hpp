@@ -1,14 +1,13 @@
-// What a query finds: the rules of queries.hpp, of one box.
+// What a query finds: the rules of queries.hpp, of one box. Those of distances are in box_distance.hpp.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <optional>
 
+#include "geometry/box_distance.hpp"
 #include "octopair/queries.hpp"
 
 namespace octopair {
@@ -27,33 +26,11 @@ inline bool is_ray(const Ray& ray) {
            !std::all_of(std::begin(ray.direction), std::end(ray.direction), zero) && ray.longest >= 0;
 }
 
-/// How far two boxes are apart on an axis; 0 where they overlap.
-inline double gap(const Box3d& a, const Box3d& b, int axis) {
-    return std::max({0.0, a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]});
-}
-
-/// std::hypot, also where a number is infinite, of which it makes no number in some libraries.
-inline double length(double x, double y, double z) {
-    const double largest = std::max({x, y, z});
-    return std::isinf(largest) ? largest : std::hypot(x, y, z);
-}
-
 inline bool overlap(const Box3d& a, const Box3d& b) {
     bool all = true;
     for (int axis = 0; axis < 3; ++axis) all &= a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis];
     return all;
 }
-
-inline bool overlap(const Sphere& sphere, const Box3d& box) {
-    std::array<double, 3> apart;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double centre = sphere.centre[axis];
-        apart[std::size_t(axis)] = std::max({0.0, box.min[axis] - centre, centre - box.max[axis]});
-    }
-    return length(apart[0], apart[1], apart[2]) <= sphere.radius;
-}
-
-inline double distance(const Box3d& a, const Box3d& b) { return length(gap(a, b, 0), gap(a, b, 1), gap(a, b, 2)); }
 
 /// (bound - origin) / direction, also where the difference is beyond float64.
 inline double along_axis(double bound, double origin, double direction) {

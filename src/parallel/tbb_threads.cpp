@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/floating_point.hpp"
 #include "octopair/error.hpp"
 #include "parallel/team.hpp"
 
@@ -46,11 +47,13 @@ public:
     TaskOrder(const TaskOrder&) = delete;
     TaskOrder& operator=(const TaskOrder&) = delete;
 
-    /// Calls `body` as a task; what it throws is passed on.
+    /// Calls `body` as a task; what it throws is passed on. oneTBB gives a task the floating-point state of whoever began
+    /// to use it, which may be any.
     template <typename Body>
     void task(Body&& body) {
         enter();
         const Leaving leaving{*this};
+        const FloatingPointScope scope;
         body();
     }
 
@@ -129,7 +132,10 @@ void TbbThreads::run_beside(unsigned helpers, const std::function<void()>& lead,
             } catch (const std::runtime_error&) {
                 // No thread to be had: fewer helpers will do, and those that run wait for the lead.
             }
-            lead();
+            {
+                const FloatingPointScope scope;
+                lead();
+            }
             group.wait();
         });
     });

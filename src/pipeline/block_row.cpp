@@ -3,6 +3,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/floating_point.hpp"
+
 namespace octopair {
 
 BlockRow::BlockRow(unsigned threads, Step work, Step deliver)
@@ -97,6 +99,7 @@ void BlockRow::work_at(Slot& slot) noexcept {
 }
 
 void BlockRow::help() {
+    const FloatingPointScope scope;
     std::unique_lock lock(mutex_);
     for (;;) {
         while (!ended_ && claimed_ == filled_) {

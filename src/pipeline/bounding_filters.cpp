@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/floating_point.hpp"
 #include "geometry/shape/motion.hpp"
 #include "geometry/shape/posed_plane.hpp"
 #include "geometry/shape/prepared.hpp"
@@ -200,11 +201,13 @@ private:
 }  // namespace
 
 std::unique_ptr<Filter> make_sphere_filter(const ShapedObjects& first, double margin, const ShapedObjects* second) {
+    const FloatingPointScope scope;
     return std::make_unique<BoundingFilter>(Hull::ball, first, second ? *second : first, margin);
 }
 
 std::unique_ptr<Filter> make_oriented_box_filter(const ShapedObjects& first, double margin,
                                                  const ShapedObjects* second) {
+    const FloatingPointScope scope;
     return std::make_unique<BoundingFilter>(Hull::box, first, second ? *second : first, margin);
 }
 

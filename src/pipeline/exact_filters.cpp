@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "geometry/shape/object_impact.hpp"
 #include "geometry/shape/object_pair.hpp"
 #include "octopair/error.hpp"
@@ -179,12 +180,14 @@ void check(const ExactOptions& options) {
 
 std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, const ExactOptions& options,
                                                  const ShapedObjects* second) {
+    const FloatingPointScope scope;
     check(options);
     return std::make_unique<ExactObjectFilter>(PosedPairs(first, second), options.margin);
 }
 
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options,
                                                   const ShapedObjects* second) {
+    const FloatingPointScope scope;
     check(options);
     return std::make_unique<ExactFeatureFilter>(PosedPairs(first, second), options);
 }

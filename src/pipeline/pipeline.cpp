@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "base/timed.hpp"
 #include "octopair/error.hpp"
 #include "pipeline/batch_access.hpp"
@@ -205,6 +206,7 @@ struct Pipeline::State {
     template <typename Search>
     PipelineSummary run(const CollisionSink& sink, const Options& options, const std::stop_token& stop,
                         const Search& search) const {
+        const FloatingPointScope scope;
         PipelineSummary summary;
         for (const auto& filter : filters) summary.filters.push_back({std::string(filter->name())});
         try {

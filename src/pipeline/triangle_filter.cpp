@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "geometry/box_kernel.hpp"
 #include "geometry/exact/contact_of_triangles.hpp"
 #include "geometry/exact/pair_look.hpp"
@@ -178,6 +179,7 @@ private:
 
 std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const TriangleOptions& options,
                                              const TriangleSet* second) {
+    const FloatingPointScope scope;
     check(first, options.threads);
     if (second != nullptr) check(*second, options.threads);
     if (!(options.margin >= 0 && options.margin <= std::numeric_limits<double>::max())) {
@@ -193,6 +195,7 @@ std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned thre
 }
 
 void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads) {
+    const FloatingPointScope scope;
     if (boxes.size() != triangles.size()) {
         throw Error(ErrorCode::bad_input, "room for " + std::to_string(boxes.size()) + " boxes of " +
                                               std::to_string(triangles.size()) + " triangles");

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "geometry/query_rules.hpp"
 #include "octopair/error.hpp"
 #include "scene/scene_state.hpp"
@@ -21,49 +22,81 @@ void check_queries(std::span<const Query> queries, IsOne&& is_one) {
 
 }  // namespace
 
-Scene::Scene(const SceneOptions& options) : state_(std::make_unique<State>(options)) {}
+Scene::Scene(const SceneOptions& options) {
+    const FloatingPointScope scope;
+    state_ = std::make_unique<State>(options);
+}
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
 void Scene::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
+    const FloatingPointScope scope;
     state_->to_change().add(objects, ids, traits);
 }
 
-void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) { state_->to_change().move(ids, boxes, false); }
-void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) { state_->to_change().move(ids, boxes, true); }
-void Scene::remove(std::span<const ObjectId> ids) { state_->to_change().remove(ids); }
+void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) {
+    const FloatingPointScope scope;
+    state_->to_change().move(ids, boxes, false);
+}
+
+void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
+    const FloatingPointScope scope;
+    state_->to_change().move(ids, boxes, true);
+}
+
+void Scene::remove(std::span<const ObjectId> ids) {
+    const FloatingPointScope scope;
+    state_->to_change().remove(ids);
+}
 
 void Scene::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
+    const FloatingPointScope scope;
     state_->to_change().set_traits(ids, traits);
 }
 
-const StepResult& Scene::step(std::stop_token stop) { return state_->step(stop); }
-const PairList& Scene::pairs() { return state_->pairs(); }
-const PairList& Scene::persisting() { return state_->persisting(); }
+const StepResult& Scene::step(std::stop_token stop) {
+    const FloatingPointScope scope;
+    return state_->step(stop);
+}
+
+const PairList& Scene::pairs() {
+    const FloatingPointScope scope;
+    return state_->pairs();
+}
+
+const PairList& Scene::persisting() {
+    const FloatingPointScope scope;
+    return state_->persisting();
+}
 
 void Scene::overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups) {
+    const FloatingPointScope scope;
     check_queries(boxes, [](const Box3d& box) { return is_box(box); });
     state_->queries().overlaps(state_->view(groups), boxes, answers);
 }
 
 void Scene::overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups) {
+    const FloatingPointScope scope;
     check_queries(spheres, is_sphere);
     state_->queries().overlaps(state_->view(groups), spheres, answers);
 }
 
 void Scene::first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
+    const FloatingPointScope scope;
     check_queries(rays, is_ray);
     state_->queries().first_hits(state_->view(groups), rays, answers);
 }
 
 void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
+    const FloatingPointScope scope;
     check_queries(rays, is_ray);
     state_->queries().all_hits(state_->view(groups), rays, answers);
 }
 
 void Scene::nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                     std::uint32_t groups) {
+    const FloatingPointScope scope;
     check_queries(places, [](const Box3d& box) { return is_box(box); });
     state_->queries().nearest(state_->view(groups), places, count, answers);
 }

@@ -117,10 +117,6 @@ private:
     std::vector<RayHit>& hits_;
 };
 
-bool nearer(const Neighbor& a, const Neighbor& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
-}
-
 /// Keeps the nearest in order at the end of a list.
 class Nearest final : public SceneProbe {
 public:
@@ -128,18 +124,29 @@ public:
         : SceneProbe(scene), place_(place), count_(count), list_(list), begin_(list.size()) {}
 
 private:
-    double from(const Box3d& region) const override {
-        return distance(place_, region) * (1 - 4 * std::numeric_limits<double>::epsilon());
-    }
-    double limit() const override { return list_.size() - begin_ < count_ ? infinity : list_.back().distance; }
+    // Rounded distances are in the order of the exact ones. So what is farther than the last of the list, rounded, is
+    // farther; what is as far, rounded, may be nearer and is tried.
+    double from(const Box3d& region) const override { return distance_at_least(place_, region); }
+    double limit() const override { return is_full() ? list_.back().distance : infinity; }
     void try_object(std::uint32_t index) override {
-        const Neighbor found{index, distance(place_, table().box(index))};
-        const auto at = std::lower_bound(list_.begin() + std::ptrdiff_t(begin_), list_.end(), found, nearer);
-        if (at != list_.end() && *at == found) return;
-        const bool full = list_.size() - begin_ == count_;
+        const Box3d box = table().box(index);
+        if (is_full() && distance_at_least(place_, box) > list_.back().distance) return;
+        const Neighbor found{index, distance(place_, box)};
+        const auto at = std::lower_bound(list_.begin() + std::ptrdiff_t(begin_), list_.end(), found,
+                                         [&](const Neighbor& a, const Neighbor& b) { return nearer(a, b); });
+        if (at != list_.end() && at->index == index) return;
+        const bool full = is_full();
         if (full && at == list_.end()) return;
         list_.insert(at, found);
         if (full) list_.pop_back();
+    }
+
+    bool is_full() const { return list_.size() - begin_ == count_; }
+    bool nearer(const Neighbor& a, const Neighbor& b) const {
+        if (a.distance != b.distance) return a.distance < b.distance;
+        if (a.distance == 0 || a.index == b.index) return a.index < b.index;
+        const int sign = exactly_compare_distances(place_, table().box(a.index), table().box(b.index));
+        return sign != 0 ? sign < 0 : a.index < b.index;
     }
 
     const Box3d& place_;
@@ -198,7 +205,7 @@ void SceneQueries::overlaps(const Scene& scene, std::span<const Box3d> boxes, An
 }
 
 void SceneQueries::overlaps(const Scene& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
-    // What the rule's own roundings may let in.
+    // Above what rounding takes from the box around a sphere.
     constexpr double roundings = 0x1p-48;
     constexpr double most = std::numeric_limits<double>::max();
     answer(spheres.size(), &Worker::indices, answers, [&](std::size_t i, Worker& worker) {

@@ -1,7 +1,10 @@
 // Queries beside those of the random histories: large scenes, many at once, any number of threads, and bad ones.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
 
 #include "octopair/octopair.hpp"
 #include "scene/query_model.hpp"
@@ -100,6 +103,56 @@ TEST(SceneQueries, ARayThatOnlyTouchesHits) {
     // Backwards nothing is hit, and from within at once.
     EXPECT_TRUE(scene.all_hits({{0, 1.5, 1.5}, {-1, 0, 0}}).empty());
     EXPECT_EQ(scene.first_hit({{3.5, 1.5, 1.5}, {0, 0, -1}}), (RayHit{0, 0}));
+}
+
+/// Points with integer coordinates that are 27 from (0, 0, 0), in the order of their coordinates, times 2^exponent and
+/// moved.
+std::vector<Box3d> points_of_a_sphere(int exponent, double moved) {
+    std::vector<Box3d> points;
+    for (int x = -27; x <= 27; ++x) {
+        for (int y = -27; y <= 27; ++y) {
+            for (int z = -27; z <= 27; ++z) {
+                if (x * x + y * y + z * z != 27 * 27) continue;
+                double at[3] = {double(x), double(y), double(z)};
+                for (double& coordinate : at) coordinate = std::ldexp(coordinate + moved, exponent);
+                points.push_back(testing::point_box(at));
+            }
+        }
+    }
+    return points;
+}
+
+TEST(SceneQueries, ASphereAndTheNearestFindExactlyEqualDistances) {
+    for (const int exponent : {0, -3, 40, -500, 500, -1074, 1000}) {
+        for (const double moved : {0.0, 1000.0}) {
+            std::vector<Box3d> points = points_of_a_sphere(exponent, moved);
+            std::shuffle(points.begin(), points.end(), std::mt19937_64(7));
+            Scene scene({1, Precision::float64});
+            std::vector<ObjectId> ids(points.size());
+            scene.add(Objects{std::span<const Box3d>(points)}, ids);
+            scene.step();
+            const double centre = std::ldexp(moved, exponent), radius = std::ldexp(27, exponent);
+            EXPECT_EQ(scene.overlaps(Sphere{{centre, centre, centre}, radius}).size(), points.size()) << exponent;
+            EXPECT_TRUE(scene.overlaps(Sphere{{centre, centre, centre}, std::nextafter(radius, 0)}).empty());
+            for (const std::size_t count : {std::size_t(1), std::size_t(5), points.size()}) {
+                std::vector<Neighbor> expected;
+                for (std::uint32_t i = 0; i < count; ++i) expected.push_back({i, radius});
+                EXPECT_EQ(scene.nearest({{centre, centre, centre}, {centre, centre, centre}}, count), expected);
+            }
+        }
+    }
+}
+
+TEST(SceneQueries, TheNearestOfEqualRoundedDistancesComesFirst) {
+    // Both are reported as 1 away, but the first is 2^-81 farther.
+    const std::vector<Box3d> boxes = {{{1, 0x1p-40, 0}, {1, 0x1p-40, 0}}, {{0, 1, 0}, {0, 1, 0}}};
+    Scene scene({1, Precision::float64});
+    std::vector<ObjectId> ids(boxes.size());
+    scene.add(Objects{std::span<const Box3d>(boxes)}, ids);
+    scene.step();
+    const Box3d place{{0, 0, 0}, {0, 0, 0}};
+    EXPECT_EQ(scene.nearest(place, 1), (std::vector<Neighbor>{{1, 1}}));
+    EXPECT_EQ(scene.nearest(place, 2), (std::vector<Neighbor>{{1, 1}, {0, 1}}));
 }
 
 TEST(SceneQueries, BadOnesAreRefused) {

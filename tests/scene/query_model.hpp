@@ -7,8 +7,10 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "geometry/distance_oracle.hpp"
 #include "scene/model.hpp"
 
 namespace octopair::testing {
@@ -86,24 +88,15 @@ private:
         ASSERT_EQ(scene_.overlaps(box, groups_), expected);
     }
 
-    static double distance(const Box3d& a, const Box3d& b) {
-        double gaps[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            gaps[axis] = std::max({a.min[axis] - b.max[axis], b.min[axis] - a.max[axis], 0.0});
-        }
-        const bool infinite = std::any_of(gaps, gaps + 3, [](double gap) { return std::isinf(gap); });
-        return infinite ? gaps[0] + gaps[1] + gaps[2] : std::hypot(gaps[0], gaps[1], gaps[2]);
-    }
-
     void check_sphere() {
         const Box3d from = random_box(), to = object_box();
         Sphere sphere{{from.min[0], from.min[1], from.min[2]}, 0};
-        const Box3d centre{{from.min[0], from.min[1], from.min[2]}, {from.min[0], from.min[1], from.min[2]}};
-        sphere.radius = random_() % 2 == 0 ? distance(centre, to) : unit() * (from.max[0] - from.min[0]);
+        sphere.radius =
+            random_() % 2 == 0 ? rounded_distance(point_box(sphere.centre), to) : unit() * (from.max[0] - from.min[0]);
         if (!std::isfinite(sphere.radius)) return;
         std::vector<std::uint32_t> expected;
         for (const ModelObject* object : all_) {
-            if (wanted(*object) && distance(centre, object->box) <= sphere.radius) expected.push_back(object->id.index);
+            if (wanted(*object) && exactly_touches(sphere, object->box)) expected.push_back(object->id.index);
         }
         ASSERT_EQ(scene_.overlaps(sphere, groups_), expected);
     }
@@ -146,15 +139,14 @@ private:
     }
 
     void check_nearest(const Box3d& place) {
-        std::vector<Neighbor> expected;
+        std::vector<std::pair<Integer, std::uint32_t>> order;
         for (const ModelObject* object : all_) {
-            if (wanted(*object)) expected.push_back({object->id.index, distance(place, object->box)});
+            if (wanted(*object)) order.emplace_back(exact_squared_distance(place, object->box), object->id.index);
         }
-        std::sort(expected.begin(), expected.end(), [](const Neighbor& a, const Neighbor& b) {
-            return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
-        });
-        const std::size_t count = std::size_t(random_() % 12);
-        expected.resize(std::min(expected.size(), count));
+        const std::size_t count = std::min(order.size(), std::size_t(random_() % 12));
+        std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end());
+        std::vector<Neighbor> expected;
+        for (std::size_t i = 0; i < count; ++i) expected.push_back({order[i].second, rounded_distance(order[i].first)});
         ASSERT_EQ(scene_.nearest(place, count, groups_), expected);
     }
 

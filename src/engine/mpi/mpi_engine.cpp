@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/mpi/communicator.hpp"
 #include "engine/mpi/rank_search.hpp"
@@ -99,6 +100,7 @@ namespace {
 
 /// With no half-filled list after a failure, and running out of memory an Error like any other.
 Summary find_indexed(Engine& engine, const Engine::Request& request, const IndexedCall& indexed, std::stop_token stop) {
+    const FloatingPointScope scope;
     MpiEngine& ranks = as_ranks(dynamic_cast<MpiEngine*>(&engine));
     indexed.pairs.clear();
     try {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <thread>
 
+#include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/processes/crew.hpp"
 #include "engine/processes/paper_passes.hpp"
@@ -58,6 +59,7 @@ private:
 }  // namespace
 
 std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options, const char* packaged_worker) {
+    const FloatingPointScope scope;
     return std::make_unique<ProcessEngine>(options, packaged_worker);
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "engine/processes/mail.hpp"
 #include "engine/processes/worker_pass.hpp"
 #include "octopair/error.hpp"
@@ -70,6 +71,7 @@ public:
     }
 
     [[noreturn]] void work() {
+        const FloatingPointScope scope;
         const auto memory = regions_.get(desk_region);
         DeskView view(*memory);
         if (view.desk().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/floating_point.hpp"
 #include "geometry/shape/motion.hpp"
 #include "geometry/shape/prepared.hpp"
 #include "geometry/shape/vector.hpp"
@@ -75,6 +76,7 @@ void check_object(const ShapedObjects& objects, std::size_t i) {
 }  // namespace
 
 void check(const ShapedObjects& objects) {
+    const FloatingPointScope scope;
     check_sizes(objects);
     for (std::size_t i = 0; i < objects.size(); ++i) check_object(objects, i);
 }

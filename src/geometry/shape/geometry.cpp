@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "geometry/shape/mesh_tree.hpp"
 #include "geometry/shape/prepared.hpp"
 #include "geometry/shape/vector.hpp"
@@ -148,6 +149,7 @@ ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>
 }  // namespace
 
 Geometry::Geometry(shape::Any shape) {
+    const FloatingPointScope scope;
     std::visit([](const auto& one) { check_shape(one); }, shape);
     auto made = std::make_shared<Prepared>();
     made->shape = std::move(shape);

@@ -1,12 +1,14 @@
 // Poses made of a place and a quaternion.
 #include <cmath>
 
+#include "base/floating_point.hpp"
 #include "octopair/error.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair {
 
 Pose make_pose(const Point3d& place, const std::array<double, 4>& turn) {
+    const FloatingPointScope scope;
     const double length = std::hypot(std::hypot(turn[0], turn[1]), std::hypot(turn[2], turn[3]));
     if (!(length > 0) || !std::isfinite(length)) {
         throw Error(ErrorCode::bad_input, "a pose's quaternion is not finite, or 0");

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "base/floating_point.hpp"
 #include "geometry/shape/motion.hpp"
 #include "geometry/shape/posed_plane.hpp"
 #include "geometry/shape/prepared.hpp"
@@ -155,6 +156,7 @@ void add_planes(const ShapedObjects& objects, const std::optional<Box3d>& bounds
 }  // namespace
 
 std::vector<Box3d> boxes_of(const ShapedObjects& objects) {
+    const FloatingPointScope scope;
     std::optional<Box3d> bounds;
     std::vector<Box3d> boxes = boxes_of_bounded(objects, bounds);
     add_planes(objects, bounds, boxes);
@@ -162,6 +164,7 @@ std::vector<Box3d> boxes_of(const ShapedObjects& objects) {
 }
 
 JoinBoxes boxes_of(const ShapedObjects& first, const ShapedObjects& second) {
+    const FloatingPointScope scope;
     std::optional<Box3d> bounds;
     JoinBoxes boxes;
     boxes.first = boxes_of_bounded(first, bounds);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/floating_point.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "service/client/connection.hpp"
@@ -131,12 +132,14 @@ JobClient::~JobClient() = default;
 
 std::string JobClient::submit(const Objects& objects, const Options& options, const JobTerms& terms,
                               std::stop_token stop) {
+    const FloatingPointScope scope;
     return state_->submit({objects, nullptr, options}, terms, stop);
 }
 
 // NOLINTNEXTLINE(readability-function-size): as those of Engine.
 std::string JobClient::submit_between(const Objects& first, const Objects& second, const Options& options,
                                       const JobTerms& terms, std::stop_token stop) {
+    const FloatingPointScope scope;
     return state_->submit({first, &second, options}, terms, stop);
 }
 

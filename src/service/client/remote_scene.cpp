@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/floating_point.hpp"
 #include "base/stop.hpp"
 #include "engine/pair_list.hpp"
 #include "scene/pair_history.hpp"
@@ -193,20 +194,44 @@ RemoteScene& RemoteScene::operator=(RemoteScene&&) noexcept = default;
 RemoteScene::~RemoteScene() = default;
 
 void RemoteScene::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
+    const FloatingPointScope scope;
     state_->objects().add(objects, ids, traits);
 }
 
-void RemoteScene::move(std::span<const ObjectId> ids, const Boxes& boxes) { state_->objects().move(ids, boxes, false); }
-void RemoteScene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) { state_->objects().move(ids, boxes, true); }
-void RemoteScene::remove(std::span<const ObjectId> ids) { state_->objects().remove(ids); }
+void RemoteScene::move(std::span<const ObjectId> ids, const Boxes& boxes) {
+    const FloatingPointScope scope;
+    state_->objects().move(ids, boxes, false);
+}
+
+void RemoteScene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
+    const FloatingPointScope scope;
+    state_->objects().move(ids, boxes, true);
+}
+
+void RemoteScene::remove(std::span<const ObjectId> ids) {
+    const FloatingPointScope scope;
+    state_->objects().remove(ids);
+}
 
 void RemoteScene::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
+    const FloatingPointScope scope;
     state_->objects().set_traits(ids, traits);
 }
 
-const StepResult& RemoteScene::step(std::stop_token stop) { return state_->step(stop); }
-const PairList& RemoteScene::pairs() { return state_->pairs(); }
-const PairList& RemoteScene::persisting() { return state_->persisting(); }
+const StepResult& RemoteScene::step(std::stop_token stop) {
+    const FloatingPointScope scope;
+    return state_->step(stop);
+}
+
+const PairList& RemoteScene::pairs() {
+    const FloatingPointScope scope;
+    return state_->pairs();
+}
+
+const PairList& RemoteScene::persisting() {
+    const FloatingPointScope scope;
+    return state_->persisting();
+}
 
 std::uint64_t RemoteScene::size() const { return state_->objects().table().size(); }
 std::uint64_t RemoteScene::indices() const { return state_->objects().table().indices(); }
@@ -214,6 +239,7 @@ bool RemoteScene::contains(ObjectId id) const { return state_->objects().table()
 ObjectId RemoteScene::id(std::uint32_t index) const { return state_->objects().id(index); }
 
 RemoteScene connect_scene(std::string_view address, const RemoteSceneOptions& options, const ClientOptions& client) {
+    const FloatingPointScope scope;
     return RemoteScene(std::make_unique<RemoteScene::State>(address, options, client));
 }
 
