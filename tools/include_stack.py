@@ -13,8 +13,9 @@ import re
 import sys
 
 # What each folder may use, beside itself and the public headers. Part of an engine: its own folder and engine/ alone.
-CORE = ["base", "parallel", "geometry", "octree", "pipeline", "engine", "scene", "service"]
+CORE = ["base", "parallel", "geometry", "octree", "pipeline", "verification", "engine", "scene", "service"]
 USES = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
+USES["verification"] = {"base", "parallel"}  # a check that shares code with what it checks would share its errors
 USES["samples"] = {"base", "geometry"}
 USES["io"] = {"base", "geometry"}
 BENCH = ["baselines", "machine", "paper", "cluster", "scaling"]
@@ -28,7 +29,8 @@ USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster", "scaling"}
 PURPOSE = {
     "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
     "geometry": "boxes, shapes, and how they are judged", "octree": "octal codes, encode, sort, merge, scan",
-    "pipeline": "filters and their composition", "engine": "where and how pairs are found",
+    "pipeline": "filters and their composition", "verification": "a second algorithm that checks results",
+    "engine": "where and how pairs are found",
     "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
     "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
     "paper": "the paper's section 5 again", "cluster": "what ranks cost", "scaling": "time by threads and ranks",
@@ -112,12 +114,12 @@ def check(root):
 
 
 def print_stack(used):
-    order = [f for f in ["base", "parallel", "geometry", "samples", "io", "octree", "pipeline", "engine", "scene",
-                         "service", *BENCH, "cli"] if f in used]
+    order = [f for f in ["base", "parallel", "geometry", "samples", "io", "octree", "pipeline", "verification", "engine",
+                         "scene", "service", *BENCH, "cli"] if f in used]
     for folder in reversed(order):
         names = sorted(used[folder] - {"octopair"}, key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
-        print(f"    {folder:<9} {PURPOSE[folder]:<40} uses {' '.join(names) or '-'}")
-    print(f"    {'octopair':<9} {'the public headers':<40} uses std alone")
+        print(f"    {folder:<12} {PURPOSE[folder]:<40} uses {' '.join(names) or '-'}")
+    print(f"    {'octopair':<12} {'the public headers':<40} uses std alone")
 
 
 def main():

@@ -1,0 +1,154 @@
+#include "verification/box_tree.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/stop.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr unsigned coordinates = 6;
+
+template <typename Real>
+Real coordinate(const Box<Real>& box, unsigned which) {
+    return which < 3 ? box.min[which] : box.max[which - 3];
+}
+
+}  // namespace
+
+/// Orders the boxes and fills in the nodes.
+template <typename Real>
+class BoxTree<Real>::Builder {
+public:
+    Builder(BoxTree& tree, const std::stop_token& stop) : tree_(tree), stop_(stop) {}
+
+    /// Level by level while a level has too few nodes for all threads, then a subtree a task.
+    void build(Team& team) {
+        std::vector<Place> level = {{0, 0, (tree_.items_.size() + leaf_boxes - 1) / leaf_boxes}};
+        std::vector<Place> above;
+        unsigned depth = 0;
+        const std::size_t enough = team.threads() > 1 ? 8 * team.threads() : 1;
+        // The first run of a level is its shortest.
+        for (; level.size() < enough && level[0].leaves > 1; ++depth) {
+            team.for_each(level.size(), [&](std::size_t i, unsigned) { halve(level[i], depth); });
+            above.insert(above.end(), level.begin(), level.end());
+            level = children_of(level);
+        }
+        team.for_each(level.size(), [&](std::size_t i, unsigned) { build_subtree(level[i], depth); });
+        for (std::size_t i = above.size(); i-- > 0;) join_children(above[i]);
+    }
+
+private:
+    /// Requires: each run has two leaves or more.
+    std::vector<Place> children_of(const std::vector<Place>& level) const {
+        std::vector<Place> children;
+        for (const Place& place : level) {
+            children.push_back(tree_.left_of(place));
+            children.push_back(tree_.right_of(place));
+        }
+        return children;
+    }
+
+    /// Puts the boxes of the left child before those of the right one.
+    void halve(const Place& place, unsigned depth) {
+        if (place.leaves < 2) return;
+        const unsigned which = depth % coordinates;
+        unsigned comparisons = 0;
+        const auto less = [&](const Item& a, const Item& b) {
+            if ((++comparisons & 0xfffff) == 0) throw_if_stopped(stop_);
+            return coordinate(a.box, which) < coordinate(b.box, which);
+        };
+        throw_if_stopped(stop_);
+        const auto items = tree_.items_.begin();
+        std::nth_element(items + std::ptrdiff_t(tree_.begin_of(place)),
+                         items + std::ptrdiff_t(tree_.begin_of(tree_.right_of(place))),
+                         items + std::ptrdiff_t(tree_.end_of(place)), less);
+    }
+
+    void build_subtree(const Place& place, unsigned depth) {
+        if (place.leaves < 2) return fill_leaf(place);
+        halve(place, depth);
+        build_subtree(tree_.left_of(place), depth + 1);
+        build_subtree(tree_.right_of(place), depth + 1);
+        join_children(place);
+    }
+
+    void fill_leaf(const Place& place) {
+        const Item& first = tree_.items_[tree_.begin_of(place)];
+        Node node{first.box, first.index, tree_.padding_of(first.index)};
+        for (std::size_t i = tree_.begin_of(place) + 1; i < tree_.end_of(place); ++i) {
+            const Item& item = tree_.items_[i];
+            node = joined(node, {item.box, item.index, tree_.padding_of(item.index)});
+        }
+        tree_.nodes_[place.node] = node;
+    }
+
+    void join_children(const Place& place) {
+        tree_.nodes_[place.node] =
+            joined(tree_.nodes_[tree_.left_of(place).node], tree_.nodes_[tree_.right_of(place).node]);
+    }
+
+    static Node joined(const Node& a, const Node& b) {
+        Node node{a.hull, std::max(a.largest, b.largest), std::max(a.padding, b.padding)};
+        for (int axis = 0; axis < 3; ++axis) {
+            node.hull.min[axis] = std::min(a.hull.min[axis], b.hull.min[axis]);
+            node.hull.max[axis] = std::max(a.hull.max[axis], b.hull.max[axis]);
+        }
+        return node;
+    }
+
+    BoxTree& tree_;
+    const std::stop_token& stop_;
+};
+
+template <typename Real>
+BoxTree<Real>::BoxTree(std::span<const Box<Real>> boxes, std::span<const double> padding, Team& team,
+                       const std::stop_token& stop)
+    : padding_(padding) {
+    if (boxes.empty()) return;
+    items_.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) items_[i] = {boxes[i], std::uint32_t(i)};
+    nodes_.resize(2 * ((boxes.size() + leaf_boxes - 1) / leaf_boxes) - 1);
+    Builder(*this, stop).build(team);
+}
+
+template <typename Real>
+std::size_t BoxTree<Real>::end_of(const Place& place) const {
+    return std::min((place.first_leaf + place.leaves) * leaf_boxes, items_.size());
+}
+
+template <typename Real>
+void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& found) const {
+    if (nodes_.empty()) return;
+    // One place a level waits, and each level halves the at most 2^28 leaves.
+    std::array<Place, 64> waiting;
+    std::size_t count = 0;
+    waiting[count++] = {0, 0, (nodes_.size() + 1) / 2};
+    while (count > 0) {
+        const Place place = waiting[--count];
+        const Node& node = nodes_[place.node];
+        if (std::int64_t(node.largest) <= query.above || !is_within_reach(query, node.hull, node.padding)) continue;
+        if (place.leaves == 1) {
+            find_in_leaf(query, place, found);
+        } else {
+            waiting[count++] = right_of(place);
+            waiting[count++] = left_of(place);
+        }
+    }
+}
+
+template <typename Real>
+void BoxTree<Real>::find_in_leaf(const BoxQuery& query, const Place& leaf, std::vector<std::uint32_t>& found) const {
+    for (std::size_t i = begin_of(leaf); i < end_of(leaf); ++i) {
+        const Item& item = items_[i];
+        if (std::int64_t(item.index) <= query.above) continue;
+        if (is_within_reach(query, item.box, padding_of(item.index))) found.push_back(item.index);
+    }
+}
+
+template class BoxTree<float>;
+template class BoxTree<double>;
+
+}  // namespace octopair
