@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 #include "base/stop.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair {
 
@@ -14,6 +17,23 @@ constexpr unsigned coordinates = 6;
 template <typename Real>
 Real coordinate(const Box<Real>& box, unsigned which) {
     return which < 3 ? box.min[which] : box.max[which - 3];
+}
+
+template <typename Real>
+bool is_valid(const Box<Real>& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(box.min[axis] <= box.max[axis] && std::isfinite(box.min[axis]) && std::isfinite(box.max[axis]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// An order of coordinates that are not numbers would be none.
+void check_valid(bool valid, std::size_t object, const char* what) {
+    if (valid) return;
+    throw Error(ErrorCode::engine_failed, "verification failed: the " + std::string(what) + " of object " +
+                                              std::to_string(object) + " is not valid, but was not refused");
 }
 
 }  // namespace
@@ -109,7 +129,11 @@ BoxTree<Real>::BoxTree(std::span<const Box<Real>> boxes, std::span<const double>
     : padding_(padding) {
     if (boxes.empty()) return;
     items_.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) items_[i] = {boxes[i], std::uint32_t(i)};
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        check_valid(is_valid(boxes[i]), i, "box");
+        check_valid(padding_of(i) >= 0 && std::isfinite(padding_of(i)), i, "padding");
+        items_[i] = {boxes[i], std::uint32_t(i)};
+    }
     nodes_.resize(2 * ((boxes.size() + leaf_boxes - 1) / leaf_boxes) - 1);
     Builder(*this, stop).build(team);
 }
@@ -139,13 +163,18 @@ void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& foun
     }
 }
 
+/// Without a branch on a test's outcome, which no processor can predict: each index is written, and the hits are kept.
 template <typename Real>
 void BoxTree<Real>::find_in_leaf(const BoxQuery& query, const Place& leaf, std::vector<std::uint32_t>& found) const {
+    std::array<std::uint32_t, leaf_boxes> hits;
+    std::size_t count = 0;
     for (std::size_t i = begin_of(leaf); i < end_of(leaf); ++i) {
         const Item& item = items_[i];
-        if (std::int64_t(item.index) <= query.above) continue;
-        if (is_within_reach(query, item.box, padding_of(item.index))) found.push_back(item.index);
+        const bool wanted = std::int64_t(item.index) > query.above;
+        hits[count] = item.index;
+        count += std::size_t(wanted & is_within_reach(query, item.box, padding_of(item.index)));
     }
+    found.insert(found.end(), hits.begin(), hits.begin() + std::ptrdiff_t(count));
 }
 
 template class BoxTree<float>;

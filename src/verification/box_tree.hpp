@@ -37,19 +37,21 @@ struct BoxQuery {
 template <typename Real>
 bool is_within_reach(const BoxQuery& query, const Box<Real>& box, double padding) {
     const double reach = query.margin + (query.padding + padding);
+    bool within = true;
     for (int axis = 0; axis < 3; ++axis) {
         const double below = query.box.min[axis] - double(box.max[axis]);
         const double beyond = double(box.min[axis]) - query.box.max[axis];
-        if (!(below <= reach && beyond <= reach)) return false;
+        within &= (below <= reach) & (beyond <= reach);
     }
-    return true;
+    return within;
 }
 
 template <typename Real>
 class BoxTree {
 public:
-    /// Copies the boxes. Requires: min <= max, all finite; `padding` is empty or has one finite value >= 0 a box.
-    /// Throws: Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads of the team, and O(n) on one thread.
+    /// Copies the boxes. Requires: `padding` is empty or has one value a box.
+    /// Throws: Error{engine_failed} for a box or a padding that is not valid (an engine refuses those before), and
+    /// Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads of the team, and O(n) on one thread.
     BoxTree(std::span<const Box<Real>> boxes, std::span<const double> padding, Team& team, const std::stop_token& stop);
 
     /// Appends the index of each box within reach of the query, in no particular order. Thread safety: full.

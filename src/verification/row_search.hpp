@@ -28,8 +28,9 @@ struct SearchedObjects {
 
 class RowSearch {
 public:
-    /// Borrows the boxes and the padding. Requires: valid boxes, paddings and margin (engine.hpp).
-    /// Throws: Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads.
+    /// Borrows the boxes and the padding. Requires: a finite margin >= 0, and a valid `first` in a join.
+    /// Throws: Error{engine_failed} for a box or a padding of the set that is searched that is not valid;
+    /// Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads.
     RowSearch(const SearchedObjects& objects, Team& team, const std::stop_token& stop = {});
 
     std::uint32_t rows() const { return std::uint32_t(first_.size()); }
