@@ -43,7 +43,7 @@ struct Options {
     /// A difference throws Error{engine_failed} that names a pair; of a list that failed, no pair is left. A stream fails
     /// before a pair that does not belong is handed out, and for want of a pair at its end at the latest.
     /// Time: some microseconds an object, shared by the threads; often ten times the call. Memory, in this process: 33
-    /// bytes an object (60 for float64), 12 more in octal order; the number of pairs does not matter.
+    /// bytes an object (64 for float64), 12 more in octal order; the number of pairs does not matter.
     /// Throws Error{usage} on an engine of MPI ranks, none of which has all objects.
     bool verify = false;
 };

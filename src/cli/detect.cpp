@@ -137,11 +137,9 @@ void check_index_type(const DetectRequest& request) {
 /// Refuses what the second algorithm could not check.
 void check_verify_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--verify: " + why); };
-    if (request.events) refuse("not with --events; leave these out to have each frame's pairs verified");
+    if (request.events) refuse("not with --events; without it, the pairs of each frame are verified");
     if (request.limit && has_filters(request)) refuse("not with --limit and filters, which end the search early");
-    if (request.engine.kind == EngineKind::mpi) {
-        refuse("not with --engine mpi, where no rank has all objects; use --engine local or processes");
-    }
+    if (request.wide_indices) refuse("not with --index-type uint64");
 }
 
 /// What the one has written is not lost to another. Devices and pipes take all.

@@ -12,6 +12,7 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t pairs_a_task = 1 << 12;
+constexpr std::uint64_t most_kept = 1 << 20;  // or one a row
 
 /// A hash of b whose sums tell sets apart (the finaliser of splitmix64, by Steele, Lea and Flood 2014).
 std::uint64_t hash_of(std::uint32_t b) {
@@ -41,7 +42,11 @@ RowSum sum_of(std::span<const std::uint32_t> columns) {
 
 class SetCheck final : public ResultCheck {
 public:
-    explicit SetCheck(const RowPass& pass) : pass_(pass), pairs_(pass.rows().rows()), hashes_(pass.rows().rows()) {}
+    SetCheck(const RowPass& pass, std::optional<std::uint64_t> limit)
+        : pass_(pass),
+          pairs_(pass.rows().rows()),
+          hashes_(pass.rows().rows()),
+          keeps_(limit && *limit <= std::max<std::uint64_t>(most_kept, pass.rows().rows())) {}
 
     void take(std::span<const Pair> pairs) override {
         if (pairs.empty()) return;
@@ -56,9 +61,11 @@ public:
         });
         if (wrong < pairs.size()) throw_verification_failed(fault_of(pairs[wrong]));
         last_ = pairs.back();
+        if (keeps_) kept_.insert(kept_.end(), pairs.begin(), pairs.end());
     }
 
     void finish(const CallEnd& end) override {
+        if (end.truncated) find_twice();
         std::atomic<std::uint64_t> all = 0;
         const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> columns) -> Fault {
             const RowSum expected = sum_of(columns);
@@ -74,11 +81,19 @@ public:
     }
 
     std::string_view not_checked(const CallEnd& end) const override {
-        return end.truncated ? "the order of the pairs, which pairs are the first, and that none was given twice"
-                             : "the order of the pairs";
+        if (!end.truncated) return "the order of the pairs";
+        return keeps_ ? "the order of the pairs, and which pairs are the first"
+                      : "the order of the pairs, which pairs are the first, and that none was given twice";
     }
 
 private:
+    /// What the sums of an incomplete row do not show.
+    void find_twice() {
+        std::sort(kept_.begin(), kept_.end());
+        const auto twice = std::adjacent_find(kept_.begin(), kept_.end());
+        if (twice != kept_.end()) throw_verification_failed(name_of_pair(*twice) + " was given twice");
+    }
+
     /// False for a pair that must not be in the result. `before` is the pair that was given before it.
     bool take_one(const Pair& pair, const std::optional<Pair>& before) {
         if (!has_position(pass_.rows(), pair) || !pass_.rows().is_pair(pair.a, pair.b) || before == pair) return false;
@@ -133,10 +148,14 @@ private:
     std::vector<std::uint32_t> pairs_;   // given, of each object as a
     std::vector<std::uint64_t> hashes_;  // of their b, summed up
     std::optional<Pair> last_;
+    bool keeps_;
+    std::vector<Pair> kept_;  // all, of a result with a small limit
 };
 
 }  // namespace
 
-std::unique_ptr<ResultCheck> make_set_check(const RowPass& pass) { return std::make_unique<SetCheck>(pass); }
+std::unique_ptr<ResultCheck> make_set_check(const RowPass& pass, std::optional<std::uint64_t> limit) {
+    return std::make_unique<SetCheck>(pass, limit);
+}
 
 }  // namespace octopair

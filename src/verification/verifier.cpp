@@ -9,12 +9,12 @@ namespace octopair {
 
 namespace {
 
-std::unique_ptr<ResultCheck> make_check(ResultKind kind, const RowPass& pass) {
-    switch (kind) {
+std::unique_ptr<ResultCheck> make_check(const Verifier::Setup& setup, const RowPass& pass) {
+    switch (setup.kind) {
         case ResultKind::ascending:
             return make_ascending_check(pass);
         case ResultKind::octal:
-            return make_set_check(pass);
+            return make_set_check(pass, setup.limit);
         case ResultKind::count:
             break;
     }
@@ -29,7 +29,7 @@ struct Verifier::Parts {
         : team(setup.threads),
           rows(setup.objects, team, setup.stop),
           pass(rows, team, setup.stop, progress),
-          check(make_check(setup.kind, pass)) {}
+          check(make_check(setup, pass)) {}
 
     Team team;
     RowSearch rows;

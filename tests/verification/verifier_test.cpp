@@ -195,6 +195,9 @@ TEST_P(VerifierOf, ChecksALimitedResult) {
         if (limit == 0 || limit >= all) continue;
         result.pairs.pop_back();
         EXPECT_NE(said(result), "") << limit << ": one less than the limit";
+        if (limit < 2) continue;
+        result.pairs.insert(result.pairs.begin() + std::ptrdiff_t(limit / 2), result.pairs[limit / 4]);
+        EXPECT_NE(said(result), "") << limit << ": one given twice";
         if (!ascending()) continue;
         result = right();
         result.limit = limit;
