@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string_view>
 #include <vector>
 
 #include "octopair/box_array.hpp"
@@ -38,11 +39,27 @@ struct Options {
     std::optional<std::uint64_t> limit = {};  ///< the first so many pairs of the order
     std::uint64_t buffer_bytes = 1ull << 30;  ///< bound on pairs held while streaming; at least 1 MiB is used
     ProgressSink progress = {};               ///< may be empty; what it throws ends the call and reaches the caller
+    /// Checks the result by a second algorithm that shares no code with the octree (docs/design.md, "Certificates").
+    /// A difference throws Error{engine_failed} that names a pair; of a list that failed, no pair is left. A stream fails
+    /// before a pair that does not belong is handed out, and for want of a pair at its end at the latest.
+    /// Time: some microseconds an object, shared by the threads; often ten times the call. Memory, in this process: 33
+    /// bytes an object (64 for float64), 12 more in octal order; the number of pairs does not matter.
+    /// Throws Error{usage} on an engine of MPI ranks, none of which has all objects.
+    bool verify = false;
 };
 
 /// Wall-clock seconds of the steps; a step that was passed over more than once (streaming) is summed.
 struct StepSeconds {
     double encode = 0, sort = 0, merge = 0, scan = 0;
+};
+
+/// What Options::verify did.
+struct Verification {
+    bool done = false;   ///< the result was checked, and no difference was found
+    double seconds = 0;  ///< wall clock; not part of the seconds of the call
+    /// What could not be checked of this result, for people; empty: nothing. In octal order the order itself, and with a
+    /// limit which pairs are the first; of a count, the pairs. A static text.
+    std::string_view not_checked = {};
 };
 
 /// What a call did, beside its pairs.
@@ -52,6 +69,7 @@ struct Summary {
     double seconds = 0;         ///< wall clock
     std::uint64_t entries = 0;  ///< of the linear octree; at most 8 an object
     StepSeconds steps = {};
+    Verification verification = {};
 };
 
 /// Receives batches in order, on the calling thread; a span is valid during the call only. What it throws ends the
@@ -116,6 +134,8 @@ private:
     virtual JobQueue& jobs() = 0;
     /// Aligned to 64 bytes; freed by the last who holds it, which may be after the engine. May throw std::bad_alloc.
     virtual std::shared_ptr<void> allocate(std::size_t bytes);
+    /// Threads of this process that check a result (Options::verify); 0: one per core.
+    virtual unsigned verification_threads() const;
 };
 
 /// Threads of this process. 0: one per core.

@@ -167,6 +167,8 @@ public:
     void add(std::unique_ptr<Filter> filter);
 
     /// Finds pairs with the engine and filters them; `limit` counts what comes out. An empty sink has it counted only.
+    /// `verify` checks the engine's pairs, not the filters; where `limit` ends the search early, no more than those that
+    /// were found.
     PipelineSummary run(Engine& engine, const Objects& objects, const CollisionSink& sink, const Options& options = {},
                         std::stop_token stop = {});
     PipelineSummary run_between(Engine& engine, const Objects& first, const Objects& second, const CollisionSink& sink,

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <new>
+#include <string>
 #include <system_error>
 
 namespace octopair {
@@ -19,11 +20,11 @@ namespace {
     throw std::system_error(errno, std::generic_category(), std::string("cannot use test hooks in ") + path);
 }
 
-/// The first process to come makes the file; the others wait for no one, as it does so before it starts them.
+/// Makes the file unless it has the right size. Requires: one process makes it before others look for it.
 TestHooks* hooks_in_file(const char* path) {
     const int file = ::open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (file < 0) throw_failed(path);
-    const bool fresh = ::lseek(file, 0, SEEK_END) == 0;
+    const bool fresh = ::lseek(file, 0, SEEK_END) != off_t(sizeof(TestHooks));
     if (fresh && ::ftruncate(file, sizeof(TestHooks)) != 0) throw_failed(path);
     void* const memory = ::mmap(nullptr, sizeof(TestHooks), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (memory == MAP_FAILED) throw_failed(path);

@@ -32,7 +32,7 @@ struct Tuning {
     /// When an octant is divided (octree/octant_growth.cpp). In objects, unless a comment says otherwise.
     struct Split {
         double always = 2048;           ///< more would not stay in the cache while they are swept
-        double never = 512;             ///< fewer are not divided, whatever their sweep costs
+        double never = 512;             ///< fewer are not divided, whatever their sweep costs; at most `always`
         double crowded_window = 40;     ///< objects that a sweep tests for each object
         double most_entries = 1.6;      ///< entries below an octant for each object that begins in it
         double handed_growth = 1.5;     ///< entries and boxes handed down, after a division against before

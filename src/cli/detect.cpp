@@ -119,6 +119,8 @@ void add_outcome(CLI::App& command, DetectRequest& request) {
         ->type_name("TYPE");
     add_order_options(command, request, "the first N pairs (with --events: rows)");
     command.add_flag("--count-only", request.count_only, "print the number of pairs alone")->excludes(output);
+    command.add_flag("--verify", request.verify,
+                     "check the pairs of boxes by a second algorithm; exit status 6 if they differ");
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
     command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
@@ -130,6 +132,14 @@ void check_index_type(const DetectRequest& request) {
     if (request.engine.kind != EngineKind::mpi) refuse("only with --engine mpi");
     const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
     if (!npy && !request.count_only) refuse("only in an .npy file");
+}
+
+/// Refuses what the second algorithm could not check.
+void check_verify_options(const DetectRequest& request) {
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--verify: " + why); };
+    if (request.events) refuse("not with --events; without it, the pairs of each frame are verified");
+    if (request.limit && has_filters(request)) refuse("not with --limit and filters, which end the search early");
+    if (request.wide_indices) refuse("not with --index-type uint64");
 }
 
 /// What the one has written is not lost to another. Devices and pipes take all.
@@ -166,6 +176,7 @@ void add_detect(CLI::App& app, Action& action) {
         if (!request->output.empty()) (void)io::pair_format(request->output);
         if (request->events) check_event_options(*request);
         check_index_type(*request);
+        if (request->verify) check_verify_options(*request);
         check_pipeline_options(*request);
         check_outputs(*request);
         action = [request] { return run_detect(*request); };

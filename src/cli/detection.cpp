@@ -133,6 +133,13 @@ void DetectReport::add_search(const Summary& search) {
     steps.sort += search.steps.sort;
     steps.merge += search.steps.merge;
     steps.scan += search.steps.scan;
+    add(search.verification);
+}
+
+void DetectReport::add(const Verification& verification) {
+    verified = verification.done;
+    if (not_checked.size() < verification.not_checked.size()) not_checked = verification.not_checked;
+    seconds.verify += verification.seconds;
 }
 
 void DetectReport::add(const Summary& summary, double written) {
@@ -147,7 +154,8 @@ void DetectReport::add(const PipelineSummary& summary, double written) {
     pairs += summary.collisions;
     truncated |= summary.truncated;
     seconds.detect += summary.search.seconds;
-    seconds.filter += std::max(0.0, summary.seconds - summary.search.seconds - written);
+    const double search = summary.search.seconds + summary.search.verification.seconds;
+    seconds.filter += std::max(0.0, summary.seconds - search - written);
     filters.resize(summary.filters.size());
     for (std::size_t i = 0; i < filters.size(); ++i) {
         const FilterCounts& counts = summary.filters[i];
@@ -163,6 +171,7 @@ Options call_options(const DetectRequest& request, const DetectReport& report, s
     Options options;
     options.order = request.order;
     options.margin = request.margin;
+    options.verify = request.verify;
     if (request.limit) options.limit = *request.limit - report.pairs;
     options.progress = [&progress, frame, frames = report.frames](double done) {
         progress.show("detecting", (double(frame) + done) / double(frames));

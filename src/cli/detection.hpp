@@ -28,6 +28,7 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
+    bool verify = false;  ///< the pairs of boxes, by a second algorithm
     PipelineRequest pipeline;
     bool wide_indices = false;  ///< uint64 in .npy files
     EngineChoice engine;
@@ -40,6 +41,7 @@ struct DetectSeconds {
     double total = 0, read = 0;
     double prepare = 0;  ///< of shapes and filters, before the first search
     double detect = 0, filter = 0, write = 0;
+    double verify = 0;  ///< if it was asked for
 };
 
 /// Rows written.
@@ -53,6 +55,8 @@ struct DetectReport {
     bool moving = false;
     std::uint64_t pairs = 0;  ///< what came out, of all frames
     bool truncated = false;
+    bool verified = false;                    ///< the pairs of boxes in each frame so far
+    std::string_view not_checked;             ///< in one of the frames at least (Verification)
     std::uint64_t candidates = 0;             ///< pairs of boxes, as far as they were looked for
     std::vector<FilterCounts> filters;        ///< of all frames
     std::optional<io::ChangeCounts> changes;  ///< where there is a baseline
@@ -68,6 +72,7 @@ struct DetectReport {
 
 private:
     void add_search(const Summary& search);
+    void add(const Verification& verification);
 };
 
 class ProgressLine;

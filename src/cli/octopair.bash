@@ -68,7 +68,7 @@ _octopair() {
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --baseline --report --objects --margin --padding --output --order
-                    --index-type --count-only --events --limit --fail-on-collision --engine --threads --workers --stats --quiet --help
+                    --index-type --count-only --events --limit --verify --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")

@@ -15,6 +15,7 @@
 #include "cli/whole_inputs.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
+#include "verification/verifier.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/rank_filters.hpp"
 #endif
@@ -57,9 +58,9 @@ private:
     /// Whether indices need more bits than a Pair has, or are to have them.
     bool wide() const { return request_.wide_indices || report_.objects > std::numeric_limits<std::uint32_t>::max(); }
     bool join() const { return !request_.against.empty(); }
-    /// Whether each rank has all objects: filters ask for any, and the boxes of shapes may depend on all.
+    /// Whether each rank has all objects: filters and verification ask for any, and the boxes of shapes may depend on all.
     bool whole() const {
-        return has_filters(request_) || io::is_json_file(request_.against) ||
+        return has_filters(request_) || request_.verify || io::is_json_file(request_.against) ||
                std::any_of(request_.inputs.begin(), request_.inputs.end(), io::is_json_file);
     }
     SliceNumber own_slice() const { return {cluster_.rank(), cluster_.ranks()}; }
@@ -71,9 +72,10 @@ private:
         report_.frames = inputs_.frames.frames;
         report_.moving = inputs_.frames.moving;
         report_.objects = first_.total + second_.total;
-        if (has_filters(request_) && wide()) {
+        if ((has_filters(request_) || request_.verify) && wide()) {
             throw Error(ErrorCode::resource_limit,
-                        std::to_string(report_.objects) + " objects: filters have indices of 32 bits");
+                        std::to_string(report_.objects) +
+                            " objects: " + (request_.verify ? "--verify has" : "filters have") + " indices of 32 bits");
         }
         const bool npy = !request_.output.empty() && io::pair_format(request_.output) == io::PairFormat::npy;
         if (wide() && !npy && !request_.count_only) {
@@ -133,7 +135,7 @@ private:
             const Summary found = search(frame, &piece);
             PipelineSummary summary = filters->run(piece, filter_options(frame), request_.count_only ? nullptr : &kept);
             summary.search = found;
-            summary.seconds += found.seconds;
+            summary.seconds += found.seconds + found.verification.seconds;
             report_.add(summary, 0);
             progress_.clear();
             if (!request_.count_only) write(frame, kept, writer.get());
@@ -186,8 +188,31 @@ private:
 
     /// Without a list: counts. What filters get knows no limit.
     Summary search(std::uint64_t frame, PairList* piece) {
+        Summary summary = search_pieces(frame, piece);
+        if (request_.verify) verify(frame, piece, summary);
+        return summary;
+    }
+
+    /// The first rank checks the pairs of all ranks, which come to it some at a time. Without a list: the count.
+    void verify(std::uint64_t frame, const PairList* piece, Summary& summary) {
+        const Objects first = first_.frame(frame), second = second_.frame(frame);
+        const Options options = call_options(request_, report_, frame, progress_);
+        const ResultKind ordered = options.order == Order::octal ? ResultKind::octal : ResultKind::ascending;
+        Verifier verifier({.objects = {first, join() ? &second : nullptr, options.margin},
+                           .kind = piece != nullptr ? ordered : ResultKind::count,
+                           .limit = options.limit,
+                           .threads = report_.crew.threads,
+                           .stop = stop_});
+        if (piece != nullptr) cluster_.relay(*piece, [&](std::span<const Pair> pairs) { verifier.take(pairs); });
+        cluster_.together([&] {
+            if (cluster_.first()) summary.verification = verifier.finish({summary.pairs, summary.truncated});
+        });
+    }
+
+    Summary search_pieces(std::uint64_t frame, PairList* piece) {
         const Objects first = own_objects(first_, frame), second = own_objects(second_, frame);
         Options options = call_options(request_, report_, frame, progress_);
+        options.verify = false;  // ranks have slices: verify() does it
         if (has_filters(request_)) options.limit.reset();
         Summary summary;
         cluster_.joint([&] {

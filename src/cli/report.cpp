@@ -49,6 +49,7 @@ nlohmann::ordered_json seconds_json(const DetectReport& report) {
         seconds["filter"] = report.seconds.filter;
     }
     seconds["write"] = report.seconds.write;
+    if (report.verified) seconds["verify"] = report.seconds.verify;
     return seconds;
 }
 
@@ -67,7 +68,17 @@ std::string time_text(const DetectReport& report) {
     if (!report.filters.empty()) text += fmt::format(" + prepare {}", duration(seconds.prepare));
     text += fmt::format(" + detect {}", duration(seconds.detect));
     if (!report.filters.empty()) text += fmt::format(" + filter {}", duration(seconds.filter));
+    if (report.verified) text += fmt::format(" + verify {}", duration(seconds.verify));
     return text + fmt::format(" + write {} + other\n", duration(seconds.write));
+}
+
+/// The certificate: what was checked, and what was not.
+std::string verified_text(const DetectReport& report) {
+    if (!report.verified) return {};
+    std::string text = fmt::format("verified    {} {} by a second algorithm in {}", grouped(report.candidates),
+                                   report.filters.empty() ? "pairs" : "candidates", duration(report.seconds.verify));
+    if (!report.not_checked.empty()) text += fmt::format(" (not checked: {})", report.not_checked);
+    return text + '\n';
 }
 
 /// What each filter let through, and how long it took, on all threads together.
@@ -98,7 +109,7 @@ std::string summary_text(const DetectReport& report) {
         text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
-    text += filters_text(report) + time_text(report);
+    text += filters_text(report) + verified_text(report) + time_text(report);
     if (!report.events) {
         text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
                             duration(steps.sort), duration(steps.merge), duration(steps.scan));
@@ -115,10 +126,11 @@ std::string summary_text(const DetectReport& report) {
 
 std::string stats_json(const DetectReport& report) {
     nlohmann::ordered_json stats = {
-        {"objects", report.objects},      {"frames", report.frames},      {"pairs", report.pairs},
-        {"truncated", report.truncated},  {"engine", report.crew.engine}, {"threads", report.crew.threads},
-        {"workers", report.crew.workers}, {"entries", report.entries},    {"peak_rss_bytes", peak_rss_bytes()},
-        {"seconds", seconds_json(report)}};
+        {"objects", report.objects},          {"frames", report.frames},        {"pairs", report.pairs},
+        {"truncated", report.truncated},      {"verified", report.verified},    {"engine", report.crew.engine},
+        {"threads", report.crew.threads},     {"workers", report.crew.workers}, {"entries", report.entries},
+        {"peak_rss_bytes", peak_rss_bytes()}, {"seconds", seconds_json(report)}};
+    if (!report.not_checked.empty()) stats["not_checked"] = report.not_checked;
     if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
     if (!report.crew.server.empty()) stats["server"] = report.crew.server;
     if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});

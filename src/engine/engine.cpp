@@ -10,6 +10,7 @@
 #include "engine/job_task.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
+#include "engine/verified_call.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -43,6 +44,8 @@ void check_request(const Engine::Request& request) {
 
 void Engine::check(const Request& request) const { check_request(request); }
 
+unsigned Engine::verification_threads() const { return 0; }
+
 /// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
 /// after. Sinks and progress are called in the default floating-point state, too.
 Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
@@ -50,7 +53,11 @@ Summary Engine::call(const Request& request, const Output& output, std::stop_tok
     if (output.list != nullptr) output.list->storage().reset();
     check(request);
     try {
-        return run(request, output, {stop, request.options.progress});
+        const Control control{stop, request.options.progress};
+        if (!request.options.verify) return run(request, output, control);
+        return VerifiedCall(request, output, control).run(verification_threads(), [this](const auto&... call) {
+            return run(call...);
+        });
     } catch (const std::bad_alloc&) {
         if (output.list != nullptr) output.list->storage().reset();
         throw Error(ErrorCode::resource_limit, "out of memory");

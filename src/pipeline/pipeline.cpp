@@ -245,7 +245,8 @@ private:
         } catch (const Enough&) {
         }
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-        summary.search.seconds = std::max(0.0, passed.count() - flow.seconds());
+        const double elsewhere = flow.seconds() + summary.search.verification.seconds;
+        summary.search.seconds = std::max(0.0, passed.count() - elsewhere);
         if (setup.options.progress) setup.options.progress(1);
     }
 };

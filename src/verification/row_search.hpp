@@ -4,7 +4,7 @@
 //            share no code beyond src/base and src/parallel, so that an error of one is not an error of both.
 // Row        the pairs (a, b) of one object a. Within one set b > a. In a join a is a position in the first set and b a
 //            position in the second set, as in the results of Engine::find_pairs_between.
-// Memory     float32: 33 bytes an object of the set that is searched (the second one of a join); float64: 60 bytes. The
+// Memory     float32: 33 bytes an object of the set that is searched (the second one of a join); float64: 64 bytes. The
 //            number of pairs does not matter.
 #pragma once
 
@@ -28,8 +28,9 @@ struct SearchedObjects {
 
 class RowSearch {
 public:
-    /// Borrows the boxes and the padding. Requires: valid boxes, paddings and margin (engine.hpp).
-    /// Throws: Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads.
+    /// Borrows the boxes and the padding. Requires: a finite margin >= 0, and a valid `first` in a join.
+    /// Throws: Error{engine_failed} for a box or a padding of the set that is searched that is not valid;
+    /// Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads.
     RowSearch(const SearchedObjects& objects, Team& team, const std::stop_token& stop = {});
 
     std::uint32_t rows() const { return std::uint32_t(first_.size()); }
@@ -38,7 +39,7 @@ public:
     bool is_join() const { return join_; }
 
     /// Replaces `columns` by the b of all pairs (a, b), ascending. Requires: a < rows(). Thread safety: full.
-    /// Complexity: without padding O(n^(5/6) + pairs log pairs) for any boxes.
+    /// Complexity: O(log n + pairs log pairs) where boxes are small, O(sqrt(n)) and more where they are rods that cross.
     void row(std::uint32_t a, std::vector<std::uint32_t>& columns) const;
     /// Like row(), in no particular order.
     void unordered_row(std::uint32_t a, std::vector<std::uint32_t>& columns) const;

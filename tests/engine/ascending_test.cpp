@@ -71,7 +71,7 @@ TEST_P(Ascending, NoPairs) { EXPECT_TRUE(sorted_by(GetParam(), {}, {{0, 0}, 0}).
 
 TEST_P(Ascending, TooManyForTheBudget) {
     const std::vector<Pair> pairs = random_pairs(100'000, 1000, 0);
-    EXPECT_THROW(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() - page_pairs}), OverBudget);
+    EXPECT_THROW(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() - page_pairs()}), OverBudget);
     EXPECT_EQ(sorted_by(GetParam(), pairs, {{0, 1000}, 1000, pairs.size() * 2}).size(), pairs.size());
 }
 

@@ -40,6 +40,12 @@ std::optional<Finding> check_small_cases(std::uint64_t first, std::uint64_t coun
     return {};
 }
 
+void reset_test_hooks() {
+    test_hooks().tuning = default_tuning;
+    test_hooks().fault = Fault::none;
+    for (auto& taken : test_hooks().paths) taken = 0;
+}
+
 std::string paths_not_taken(std::initializer_list<Path> paths) {
     std::string names;
     for (const Path path : paths) {

@@ -36,6 +36,9 @@ public:
 /// Checks small cases with their tunings, from seed `first` on; returns the first finding, with what replays it.
 std::optional<Finding> check_small_cases(std::uint64_t first, std::uint64_t count, const EngineFor& engines);
 
+/// Counters of paths from 0 on, the usual tuning, no fault: also of processes that share a file.
+void reset_test_hooks();
+
 /// The names of those of these paths that were never taken.
 std::string paths_not_taken(std::initializer_list<Path> paths);
 

@@ -1,5 +1,6 @@
 #include "exactness/tiny_tuning.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 
 #include "samples/random.hpp"
@@ -35,6 +36,7 @@ void shrink(Tuning::Sampling& sampling, Shrinker& to) {
 void shrink(Tuning::Split& split, Shrinker& to) {
     to.one_of<double>(split.always, {1, 2, 5, 12});
     to.one_of<double>(split.never, {0, 1, 3});
+    split.never = std::min(split.never, split.always);
     to.one_of<double>(split.crowded_window, {0, 0.5, 3});
     to.one_of<double>(split.most_entries, {1.6, 3, 8});
     to.one_of<double>(split.handed_growth, {1.5, 3, 8});

@@ -55,6 +55,12 @@ on_ranks 2 detect a.npy --engine mpi --stats stats.json --count-only 2> summary.
 grep -q '"ranks": 2' stats.json || fail "the stats do not tell the ranks"
 grep -q 'on 2 ranks with 1 thread each' summary.txt || fail "the summary does not tell the ranks"
 
+for order in "--order ascending" "--order octal" "--count-only" "--limit 1000" "--against b.npy"; do
+    on_ranks 3 detect a.npy --engine mpi --verify --stats stats.json $order > pairs.csv 2> summary.txt
+    grep -q '"verified": true' stats.json || fail "the stats do not say that the pairs were verified: $order"
+    grep -q '^verified    .* by a second algorithm' summary.txt || fail "the summary does not: $order"
+done
+
 printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,nan\n' > bad.csv
 refuses 3 'bad.csv: .*' bad.csv
 refuses 4 'missing.npy' missing.npy

@@ -72,6 +72,13 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
     });
 }
 
+TEST_F(RankErrors, RefuseToVerify) {
+    Options verifying;
+    verifying.verify = last();  // one rank alone asks for it
+    PairList list;
+    expect_on_all(ErrorCode::usage, "verify: not on ranks", [&] { (void)engine_->find_pairs(own(), list, verifying); });
+}
+
 TEST_F(RankErrors, TellOfPaddingsThatOneRankGaveWrongly) {
     const std::vector<double> padding(last() ? 3 : own_.size(), 0.1);
     expect_on_all(ErrorCode::bad_input, "3 paddings", [&] {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "exactness/small_scenes.hpp"
 #include "mpi/ranks.hpp"
 
 namespace octopair::testing {
@@ -18,6 +19,10 @@ class Failures final : public ::testing::EmptyTestEventListener {
 };
 
 int run(int argc, char** argv) {
+#ifdef OCTOPAIR_TEST_HOOKS
+    if (own_rank() == 0) reset_test_hooks();  // makes their file
+    (void)on_all(true);
+#endif
     ::testing::InitGoogleTest(&argc, argv);
     if (own_rank() != 0) {
         ::testing::TestEventListeners& listeners = ::testing::UnitTest::GetInstance()->listeners();

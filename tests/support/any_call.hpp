@@ -15,12 +15,14 @@ struct AnyCall {
     Order order;
     bool streamed;
     bool limited;
+    bool verify = false;
 
     std::vector<Pair> made_by(Engine& engine) const {
         Options options;
         options.order = order;
         options.margin = asked.margin;
         options.buffer_bytes = asked.buffer_bytes;
+        options.verify = verify;
         if (limited) options.limit = asked.limit;
         const Objects first = asked.first.view();
         std::vector<Pair> found;
@@ -39,6 +41,7 @@ struct AnyCall {
     std::uint64_t counted_by(Engine& engine) const {
         Options options;
         options.margin = asked.margin;
+        options.verify = verify;
         if (limited) options.limit = asked.limit;
         const Objects first = asked.first.view();
         return asked.second ? engine.count_pairs_between(first, asked.second->view(), options)

@@ -39,6 +39,7 @@ private:
         return search_.run(request, output, control);
     }
     JobQueue& jobs() override { return jobs_; }
+    unsigned verification_threads() const override { return passes_.width(); }
 
     Turns turns_;
     LocalPasses passes_;

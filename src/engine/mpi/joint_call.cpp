@@ -21,7 +21,7 @@ struct ToldSlice {
 struct Told {
     Outlet outlet;
     Order order;
-    bool join, limited;
+    bool join, limited, verify;
     double margin;
     std::uint64_t limit, buffer_bytes;
     std::array<ToldSlice, 2> slices;
@@ -38,6 +38,7 @@ Told told_of(const Engine::Request& request, Outlet outlet) {
             .order = options.order,
             .join = request.second != nullptr,
             .limited = options.limit.has_value(),
+            .verify = options.verify,
             .margin = options.margin,
             .limit = options.limit.value_or(0),
             .buffer_bytes = options.buffer_bytes,
@@ -68,6 +69,9 @@ std::size_t spokesman(const std::vector<Told>& all, unsigned set) {
 }
 
 void check_likeness(const std::vector<Told>& all) {
+    for (const Told& told : all) {
+        if (told.verify) throw Error(ErrorCode::usage, "verify: not on ranks, none of which has all objects");
+    }
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
         if (const auto what = difference(all[0], all[rank]); !what.empty()) refuse(0, rank, what);
     }

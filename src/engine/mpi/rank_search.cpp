@@ -185,7 +185,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     PairNumbers numbers;
     if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
     NodeIndex end = owners.end(comm_.rank());
-    if (planted(Fault::rank_takes_neighbour) && comm_.rank() + 1 < comm_.size()) ++end;
+    if (planted(Fault::rank_takes_neighbour) && end < octants.directory.nodes().size()) ++end;
     return {std::move(octants), owners.begin(comm_.rank()), end, numbers};
 }
 

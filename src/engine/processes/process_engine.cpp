@@ -47,6 +47,7 @@ private:
     }
     std::shared_ptr<void> allocate(std::size_t bytes) override { return SharedArrays::allocate(arrays_, bytes); }
     JobQueue& jobs() override { return jobs_; }
+    unsigned verification_threads() const override { return passes_->width(); }
 
     Turns turns_;
     std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();

@@ -79,6 +79,9 @@ public:
 
     std::string submit(const Engine::Request& request, const JobTerms& terms, const std::stop_token& stop) {
         check_request(request);
+        if (request.options.verify) {
+            throw Error(ErrorCode::usage, "verify: not for a job that outlives the call; Engine::submit verifies");
+        }
         v1::JobSpec spec = service::spec_of(request, !terms.count_only);
         spec.set_id(terms.id.empty() ? service::new_id() : terms.id);
         service::check_id(spec.id());

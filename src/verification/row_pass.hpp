@@ -1,0 +1,47 @@
+// RowPass: visits rows of the second algorithm on the threads of a team.
+//
+// Result     the lowest row at which a visit reported a difference, so that it does not depend on threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+
+#include "octopair/engine.hpp"
+#include "parallel/team.hpp"
+#include "verification/pair_fault.hpp"
+#include "verification/row_search.hpp"
+
+namespace octopair {
+
+struct RowRange {
+    std::uint32_t begin = 0, end = 0;
+};
+
+/// The order in which a visit gets the columns of a row.
+enum class Columns : std::uint8_t { ascending, any };
+
+class RowPass {
+public:
+    /// `progress` may be empty; it receives the share of all rows that lie before the end of what was visited. Borrows
+    /// all but the token.
+    RowPass(const RowSearch& rows, Team& team, std::stop_token stop, const ProgressSink& progress);
+
+    const RowSearch& rows() const { return rows_; }
+    Team& team() const { return team_; }
+
+    /// What is done with a row; called on several threads at once.
+    using Visit = std::function<Fault(std::uint32_t a, std::span<const std::uint32_t> columns)>;
+    /// Visits the rows of a range, each with its columns, in the order asked for. Rows after one with a fault may be left
+    /// out. Returns the fault of the lowest row. Throws: Error{cancelled}.
+    Fault run(const RowRange& range, Columns order, const Visit& visit) const;
+
+private:
+    const RowSearch& rows_;
+    Team& team_;
+    std::stop_token stop_;
+    const ProgressSink& progress_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,93 @@
+// octopair detect --verify: what it says of right results, and where it is refused.
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace octopair::test {
+namespace {
+
+class DetectVerify : public ProgramTest {
+protected:
+    void SetUp() override { ASSERT_EQ(run("generate dense --objects 3000 --seed 2 --output a.npy --quiet").status, 0); }
+
+    /// The line of the summary; empty if there is none.
+    std::string verified(const std::string& arguments) const {
+        const Outcome outcome = run("detect a.npy --verify --output p.csv " + arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const std::size_t begin = outcome.err.find("\nverified    ");
+        if (begin == std::string::npos) return {};
+        return outcome.err.substr(begin + 1, outcome.err.find('\n', begin + 1) - begin - 1);
+    }
+    void expect_usage(const std::string& arguments, const std::string& words) const {
+        const Outcome outcome = run("detect a.npy --verify " + arguments);
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_EQ(outcome.err, "octopair: --verify: " + words + "\n");
+        EXPECT_EQ(outcome.out, "");
+    }
+};
+
+TEST_F(DetectVerify, SaysWhatWasChecked) {
+    EXPECT_TRUE(verified("").find(" pairs by a second algorithm in ") != std::string::npos);
+    EXPECT_EQ(verified("").find("not checked"), std::string::npos);
+    EXPECT_TRUE(verified("--order octal").ends_with(" (not checked: the order of the pairs)"));
+    EXPECT_TRUE(verified("--limit 7").starts_with("verified    7 pairs by a second algorithm in "));
+    EXPECT_TRUE(verified("--limit 7 --order octal")
+                    .ends_with(" (not checked: the order of the pairs, and which pairs are the first)"));
+    EXPECT_NE(verified("--against a.npy --margin 0.001"), "");
+    const Outcome counted = run("detect a.npy --verify --count-only");
+    EXPECT_EQ(counted.status, 0);
+    EXPECT_NE(counted.err.find("(not checked: which pairs were counted)"), std::string::npos);
+    EXPECT_EQ(run("detect a.npy").err.find("verified"), std::string::npos);
+}
+
+TEST_F(DetectVerify, GivesTheSameBytes) {
+    const std::string plain = run("detect a.npy --quiet").out;
+    const Outcome checked = run("detect a.npy --verify --quiet");
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.err, "");
+    EXPECT_EQ(checked.out, plain);
+}
+
+TEST_F(DetectVerify, StatsTell) {
+    EXPECT_EQ(run("detect a.npy --verify --order octal --quiet --output p.npy --stats s.json").status, 0);
+    const auto stats = nlohmann::json::parse(content("s.json"));
+    EXPECT_EQ(stats.at("verified"), true);
+    EXPECT_EQ(stats.at("not_checked"), "the order of the pairs");
+    EXPECT_GT(stats.at("seconds").at("verify"), 0);
+    EXPECT_EQ(run("detect a.npy --quiet --output p.npy --stats s.json").status, 0);
+    const auto plain = nlohmann::json::parse(content("s.json"));
+    EXPECT_EQ(plain.at("verified"), false);
+    EXPECT_FALSE(plain.at("seconds").contains("verify"));
+}
+
+TEST_F(DetectVerify, EachFrameOfAMovingScene) {
+    ASSERT_EQ(run("generate brownian --objects 2000 --frames 3 --output m.npy --quiet").status, 0);
+    const Outcome outcome = run("detect m.npy --verify --output p.csv --stats s.json");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(nlohmann::json::parse(content("s.json")).at("verified"), true);
+}
+
+#ifdef OCTOPAIR_WITH_PROCESSES
+TEST_F(DetectVerify, WorkerProcesses) { EXPECT_NE(verified("--engine processes --workers 2"), ""); }
+#endif
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+TEST_F(DetectVerify, TheCandidatesOfFilters) {
+    write_file(file("scene.json"),
+               R"({"objects": [{"name": "a", "shape": {"type": "sphere", "radius": 1}},
+                               {"name": "b", "shape": {"type": "sphere", "radius": 1}}]})");
+    const Outcome outcome = run("detect scene.json --stage objects --verify --output p.csv");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("verified    1 candidates by a second algorithm in "), std::string::npos) << outcome.err;
+    const Outcome limited = run("detect scene.json --stage objects --verify --limit 1");
+    EXPECT_EQ(limited.status, 2);
+    EXPECT_EQ(limited.err, "octopair: --verify: not with --limit and filters, which end the search early\n");
+}
+#endif
+
+TEST_F(DetectVerify, IsRefusedWhereItCannotBeDone) {
+    expect_usage("--events", "not with --events; without it, the pairs of each frame are verified");
+}
+
+}  // namespace
+}  // namespace octopair::test

@@ -1,0 +1,62 @@
+// Small scenes with tiny tuning on worker processes, against brute force. Workers read the tuning from memory that they
+// share with this process, and count paths there.
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "exactness/small_scenes.hpp"
+#include "octopair/processes.hpp"
+#include "support/scale.hpp"
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+namespace octopair {
+namespace {
+
+constexpr std::uint64_t usual = testing::scaled(600, 20);
+
+/// Before the hooks are used: memory that has a name for workers as long as this process lives.
+const int shared_hooks = [] {
+    const int file = ::memfd_create("octopair test hooks", MFD_CLOEXEC);
+    const std::string name = "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file);
+    ::setenv("OCTOPAIR_TEST_HOOKS_FILE", name.c_str(), 1);
+    return file;
+}();
+
+/// For 1 thread this process, for more as many worker processes: so octal order is compared between them.
+testing::EngineFor workers(Arrangement arrangement) {
+    std::shared_ptr<Engine> local = make_local_engine(2);
+    std::shared_ptr<Engine> two = make_process_engine({.workers = 2, .arrangement = arrangement});
+    std::shared_ptr<Engine> three = make_process_engine({.workers = 3, .arrangement = arrangement});
+    return [=](unsigned threads) -> Engine& { return threads == 1 ? *local : threads == 2 ? *two : *three; };
+}
+
+class SmallScenesOnWorkers : public ::testing::Test {
+protected:
+    static void check(std::uint64_t cases, const testing::EngineFor& engines) {
+        ASSERT_GE(shared_hooks, 0);
+        const std::uint64_t first = testing::case_count(2) == 1 ? testing::case_seed("", 0) : 0;
+        const auto finding = testing::check_small_cases(first, testing::case_count(cases), engines);
+        ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
+    }
+};
+
+TEST_F(SmallScenesOnWorkers, AreWhatBruteForceFinds) {
+    check(usual, workers(Arrangement::shared));
+    if (testing::case_count(usual) < usual || testing::sanitized) return;
+    using enum Path;
+    EXPECT_EQ(testing::paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
+                                        region_copied, ring_wrapped, keys_narrow, bucket_split}),
+              "");
+}
+
+TEST_F(SmallScenesOnWorkers, InThePapersArrangement) { check(usual / 4, workers(Arrangement::paper)); }
+
+}  // namespace
+}  // namespace octopair
+
+#endif

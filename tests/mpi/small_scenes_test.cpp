@@ -1,0 +1,102 @@
+// Small scenes with tiny tuning on ranks, against brute force. The ranks of a test share the memory of the test hooks.
+#include "exactness/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/mpi/leading.hpp"
+#include "exactness/tiny_tuning.hpp"
+#include "mpi/ranks.hpp"
+#include "support/any_call.hpp"
+#include "support/compare.hpp"
+#include "support/scale.hpp"
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+namespace octopair {
+namespace {
+
+using testing::AnyCall;
+using testing::Case;
+
+std::uint64_t usual() { return testing::scaled(1000, 20) / testing::rank_count() + 1; }
+
+/// All ranks make the calls on their slices of a case; the first one sets the tuning, before and after which they wait.
+class RankSmallScenes : public ::testing::Test {
+protected:
+    void set_tuning(const Tuning& tuning) {
+        (void)testing::on_all(true);
+        if (testing::own_rank() == 0) test_hooks().tuning = tuning;
+        (void)testing::on_all(true);
+    }
+
+    void check(const Case& whole, const std::vector<Pair>& expected, testing::Spread spread) {
+        const Case own = testing::slice(whole, spread);
+        for (unsigned way = 0; way < 8; ++way) {
+            const Order order = (way & 1) != 0 ? Order::octal : Order::ascending;
+            const AnyCall asked{own, order, (way & 2) != 0, (way & 4) != 0};
+            const std::vector<Pair> found = testing::all_pieces(asked.made_by(*ranks_));
+            // One process finds the same bytes, and brute force the same set.
+            const AnyCall alone{whole, order, false, asked.limited};
+            EXPECT_TRUE(testing::same_bytes(found, alone.made_by(*local_)));
+            if (!asked.limited && order == Order::ascending) {
+                EXPECT_TRUE(testing::same_bytes(found, expected));
+            }
+            EXPECT_EQ(asked.counted_by(*ranks_), alone.counted_by(*local_));
+        }
+    }
+
+    const std::unique_ptr<Engine> local_ = make_local_engine(1);
+    const std::unique_ptr<Engine> ranks_ = make_mpi_engine(MPI_COMM_WORLD);
+};
+
+TEST_F(RankSmallScenes, OfSlices) {
+    bool good = true;
+    for (std::uint64_t seed = 0; seed < testing::case_count(usual()) && good; ++seed) {
+        const Case whole = testing::small_case(seed);
+        SCOPED_TRACE("seed " + std::to_string(seed) + ": " + whole.describe());
+        set_tuning(testing::tiny_tuning(seed));
+        check(whole, testing::brute_force_pairs(whole), testing::spreads[seed % 3]);
+        set_tuning(default_tuning);
+        good = testing::on_all(!HasFailure());
+    }
+    if (testing::sanitized || testing::rank_count() == 1 || testing::case_count(usual()) < usual()) return;
+    using enum Path;
+    EXPECT_EQ(testing::paths_not_taken({ranks_top_divided, object_on_ranks, nested_once}), "");
+}
+
+/// On rank 0 makes calls of an engine; the other ranks follow it.
+template <typename Calls>
+void lead(const Calls& calls) {
+    if (testing::own_rank() != 0) return follow(MPI_COMM_WORLD);
+    const std::shared_ptr<Engine> leading = make_leading_engine(MPI_COMM_WORLD), local = make_local_engine(2);
+    calls([=](unsigned threads) -> Engine& { return threads == 1 ? *local : *leading; });
+}
+
+TEST(RankSmallScenesLed, AreWhatBruteForceFinds) {
+    lead([](const testing::EngineFor& engines) {
+        const auto finding = testing::check_small_cases(0, testing::case_count(usual()), engines);
+        ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
+        if (testing::sanitized || testing::rank_count() == 1 || testing::case_count(usual()) < usual()) return;
+        using enum Path;
+        EXPECT_EQ(testing::paths_not_taken({relay_full, relay_listed, relay_found_again}), "");
+        // A window is searched where memory that the engine kept from call to call is too small: seldom on two ranks.
+        if (testing::rank_count() > 2) {
+            EXPECT_EQ(testing::paths_not_taken({ranks_window}), "");
+        }
+    });
+}
+
+TEST(RankSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
+    if (testing::rank_count() == 1) GTEST_SKIP() << "no neighbour";
+    lead([](const testing::EngineFor& engines) {
+        const testing::FaultScope planted(Fault::rank_takes_neighbour);
+        const auto finding = testing::check_small_cases(0, 300, engines);
+        ASSERT_TRUE(finding);
+        std::printf("found by %s: %s\n", finding->check.c_str(), finding->text.c_str());
+    });
+}
+
+}  // namespace
+}  // namespace octopair
+
+#endif
