@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/floating_point.hpp"
 #include "base/timed.hpp"
 #include "cli/join.hpp"
 #include "cli/piece_output.hpp"
@@ -195,6 +196,7 @@ private:
 
     /// The first rank checks the pairs of all ranks, which come to it some at a time. Without a list: the count.
     void verify(std::uint64_t frame, const PairList* piece, Summary& summary) {
+        const FloatingPointScope scope;
         const Objects first = first_.frame(frame), second = second_.frame(frame);
         const Options options = call_options(request_, report_, frame, progress_);
         const ResultKind ordered = options.order == Order::octal ? ResultKind::octal : ResultKind::ascending;

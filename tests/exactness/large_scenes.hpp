@@ -1,0 +1,22 @@
+// Large scenes: cases of thousands of objects, judged by the second algorithm.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "exactness/case_check.hpp"
+
+namespace octopair::testing {
+
+/// The i-th large case: `least` to 7 times as many objects of a family, with few enough pairs to be judged. A pure
+/// function of its arguments.
+Case large_case(std::uint64_t i, std::uint64_t least);
+
+/// Checks a large case; a finding comes with the smallest case that still fails, as text for a test.
+std::optional<Finding> check_large_case(const Case& a_case, const EngineFor& engines, Calls calls);
+
+/// Vertices of a cloth against its faces, as a cloth simulation asks.
+Case cloth_case(std::uint64_t objects, std::uint64_t seed);
+
+}  // namespace octopair::testing
