@@ -22,23 +22,24 @@ class PlantedFault : public ::testing::TestWithParam<Planted> {};
 
 TEST_P(PlantedFault, IsFound) {
     constexpr std::uint64_t most = 1000;  // a tenth of the scenes of SmallScenes
+    constexpr std::uint64_t enough = 5;
     const testing::EngineFor engines = testing::local_engines();
     std::map<std::string, std::uint64_t> found_by;
-    std::uint64_t first = most;
+    std::uint64_t first = most, findings = 0;
     {
         const testing::FaultScope planted(GetParam().fault);
-        for (std::uint64_t seed = 0; seed < most; ++seed) {
-            const auto finding = testing::check_small_cases(seed, 1, engines);
+        for (std::uint64_t seed = 0; seed < most && findings < enough; ++seed) {
+            const auto finding = testing::check_small_cases({seed, seed + 1}, engines);
             if (!finding) continue;
-            if (found_by.empty()) first = seed;
+            if (findings++ == 0) first = seed;
             ++found_by[finding->check];
         }
     }
     EXPECT_LT(first, most);
     std::string checks;
     for (const auto& [check, count] : found_by) checks += "\n  " + std::to_string(count) + " scenes: " + check;
-    std::printf("%s: found by scene %llu; of %llu scenes%s\n", GetParam().name, static_cast<unsigned long long>(first),
-                static_cast<unsigned long long>(most), checks.c_str());
+    std::printf("%s: first found by scene %llu%s\n", GetParam().name, static_cast<unsigned long long>(first),
+                checks.c_str());
 }
 
 INSTANTIATE_TEST_SUITE_P(, PlantedFault,

@@ -11,7 +11,7 @@ Case small_case(std::uint64_t seed) {
     static const auto families = family_names(), kinds = all_kind_names();
     samples::RandomStream random(seed, 1);
     // Mostly few objects: the time of nested octrees grows fast with them.
-    const std::uint64_t size = random.below(100), bound = size < 50 ? 20 : size < 93 ? 60 : 300;
+    const std::uint64_t size = random.below(100), bound = size < 50 ? 20 : size < 96 ? 60 : 300;
     const std::uint64_t objects = 2 + random.below(bound - 1);
     if (random.below(4) != 0) return make_family_case(families[random.below(families.size())], objects, seed);
     const std::string& kind = kinds[random.below(kinds.size())];
@@ -28,8 +28,8 @@ Case small_case(std::uint64_t seed) {
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-std::optional<Finding> check_small_cases(std::uint64_t first, std::uint64_t count, const EngineFor& engines) {
-    for (std::uint64_t seed = first; seed < first + count; ++seed) {
+std::optional<Finding> check_small_cases(const SceneRange& seeds, const EngineFor& engines) {
+    for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
         const Case a_case = small_case(seed);
         const TuningScope tiny(tiny_tuning(seed));
         if (auto finding = check_case(a_case, brute_force_pairs(a_case), engines)) {

@@ -33,8 +33,8 @@ public:
     FaultScope& operator=(const FaultScope&) = delete;
 };
 
-/// Checks small cases with their tunings, from seed `first` on; returns the first finding, with what replays it.
-std::optional<Finding> check_small_cases(std::uint64_t first, std::uint64_t count, const EngineFor& engines);
+/// Checks small cases with their tunings; returns the first finding, with what replays it.
+std::optional<Finding> check_small_cases(const SceneRange& seeds, const EngineFor& engines);
 
 /// Counters of paths from 0 on, the usual tuning, no fault: also of processes that share a file.
 void reset_test_hooks();

@@ -10,12 +10,15 @@ namespace octopair {
 namespace {
 
 constexpr std::uint64_t usual = testing::scaled(10'000, 20);
+constexpr std::uint64_t parts = 4;  // of the scenes, so that several processes can share them
 
-TEST(SmallScenes, AreWhatBruteForceFinds) {
-    const std::uint64_t first = testing::case_count(2) == 1 ? testing::case_seed("", 0) : 0;
-    const auto finding = testing::check_small_cases(first, testing::case_count(usual), testing::local_engines());
+class SmallScenes : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(SmallScenes, AreWhatBruteForceFinds) {
+    const testing::SceneRange seeds = testing::scene_range(testing::SceneSize::small, usual).part(GetParam(), parts);
+    const auto finding = testing::check_small_cases(seeds, testing::local_engines());
     ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
-    if (testing::case_count(usual) < usual) return;
+    if (testing::sanitized || seeds.size() < usual / parts) return;
     using enum Path;
     EXPECT_EQ(testing::paths_not_taken({octant_divided,
                                         octant_too_small,
@@ -86,6 +89,8 @@ TEST(SmallScenes, AreWhatBruteForceFinds) {
                                         radix_sorted}),
               "");
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, SmallScenes, ::testing::Range(std::uint64_t(0), parts));
 
 }  // namespace
 }  // namespace octopair

@@ -57,7 +57,7 @@ void shrink(Tuning::Scan& scan, Shrinker& to) {
     to.one_of<std::size_t>(scan.hot_node, {1, 4, 16, 50});
     to.one_of<std::uint64_t>(scan.good_window, {0, 1, 3, 8});
     to.one_of<double>(scan.largest_part, {0.6, 0.8, 0.95, 1});
-    to.one_of<double>(scan.most_growth, {1.5, 4, 16, 64});
+    to.one_of<double>(scan.most_growth, {1.5, 4, 16});
     to.one_of<unsigned>(scan.most_nesting, {1, 2, 3, 5, 8});
 }
 
@@ -143,7 +143,7 @@ void favour_crowds(Tuning& tuning) {
     tuning.scan.hot_node = 1;
     tuning.scan.good_window = 0;
     tuning.scan.largest_part = 0.9;
-    tuning.scan.most_growth = 64;
+    tuning.scan.most_growth = 16;
     tuning.sweep.small_set = 2;
     tuning.sweep.cheap_window = 0;
     tuning.sweep.tests_per_pair = 1;

@@ -18,7 +18,12 @@ namespace {
 using testing::AnyCall;
 using testing::Case;
 
-std::uint64_t usual() { return testing::scaled(1000, 20) / testing::rank_count() + 1; }
+/// Fewer than of one process, by as much whatever is asked for.
+testing::SceneRange seeds() {
+    const testing::SceneRange all = testing::scene_range(testing::SceneSize::small, testing::scaled(10'000, 20));
+    return all.size() == 1 ? all : all.part(0, 10 * testing::rank_count());
+}
+bool are_enough() { return !testing::sanitized && testing::rank_count() > 1 && seeds().size() > 100; }
 
 /// All ranks make the calls on their slices of a case; the first one sets the tuning, before and after which they wait.
 class RankSmallScenes : public ::testing::Test {
@@ -51,7 +56,7 @@ protected:
 
 TEST_F(RankSmallScenes, OfSlices) {
     bool good = true;
-    for (std::uint64_t seed = 0; seed < testing::case_count(usual()) && good; ++seed) {
+    for (std::uint64_t seed = seeds().begin; seed < seeds().end && good; ++seed) {
         const Case whole = testing::small_case(seed);
         SCOPED_TRACE("seed " + std::to_string(seed) + ": " + whole.describe());
         set_tuning(testing::tiny_tuning(seed));
@@ -59,7 +64,7 @@ TEST_F(RankSmallScenes, OfSlices) {
         set_tuning(default_tuning);
         good = testing::on_all(!HasFailure());
     }
-    if (testing::sanitized || testing::rank_count() == 1 || testing::case_count(usual()) < usual()) return;
+    if (!are_enough()) return;
     using enum Path;
     EXPECT_EQ(testing::paths_not_taken({ranks_top_divided, object_on_ranks, nested_once}), "");
 }
@@ -74,9 +79,9 @@ void lead(const Calls& calls) {
 
 TEST(RankSmallScenesLed, AreWhatBruteForceFinds) {
     lead([](const testing::EngineFor& engines) {
-        const auto finding = testing::check_small_cases(0, testing::case_count(usual()), engines);
+        const auto finding = testing::check_small_cases(seeds(), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
-        if (testing::sanitized || testing::rank_count() == 1 || testing::case_count(usual()) < usual()) return;
+        if (!are_enough()) return;
         using enum Path;
         EXPECT_EQ(testing::paths_not_taken({relay_full, relay_listed, relay_found_again}), "");
         // A window is searched where memory that the engine kept from call to call is too small: seldom on two ranks.
@@ -90,7 +95,7 @@ TEST(RankSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
     if (testing::rank_count() == 1) GTEST_SKIP() << "no neighbour";
     lead([](const testing::EngineFor& engines) {
         const testing::FaultScope planted(Fault::rank_takes_neighbour);
-        const auto finding = testing::check_small_cases(0, 300, engines);
+        const auto finding = testing::check_small_cases({0, 300}, engines);
         ASSERT_TRUE(finding);
         std::printf("found by %s: %s\n", finding->check.c_str(), finding->text.c_str());
     });

@@ -112,6 +112,20 @@ std::uint64_t case_count(std::uint64_t usual) {
     return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
 }
 
+SceneRange SceneRange::part(std::uint64_t i, std::uint64_t parts) const {
+    return {begin + size() * i / parts, begin + size() * (i + 1) / parts};
+}
+
+SceneRange scene_range(SceneSize size, std::uint64_t usual) {
+    if (std::getenv("OCTOPAIR_TEST_SEED") != nullptr) {
+        const std::uint64_t seed = case_seed({}, 0);
+        return {seed, seed + 1};
+    }
+    const bool small = size == SceneSize::small;
+    const char* asked = std::getenv(small ? "OCTOPAIR_TEST_SMALL_SCENES" : "OCTOPAIR_TEST_LARGE_SCENES");
+    return {0, asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual};
+}
+
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i) {
     if (const char* seed = std::getenv("OCTOPAIR_TEST_SEED")) return std::strtoull(seed, nullptr, 10);
     std::uint64_t salt = 0;

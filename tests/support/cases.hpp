@@ -1,7 +1,8 @@
 // Random calls of an engine, each from one seed, so that any can be run again alone.
 //
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that one case.
-// Soak:   OCTOPAIR_TEST_CASES=<number> runs so many cases of each kind instead of the usual number.
+// Soak:   OCTOPAIR_TEST_CASES=<number> runs so many cases of each kind instead of the usual number;
+//         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> do so for the tests of exactness.
 #pragma once
 
 #include <optional>
@@ -40,5 +41,16 @@ Case make_case(const std::string& kind, std::uint64_t seed);
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i);
 /// How many cases of a kind to run: `usual`, or what the environment asks for.
 std::uint64_t case_count(std::uint64_t usual);
+
+/// The scenes [begin, end) that a test of exactness checks, numbered by their seeds.
+struct SceneRange {
+    std::uint64_t begin, end;
+    std::uint64_t size() const { return end - begin; }
+    /// The i-th of `parts` parts.
+    SceneRange part(std::uint64_t i, std::uint64_t parts) const;
+};
+enum class SceneSize : std::uint8_t { small, large };
+/// `usual` scenes, as many as the environment asks for, or the one of OCTOPAIR_TEST_SEED.
+SceneRange scene_range(SceneSize size, std::uint64_t usual);
 
 }  // namespace octopair::testing
