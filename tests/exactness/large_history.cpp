@@ -10,6 +10,7 @@
 #include "parallel/team.hpp"
 #include "support/compare.hpp"
 #include "support/families.hpp"
+#include "support/kinds.hpp"
 #include "verification/row_search.hpp"
 
 namespace octopair::testing {
@@ -36,15 +37,9 @@ std::vector<double> paddings_of(const Case& a_case, std::size_t objects) {
     return paddings;
 }
 
-std::vector<Box3f> narrowed(const std::vector<Box3d>& boxes) {
+std::vector<Box3f> all_narrowed(const std::vector<Box3d>& boxes) {
     std::vector<Box3f> narrow;
-    for (const Box3d& box : boxes) {
-        Box3f& one = narrow.emplace_back();
-        for (int axis = 0; axis < 3; ++axis) {
-            one.min[axis] = float(box.min[axis]);
-            one.max[axis] = float(box.max[axis]);
-        }
-    }
+    for (const Box3d& box : boxes) narrow.push_back(narrowed(box));
     return narrow;
 }
 
@@ -182,7 +177,7 @@ std::vector<Pair> LargeHistory::find_pairs() {
 /// Calls call(scene, boxes) with boxes of the scenes' precision.
 template <typename Call>
 void LargeHistory::for_each_scene(const std::vector<Box3d>& boxes, Call&& call) {
-    const std::vector<Box3f> narrow = float64_ ? std::vector<Box3f>{} : narrowed(boxes);
+    const std::vector<Box3f> narrow = float64_ ? std::vector<Box3f>{} : all_narrowed(boxes);
     for (JudgedScene& judged : scenes_) {
         float64_ ? call(judged.scene, Boxes(std::span(boxes))) : call(judged.scene, Boxes(std::span(narrow)));
     }
@@ -280,17 +275,7 @@ Box3d LargeHistory::moved(const Box3d& box, bool far) {
         result.min[axis] = to;
         result.max[axis] = touches ? std::max(to, box.max[axis] + (to - box.min[axis])) : to + side;
     }
-    return rounded(result);
-}
-
-/// As the scene's precision holds it.
-Box3d LargeHistory::rounded(Box3d box) const {
-    if (float64_) return box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.min[axis] = double(float(box.min[axis]));
-        box.max[axis] = double(float(box.max[axis]));
-    }
-    return box;
+    return float64_ ? result : rounded_to_float32(result);
 }
 
 }  // namespace octopair::testing

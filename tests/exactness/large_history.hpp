@@ -62,7 +62,6 @@ private:
     Object& any_object();
     std::vector<ObjectId> some_ids(std::uint64_t count);
     Box3d moved(const Box3d& box, bool far);
-    Box3d rounded(Box3d box) const;
 
     /// All pairs of the objects as they are, ascending, by the second algorithm. Sets too_many_.
     std::vector<Pair> find_pairs();

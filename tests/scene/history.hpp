@@ -54,11 +54,8 @@ private:
     void take_family(const Case& a_case) {
         const auto append = [&](const auto& boxes) {
             for (const auto& box : boxes) {
-                Box3d& one = boxes_.emplace_back();
-                for (int axis = 0; axis < 3; ++axis) {
-                    one.min[axis] = float64_ ? double(box.min[axis]) : double(float(box.min[axis]));
-                    one.max[axis] = float64_ ? double(box.max[axis]) : double(float(box.max[axis]));
-                }
+                const Box3d wide{{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+                boxes_.push_back(float64_ ? wide : rounded_to_float32(wide));
             }
         };
         std::visit(append, a_case.first.boxes);
@@ -158,10 +155,7 @@ private:
     void with_boxes(const std::vector<Box3d>& boxes, Body&& body) {
         if (float64_) return body(Boxes(std::span(boxes)));
         std::vector<Box3f> narrow;
-        for (const Box3d& box : boxes) {
-            narrow.push_back({{float(box.min[0]), float(box.min[1]), float(box.min[2])},
-                              {float(box.max[0]), float(box.max[1]), float(box.max[2])}});
-        }
+        for (const Box3d& box : boxes) narrow.push_back(narrowed(box));
         body(Boxes(std::span<const Box3f>(narrow)));
     }
 
@@ -200,9 +194,10 @@ private:
             if (chance(0.5)) {  // a little
                 box = model_.objects[id.index].box;
                 const double way = (box.max[0] - box.min[0]) * (double(random_() % 5) - 2) / 4;
-                box.min[0] = float64_ ? box.min[0] + way : double(float(box.min[0] + way));
-                box.max[0] = std::max(box.min[0], float64_ ? box.max[0] + way : double(float(box.max[0] + way)));
+                box.min[0] += way;
+                box.max[0] = std::max(box.min[0], box.max[0] + way);
                 if (!std::isfinite(float(box.min[0])) || !std::isfinite(float(box.max[0]))) box = next_box();
+                if (!float64_) box = rounded_to_float32(box);
             }
             boxes.push_back(box);
         }
