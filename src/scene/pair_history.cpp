@@ -115,7 +115,7 @@ Error out_of_order(const std::string& list, std::uint64_t before, std::uint64_t 
     return wrong_step(key == before ? listed + " twice" : listed + " after " + name_of(before));
 }
 
-void check_ascending(const std::string& list, std::span<const Pair> pairs) {
+void check_ascending(const char* list, std::span<const Pair> pairs) {
     const auto wrong = std::adjacent_find(pairs.begin(), pairs.end(),
                                           [](const Pair& a, const Pair& b) { return key_of(b) <= key_of(a); });
     if (wrong != pairs.end()) throw out_of_order(list, key_of(wrong[0]), key_of(wrong[1]));

@@ -44,7 +44,8 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     if (count < 4) return;
     EXPECT_EQ(done, count);
     EXPECT_GT(full_steps, 0U);
-    EXPECT_GT(partial_steps, 0U);
+    // Without test hooks a scene chooses by measured times.
+    EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
 }
 
 }  // namespace

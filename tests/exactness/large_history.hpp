@@ -65,15 +65,15 @@ private:
 
     /// All pairs of the objects as they are, ascending, by the second algorithm. Sets too_many_.
     std::vector<Pair> find_pairs();
-    void check_step(JudgedScene& judged, const std::vector<Pair>& now, bool last);
+    void make_step(bool last);
+    void check_step(JudgedScene& judged, bool read);
 
     samples::RandomStream random_;
     bool float64_ = false, padded_ = false, too_many_ = false;
     double margin_ = 0;
     std::vector<std::optional<Object>> objects_;  // by index
     std::vector<JudgedScene> scenes_;
-    std::vector<Pair> before_;  // of the last step
-    std::vector<Pair> first_;   // of the first step
+    std::vector<Pair> before_, now_;  // true pairs of the last step, and of the next one
     std::uint64_t full_steps_ = 0, partial_steps_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // Small histories of scenes with tiny tuning, against brute force: every path of scene steps and of octrees that change.
 #include <gtest/gtest.h>
 
+#include <exception>
+
 #include "exactness/small_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "samples/random.hpp"
@@ -37,7 +39,11 @@ TEST(SmallHistories, AreWhatBruteForceFinds) {
         const testing::TuningScope tiny(testing::tiny_tuning(seed));
         testing::History<Scene> history(
             name, seed, [](const SceneOptions& options) { return Scene(options); }, history_size(random));
-        history.run();
+        try {
+            history.run();
+        } catch (const std::exception& error) {
+            FAIL() << error.what();  // within the trace that names the history
+        }
         if (HasFatalFailure()) return;
     }
     if (count < usual) return;
