@@ -9,6 +9,9 @@
 // Errors    octopair::Error{bad_input} for an id that is not (or no longer) of the scene, or a box that is not one, with its
 //           position in the call; {resource_limit} where a step runs out of memory, std::bad_alloc elsewhere. A call that
 //           fails changes nothing; a step() that fails or is cancelled leaves pairs() as they were, and may be repeated.
+//           {engine_failed}, with the pair, if a search was wrong, which only an error in octopair causes: a step finds a
+//           pair twice, or a pair begins that was there, or ends that was not. A step(), pairs() or persisting() may be
+//           the call to see that. The step() after it searches all objects; pairs() may throw until then.
 //           A scene that was moved from may only be destroyed or assigned to.
 // Threads   one at a time, also for queries.
 // Cost      a step's follows what moved; where most objects did, it is that of a full detection. About 120 bytes an object

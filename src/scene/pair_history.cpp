@@ -1,6 +1,7 @@
 #include "scene/pair_history.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "base/reserve.hpp"
@@ -98,6 +99,55 @@ void cancel(std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& secon
     second.erase(std::copy(b, second.end(), b_out), second.end());
 }
 
+std::string name_of(std::uint64_t key) {
+    const Pair pair = pair_of(key);
+    return "pair " + std::to_string(pair.a) + "-" + std::to_string(pair.b);
+}
+
+Error wrong_step(const std::string& what) {
+    return {ErrorCode::engine_failed,
+            "scene step: " + what + "; nothing was changed, and the next step will search all objects"};
+}
+
+/// The error for a key of a list that does not come after the key before it.
+Error out_of_order(const std::string& list, std::uint64_t before, std::uint64_t key) {
+    const std::string listed = list + " lists " + name_of(key);
+    return wrong_step(key == before ? listed + " twice" : listed + " after " + name_of(before));
+}
+
+void check_ascending(const char* list, std::span<const Pair> pairs) {
+    const auto wrong = std::adjacent_find(pairs.begin(), pairs.end(),
+                                          [](const Pair& a, const Pair& b) { return key_of(b) <= key_of(a); });
+    if (wrong != pairs.end()) throw out_of_order(list, key_of(wrong[0]), key_of(wrong[1]));
+}
+
+/// Goes to the next pair of the list of a full detection.
+void next_found(Reader& reader) {
+    const std::uint64_t key = key_of(reader.pair());
+    reader.next();
+    if (reader.done() || key < key_of(reader.pair())) return;
+    throw out_of_order("full detection", key, key_of(reader.pair()));
+}
+
+/// Goes through ascending keys.
+class KeyReader {
+public:
+    explicit KeyReader(std::span<const std::uint64_t> keys) : keys_(keys) {}
+
+    /// The next key, or one above all pairs.
+    std::uint64_t key() const { return keys_.empty() ? ~std::uint64_t(0) : keys_.front(); }
+    /// Goes to the next key that is another one. Returns whether the key was there once.
+    bool next() {
+        const auto other = std::find_if(keys_.begin(), keys_.end(), [&](std::uint64_t one) { return one != key(); });
+        const auto times = other - keys_.begin();
+        keys_ = keys_.subspan(std::size_t(times));
+        return times == 1;
+    }
+
+private:
+    std::span<const std::uint64_t> keys_;
+};
+
 }  // namespace
 
 PairHistory::PairHistory(Room room) : room_(std::move(room)) {
@@ -121,20 +171,21 @@ void PairHistory::take_over(PairChanges& changes) {
         const std::uint64_t old_key = key_of(before.pair()), new_key = key_of(after.pair());
         if (old_key == new_key) {
             before.next();
-            after.next();
+            next_found(after);
         } else if (old_key < new_key) {
             note(changes.ended, before.pair());
             before.next();
         } else {
             note(changes.began, after.pair());
-            after.next();
+            next_found(after);
         }
     }
     for (; !before.done(); before.next()) note(changes.ended, before.pair());
-    for (; !after.done(); after.next()) note(changes.began, after.pair());
+    for (; !after.done(); next_found(after)) note(changes.began, after.pair());
     std::swap(list_, other_);
     settled_ = false;
     size_ = list_.size();
+    doubt_.clear();
 }
 
 void PairHistory::prepare(bool little) {
@@ -157,6 +208,12 @@ void PairHistory::settle() {
 }
 
 void PairHistory::apply(const PairChanges& changes) {
+    check_ascending("the search for pairs that began", changes.began);
+    check_ascending("the search for pairs that ended", changes.ended);
+    if (changes.ended.size() > size_) {
+        throw wrong_step(std::to_string(changes.ended.size()) + " pairs ended, from " +
+                         name_of(key_of(changes.ended.front())) + " on, but there were " + std::to_string(size_));
+    }
     reserve_more(began_, changes.began.size());
     reserve_more(ended_, changes.ended.size());
     for (const Pair& pair : changes.began) began_.push_back(key_of(pair));
@@ -167,7 +224,14 @@ void PairHistory::apply(const PairChanges& changes) {
 
 const PairList& PairHistory::list() {
     merge();
+    if (is_doubtful()) throw Error(ErrorCode::engine_failed, doubt_);
     return list_;
+}
+
+void PairHistory::doubt(std::uint64_t key, const char* what) {
+    if (is_doubtful()) return;
+    doubt_ =
+        "scene: " + name_of(key) + " " + what + "; the next step will search all objects and list their pairs anew";
 }
 
 void PairHistory::merge() {
@@ -179,27 +243,35 @@ void PairHistory::merge() {
         std::copy(sorted.begin(), sorted.end(), keys->begin());
     }
     cancel(began_, ended_);
-    Reader reader(list_);
-    Writer writer(other_);
-    auto began = began_.begin(), ended = ended_.begin();
-    while (!reader.done() || began != began_.end()) {
-        const std::uint64_t stop = std::min(began != began_.end() ? *began : ~std::uint64_t(0),
-                                            ended != ended_.end() ? *ended : ~std::uint64_t(0));
-        while (!reader.done() && key_of(reader.pair()) < stop) writer.add(reader.run_before(stop));
-        if (began != began_.end() && *began == stop) {
-            writer.add(pair_of(*began++));
-        } else if (ended != ended_.end()) {
-            if (reader.done() || key_of(reader.pair()) != stop) {
-                throw Error(ErrorCode::engine_failed, "a pair that ended was none");
-            }
-            reader.next();
-            ++ended;
-        }
-    }
-    writer.finish();
+    write_merged();
     std::swap(list_, other_);
     began_.clear();
     ended_.clear();
+    size_ = list_.size();
+    if (is_doubtful()) throw Error(ErrorCode::engine_failed, doubt_);
+}
+
+/// Fills other_ with the list and what changed since. A change that cannot be is noted in doubt_, and left out.
+void PairHistory::write_merged() {
+    Reader reader(list_);
+    Writer writer(other_);
+    KeyReader began(began_), ended(ended_);  // no key is in both
+    while (true) {
+        const std::uint64_t key = std::min(began.key(), ended.key());
+        while (!reader.done() && key_of(reader.pair()) < key) writer.add(reader.run_before(key));
+        if (key == ~std::uint64_t(0)) break;
+        const bool listed = !reader.done() && key_of(reader.pair()) == key;
+        if (began.key() == key) {
+            if (listed) doubt(key, "began, but had been there before");
+            if (!listed) writer.add(pair_of(key));
+            if (!began.next()) doubt(key, "began twice");
+        } else {
+            if (listed) reader.next();
+            if (!listed) doubt(key, "ended, but had not been there before");
+            if (!ended.next()) doubt(key, "ended twice");
+        }
+    }
+    writer.finish();
 }
 
 void subtract(const PairList& all, std::span<const Pair> less, PairList& out) {

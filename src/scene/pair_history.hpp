@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/radix_sort.hpp"
@@ -37,23 +38,32 @@ public:
     explicit PairHistory(Room room = {});
 
     /// The list as it will be after a full detection: to be filled, ascending, then taken over.
+    /// Throws: Error{engine_failed} like list(), but only once.
     PairList& fresh() {
         merge();  // which uses the same memory
         return other_;
     }
-    /// Takes fresh() over, and tells what changed.
+    /// Takes fresh() over, and tells what changed. The list is not doubtful any more.
+    /// Throws: Error{engine_failed} if fresh() does not ascend; then only `changes` has been changed.
     void take_over(PairChanges& changes);
     /// Before a step, and the only thing here that may then run out of memory with no harm done. `little`: for a step
     /// that may change little.
+    /// Throws: Error{engine_failed} like list(), but only once.
     void prepare(bool little);
     /// What a step changed.
+    /// Throws: Error{engine_failed} if that cannot be, and then changes nothing. Requires: the list is not doubtful.
     void apply(const PairChanges& changes);
 
+    /// Throws: Error{engine_failed} with the first change that cannot be, if the list is doubtful.
     const PairList& list();
+    /// Some change since the last full detection cannot be: only a full detection may follow.
+    bool is_doubtful() const { return !doubt_.empty(); }
     std::uint64_t size() const { return size_; }
 
 private:
     void merge();
+    void write_merged();
+    void doubt(std::uint64_t key, const char* what);
     void settle();
     void note(std::vector<Pair>& changes, const Pair& pair) const;
 
@@ -63,6 +73,7 @@ private:
     RadixSort<std::uint64_t> sort_;
     std::uint64_t size_ = 0;
     bool settled_ = false;  // other_ has memory for a list of this size
+    std::string doubt_;     // why the list is doubtful; empty: it is not
 };
 
 /// The pairs of `all` without those of `less`, which are among them; both ascending. Replaces `out`.

@@ -50,6 +50,7 @@ private:
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
+    void drop_octrees();
 
     double margin_;
     SceneObjects objects_;

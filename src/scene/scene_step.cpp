@@ -55,7 +55,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const std::uint64_t before = history_.size();
     const bool unlike = rounding_.exact && objects_.table().any_padding();  // boxes in the octree have not been widened
     const bool cheap = is_wanted_incremental(expected <= worth_it * full_seconds_);
-    bool full = !planted_ || unlike || objects_.log().overflowed() || !cheap;
+    bool full = !planted_ || unlike || objects_.log().overflowed() || !cheap || history_.is_doubtful();
     try {
         history_.prepare(planted_);
         const bool found = !full && find_changes(stop);
@@ -64,12 +64,21 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
         full = !found;
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::engine_failed) drop_octrees();
+        throw;
     }
     std::swap(changes_, found_);
     objects_.finish_step();
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
     return result_;
+}
+
+/// After a search that was wrong: the next one begins with the objects alone.
+void Scene::State::drop_octrees() {
+    planted_ = fresh_ = built_ = false;
+    refills_ = tuning().scene.refills;
 }
 
 void Scene::State::find_all(const std::stop_token& stop) {
@@ -115,7 +124,7 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
 }
 
 SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
-    const bool follows = planted_ && !objects_.log().overflowed();
+    const bool follows = planted_ && !objects_.log().overflowed() && !history_.is_doubtful();
     if (!follows && !fresh_) {
         count_path(Path::octree_for_queries);
         planted_ = false;

@@ -1,5 +1,5 @@
 // Random histories of a scene: additions, moves, sweeps, removals and new traits, with brute force as the judge of each step,
-// and of queries between them where the scene answers any.
+// and of queries between them where the scene answers any. Boxes are of a kind (kinds.hpp) or a family (families.hpp).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,36 +14,99 @@
 
 #include "scene/model.hpp"
 #include "scene/query_model.hpp"
+#include "support/families.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::testing {
+
+/// The boxes of a history: of a kind, endlessly many; of a family, those of one scene in ever new orders.
+class BoxSource {
+public:
+    /// `name`: of a kind or a family. `scene_objects`: number of boxes of a scene.
+    BoxSource(const std::string& name, std::uint64_t scene_objects) : name_(name), objects_(scene_objects) {
+        const auto families = family_names();
+        is_family_ = std::find(families.begin(), families.end(), name) != families.end();
+    }
+    /// Requires: called before the first next(). Boxes that are not float64 have coordinates that float32 holds.
+    void begin(bool float64, std::mt19937_64& random) {
+        float64_ = float64;
+        renew(random);
+    }
+    Box3d next(std::mt19937_64& random) {
+        if (next_ == boxes_.size()) renew(random);
+        return boxes_[next_++];
+    }
+    /// A clearance that matters in such a scene without joining all of it.
+    double clearance() const { return is_family_ ? clearance_ : 0.5; }
+
+private:
+    void renew(std::mt19937_64& random) {
+        next_ = 0;
+        if (!is_family_) {
+            boxes_ = float64_ ? make_double_boxes(name_, objects_, random())
+                              : widened(make_boxes(name_, objects_, random()));
+        } else if (boxes_.empty()) {
+            take_family(make_family_case(name_, objects_, random()));
+        } else {
+            std::shuffle(boxes_.begin(), boxes_.end(), random);
+        }
+    }
+    void take_family(const Case& a_case) {
+        const auto append = [&](const auto& boxes) {
+            for (const auto& box : boxes) {
+                const Box3d wide{{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+                boxes_.push_back(float64_ ? wide : rounded_to_float32(wide));
+            }
+        };
+        std::visit(append, a_case.first.boxes);
+        if (a_case.second) std::visit(append, a_case.second->boxes);
+        for (int axis = 0; axis < 3; ++axis) {
+            clearance_ = std::max(clearance_, (boxes_[0].max[axis] - boxes_[0].min[axis]) / 4);
+        }
+    }
+
+    std::string name_;
+    std::uint64_t objects_;
+    bool is_family_, float64_ = false;
+    std::vector<Box3d> boxes_;
+    std::size_t next_ = 0;
+    double clearance_ = 0;
+};
+
+/// How long a history is.
+struct HistorySize {
+    std::uint64_t objects = 320;  ///< at first, at most
+    int steps = 25;
+};
 
 /// One scene, its model, and what happens to both. AnyScene: what has the calls of a Scene.
 template <typename AnyScene>
 class History {
 public:
-    static constexpr int steps = 25;
-
-    /// `make` makes the scene of some SceneOptions.
+    /// `name`: of a kind or a family. `make` makes the scene of some SceneOptions.
     template <typename Make>
-    History(const std::string& kind, std::uint64_t seed, Make&& make) : random_(seed), kind_(kind) {
+    History(const std::string& name, std::uint64_t seed, Make&& make, const HistorySize& size = {})
+        : random_(seed), size_(size), boxes_(name, size.objects + 80) {
         float64_ = chance(0.4);
         padded_ = chance(0.3);
         with_traits_ = chance(0.5);
-        margin_ = chance(0.3) ? 0.5 : 0;
+        const bool with_margin = chance(0.3);
         queried_ = chance(0.5);
+        boxes_.begin(float64_, random_);
+        margin_ = with_margin ? boxes_.clearance() : 0;
         model_ = Model(margin_);
         scene_ = make(
             SceneOptions{unsigned(1 + random_() % 3), float64_ ? Precision::float64 : Precision::float32, margin_});
-        renew();
     }
 
     void run() {
-        add(20 + random_() % 300);
-        for (int i = 0; i < steps; ++i) {
+        const std::uint64_t least = std::min<std::uint64_t>(20, size_.objects / 2);
+        add(least + random_() % (size_.objects - least));
+        for (int i = 0; i < size_.steps; ++i) {
             model_.check(scene_);
             if (::testing::Test::HasFatalFailure()) return;
-            model_.check_lists(scene_);
+            // Pairs that nobody reads wait to be merged into the list.
+            if (i + 1 == size_.steps || chance(0.5)) model_.check_lists(scene_);
             if (::testing::Test::HasFatalFailure()) return;
             settle();
             check_queries();
@@ -76,15 +139,7 @@ private:
         }
     }
 
-    void renew() {
-        boxes_ = float64_ ? make_double_boxes(kind_, 400, random_()) : widened(make_boxes(kind_, 400, random_()));
-        next_ = 0;
-    }
-
-    Box3d next_box() {
-        if (next_ == boxes_.size()) renew();
-        return boxes_[next_++];
-    }
+    Box3d next_box() { return boxes_.next(random_); }
 
     Traits random_traits() {
         Traits traits;
@@ -100,10 +155,7 @@ private:
     void with_boxes(const std::vector<Box3d>& boxes, Body&& body) {
         if (float64_) return body(Boxes(std::span(boxes)));
         std::vector<Box3f> narrow;
-        for (const Box3d& box : boxes) {
-            narrow.push_back({{float(box.min[0]), float(box.min[1]), float(box.min[2])},
-                              {float(box.max[0]), float(box.max[1]), float(box.max[2])}});
-        }
+        for (const Box3d& box : boxes) narrow.push_back(narrowed(box));
         body(Boxes(std::span<const Box3f>(narrow)));
     }
 
@@ -113,7 +165,7 @@ private:
         std::vector<Traits> traits;
         for (std::uint64_t i = 0; i < count; ++i) {
             boxes.push_back(next_box());
-            if (padded_) paddings.push_back(double(random_() % 3) / 8);
+            if (padded_) paddings.push_back(double(random_() % 3) / 4 * boxes_.clearance());
             traits.push_back(random_traits());
         }
         std::vector<ObjectId> ids(count);
@@ -142,9 +194,10 @@ private:
             if (chance(0.5)) {  // a little
                 box = model_.objects[id.index].box;
                 const double way = (box.max[0] - box.min[0]) * (double(random_() % 5) - 2) / 4;
-                box.min[0] = float64_ ? box.min[0] + way : double(float(box.min[0] + way));
-                box.max[0] = std::max(box.min[0], float64_ ? box.max[0] + way : double(float(box.max[0] + way)));
+                box.min[0] += way;
+                box.max[0] = std::max(box.min[0], box.max[0] + way);
                 if (!std::isfinite(float(box.min[0])) || !std::isfinite(float(box.max[0]))) box = next_box();
+                if (!float64_) box = rounded_to_float32(box);
             }
             boxes.push_back(box);
         }
@@ -194,13 +247,12 @@ private:
     }
 
     std::mt19937_64 random_;
-    std::string kind_;
+    HistorySize size_;
+    BoxSource boxes_;
     bool float64_ = false, padded_ = false, with_traits_ = false, queried_ = false;
     double margin_ = 0;
     Model model_;
     AnyScene scene_;
-    std::vector<Box3d> boxes_;
-    std::size_t next_ = 0;
     std::map<std::uint32_t, Box3d> places_;
 };
 

@@ -21,6 +21,9 @@ std::vector<Box3f> make_boxes(const std::string& kind, std::uint64_t objects, st
 std::vector<Box3d> make_double_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
 
 std::vector<Box3d> widened(const std::vector<Box3f>& boxes);
+/// The box with the nearest coordinates that float32 holds.
+Box3f narrowed(const Box3d& box);
+Box3d rounded_to_float32(const Box3d& box);
 
 /// Names a parametrised test by its kind.
 std::string param_name(const ::testing::TestParamInfo<std::string>& info);

@@ -1,0 +1,54 @@
+// Large scenes of every family that change step by step, against the second algorithm (src/verification).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "exactness/large_history.hpp"
+#include "exactness/small_scenes.hpp"
+#include "support/families.hpp"
+#include "support/scale.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr std::uint64_t least_objects = testing::scaled(40'000, 10), most_objects = testing::scaled(200'000, 10);
+
+std::uint64_t object_count(std::uint64_t seed) {
+    samples::RandomStream random(seed, 4);
+    return std::uint64_t(double(least_objects) *
+                         std::pow(double(most_objects) / double(least_objects), random.uniform()));
+}
+
+TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
+#ifdef OCTOPAIR_TEST_HOOKS
+    const testing::TuningScope tuning(default_tuning);  // which histories change
+#endif
+    const auto families = testing::family_names();
+    // A fifth of the large scenes, unless the environment asks for a number of cases.
+    const std::uint64_t count = testing::case_count(testing::scene_range(testing::SceneSize::large, 20).size() / 5);
+    const std::uint64_t most_tried = 4 * count;
+    std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
+    for (std::uint64_t i = 0; i < most_tried && done < count; ++i) {
+        const std::uint64_t seed = testing::case_seed("large histories", i);
+        const std::string& family = families[seed % families.size()];
+        testing::LargeHistory history(family, object_count(seed), seed);
+        if (history.has_too_many_pairs()) continue;
+        const auto finding = history.run();
+        ASSERT_FALSE(finding) << finding->check << ": " << finding->text << "; OCTOPAIR_TEST_SEED=" << seed
+                              << ": family " << family << ", " << history.describe();
+        ++done;
+        full_steps += history.full_steps();
+        partial_steps += history.partial_steps();
+    }
+    std::printf("%llu histories, %llu full steps, %llu partial steps\n", static_cast<unsigned long long>(done),
+                static_cast<unsigned long long>(full_steps), static_cast<unsigned long long>(partial_steps));
+    if (count < 4) return;
+    EXPECT_EQ(done, count);
+    EXPECT_GT(full_steps, 0U);
+    // Without test hooks a scene chooses by measured times.
+    EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
+}
+
+}  // namespace
+}  // namespace octopair

@@ -1,0 +1,63 @@
+// Small histories of scenes with tiny tuning, against brute force: every path of scene steps and of octrees that change.
+#include <gtest/gtest.h>
+
+#include <exception>
+
+#include "exactness/small_scenes.hpp"
+#include "exactness/tiny_tuning.hpp"
+#include "samples/random.hpp"
+#include "scene/history.hpp"
+#include "support/scale.hpp"
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+namespace octopair {
+namespace {
+
+constexpr std::uint64_t usual = testing::scaled(1500, 20);
+
+/// Three of four names are of families.
+std::string history_name(samples::RandomStream& random) {
+    static const auto families = testing::family_names(), kinds = testing::all_kind_names();
+    const auto& names = random.below(4) != 0 ? families : kinds;
+    return names[random.below(names.size())];
+}
+
+/// Mostly few objects: brute force and nested octrees take long for many.
+testing::HistorySize history_size(samples::RandomStream& random) {
+    const std::uint64_t size = random.below(100);
+    return {size < 50 ? 20u : size < 95 ? 70u : 300u, 12};
+}
+
+TEST(SmallHistories, AreWhatBruteForceFinds) {
+    // As many more than usual as there are small scenes, unless the environment asks for a number of cases.
+    const std::uint64_t scenes = testing::scene_range(testing::SceneSize::small, 10'000).size();
+    const std::uint64_t count = testing::case_count(std::max<std::uint64_t>(1, usual * scenes / 10'000));
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t seed = testing::case_seed("small histories", i);
+        samples::RandomStream random(seed, 2);
+        const std::string name = history_name(random);
+        SCOPED_TRACE(name + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
+        const testing::TuningScope tiny(testing::tiny_tuning(seed));
+        testing::History<Scene> history(
+            name, seed, [](const SceneOptions& options) { return Scene(options); }, history_size(random));
+        try {
+            history.run();
+        } catch (const std::exception& error) {
+            FAIL() << error.what();  // within the trace that names the history
+        }
+        if (HasFatalFailure()) return;
+    }
+    if (count < usual) return;
+    using enum Path;
+    EXPECT_EQ(
+        testing::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,
+                                  unit_of_inner, step_full, step_incremental, step_too_dear, log_overflowed,
+                                  octree_planted, octree_for_queries, pairs_waited, pairs_merged, refilled}),
+        "");
+}
+
+}  // namespace
+}  // namespace octopair
+
+#endif
