@@ -17,7 +17,7 @@
 namespace octopair {
 namespace {
 
-constexpr std::uint64_t usual = testing::scaled(600, 20);
+constexpr std::uint64_t usual = testing::scaled(300, 10);
 
 /// Before the hooks are used: memory that has a name for workers as long as this process lives.
 const int shared_hooks = [] {

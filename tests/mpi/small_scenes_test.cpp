@@ -21,12 +21,12 @@ using testing::Case;
 /// Fewer than of one process, by as much whatever is asked for.
 testing::SceneRange seeds() {
     const testing::SceneRange all = testing::scene_range(testing::SceneSize::small, testing::scaled(10'000, 20));
-    return all.size() == 1 ? all : all.part(0, 10 * testing::rank_count());
+    return all.size() == 1 ? all : all.part(0, 50 * testing::rank_count());
 }
-bool are_enough() { return !testing::sanitized && testing::rank_count() > 1 && seeds().size() > 100; }
+bool are_enough() { return !testing::sanitized && testing::rank_count() > 1 && seeds().size() >= 200; }
 
 /// All ranks make the calls on their slices of a case; the first one sets the tuning, before and after which they wait.
-class RankSmallScenes : public ::testing::Test {
+class MpiSmallScenes : public ::testing::Test {
 protected:
     void set_tuning(const Tuning& tuning) {
         (void)testing::on_all(true);
@@ -54,7 +54,7 @@ protected:
     const std::unique_ptr<Engine> ranks_ = make_mpi_engine(MPI_COMM_WORLD);
 };
 
-TEST_F(RankSmallScenes, OfSlices) {
+TEST_F(MpiSmallScenes, OfSlices) {
     bool good = true;
     for (std::uint64_t seed = seeds().begin; seed < seeds().end && good; ++seed) {
         const Case whole = testing::small_case(seed);
@@ -77,7 +77,7 @@ void lead(const Calls& calls) {
     calls([=](unsigned threads) -> Engine& { return threads == 1 ? *local : *leading; });
 }
 
-TEST(RankSmallScenesLed, AreWhatBruteForceFinds) {
+TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
     lead([](const testing::EngineFor& engines) {
         const auto finding = testing::check_small_cases(seeds(), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
@@ -91,7 +91,7 @@ TEST(RankSmallScenesLed, AreWhatBruteForceFinds) {
     });
 }
 
-TEST(RankSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
+TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
     if (testing::rank_count() == 1) GTEST_SKIP() << "no neighbour";
     lead([](const testing::EngineFor& engines) {
         const testing::FaultScope planted(Fault::rank_takes_neighbour);

@@ -6,6 +6,7 @@
 
 #include "samples/random.hpp"
 #include "support/kinds.hpp"
+#include "support/scale.hpp"
 
 namespace octopair::testing {
 
@@ -123,7 +124,8 @@ SceneRange scene_range(SceneSize size, std::uint64_t usual) {
     }
     const bool small = size == SceneSize::small;
     const char* asked = std::getenv(small ? "OCTOPAIR_TEST_SMALL_SCENES" : "OCTOPAIR_TEST_LARGE_SCENES");
-    return {0, asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual};
+    if (asked == nullptr) return {0, usual};
+    return {0, scaled(std::strtoull(asked, nullptr, 10), small ? 20 : 10)};
 }
 
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i) {

@@ -50,7 +50,7 @@ struct SceneRange {
     SceneRange part(std::uint64_t i, std::uint64_t parts) const;
 };
 enum class SceneSize : std::uint8_t { small, large };
-/// `usual` scenes, as many as the environment asks for, or the one of OCTOPAIR_TEST_SEED.
+/// `usual` scenes, as many as the environment asks for (fewer under sanitizers), or the one of OCTOPAIR_TEST_SEED.
 SceneRange scene_range(SceneSize size, std::uint64_t usual);
 
 }  // namespace octopair::testing
