@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <ostream>
 
 #include "exactness/small_scenes.hpp"
 
@@ -15,6 +16,8 @@ struct Planted {
     const char* name;
     Fault fault;
 };
+
+void PrintTo(const Planted& planted, std::ostream* out) { *out << planted.name; }
 
 std::string name_of(const ::testing::TestParamInfo<Planted>& info) { return info.param.name; }
 
