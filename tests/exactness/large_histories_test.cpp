@@ -50,5 +50,32 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
 }
 
+/// A scene whose full detections once gave pairs twice, so that pairs of what moved away stayed for good.
+TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
+    const std::vector<Box3f> boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    Scene scene(SceneOptions{.threads = 2});
+    std::vector<ObjectId> ids(boxes.size());
+    scene.add(Objects{std::span<const Box3f>(boxes), {}}, ids);
+    const std::uint64_t all = scene.step().began.size();
+    const auto expect_without = [&](std::size_t gone) {
+        for (const auto chunk : scene.pairs().chunks()) {
+            for (const Pair& pair : chunk) {
+                ASSERT_NE(pair.a, ids[gone].index);
+                ASSERT_NE(pair.b, ids[gone].index);
+            }
+        }
+    };
+    std::uint64_t ended = 0;
+    for (std::size_t i = 0; i < 200; ++i) {
+        const std::vector<Box3f> away = {{{100, 100, float(i) * 10}, {101, 101, float(i) * 10 + 1}}};
+        scene.move(std::span(ids).subspan(i, 1), std::span<const Box3f>(away));
+        const StepResult& result = scene.step();
+        EXPECT_TRUE(result.began.empty());
+        ended += result.ended.size();
+        if (i % 20 == 0) expect_without(i);
+    }
+    EXPECT_EQ(scene.pairs().size(), all - ended);
+}
+
 }  // namespace
 }  // namespace octopair

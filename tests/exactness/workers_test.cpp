@@ -1,5 +1,5 @@
-// Small scenes with tiny tuning on worker processes, against brute force. Workers read the tuning from memory that they
-// share with this process, and count paths there.
+// Worker processes, on small scenes with tiny tuning against brute force, and on large ones against the second algorithm.
+// Workers read the tuning from memory that they share with this process, and count paths there.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -8,16 +8,14 @@
 #include <memory>
 #include <string>
 
+#include "exactness/large_scenes.hpp"
 #include "exactness/small_scenes.hpp"
 #include "octopair/processes.hpp"
+#include "support/families.hpp"
 #include "support/scale.hpp"
-
-#ifdef OCTOPAIR_TEST_HOOKS
 
 namespace octopair {
 namespace {
-
-constexpr std::uint64_t usual = testing::scaled(300, 10);
 
 /// Before the hooks are used: memory that has a name for workers as long as this process lives.
 const int shared_hooks = [] {
@@ -34,6 +32,21 @@ testing::EngineFor workers(Arrangement arrangement) {
     std::shared_ptr<Engine> three = make_process_engine({.workers = 3, .arrangement = arrangement});
     return [=](unsigned threads) -> Engine& { return threads == 1 ? *local : threads == 2 ? *two : *three; };
 }
+
+TEST(LargeScenesOnWorkers, GiveEachPairOnce) {
+    const testing::EngineFor engines = workers(Arrangement::shared);
+    testing::Case long_tails;
+    long_tails.first.boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    for (testing::Case a_case : {long_tails, testing::cloth_case(testing::scaled(120'000, 8), 1)}) {
+        a_case.threads[0] = 2, a_case.threads[1] = 3;
+        const auto finding = testing::check_large_case(a_case, engines, testing::Calls::few);
+        ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
+    }
+}
+
+#ifdef OCTOPAIR_TEST_HOOKS
+
+constexpr std::uint64_t usual = testing::scaled(300, 10);
 
 class SmallScenesOnWorkers : public ::testing::Test {
 protected:
@@ -60,7 +73,7 @@ TEST_F(SmallScenesOnWorkers, AreWhatBruteForceFinds) {
 
 TEST_F(SmallScenesOnWorkers, InThePapersArrangement) { check(usual / 4, workers(Arrangement::paper)); }
 
+#endif
+
 }  // namespace
 }  // namespace octopair
-
-#endif

@@ -8,6 +8,7 @@
 #include "service/served.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
+#include "support/families.hpp"
 #include "support/hash.hpp"
 #include "support/kinds.hpp"
 #include "support/pinned.hpp"
@@ -44,6 +45,19 @@ Found streamed(Engine& engine, std::span<const Box3f> boxes, Order order) {
     testing::Hash hash;
     const PairSink sink = [&](std::span<const Pair> batch) { hash.add(batch); };
     return {engine.stream_pairs({boxes, {}}, sink, {.order = order}).pairs, hash.value()};
+}
+
+/// A scene whose nested octrees once reported pairs twice; the client checks what it receives.
+TEST(ServedExactness, GivesEachPairOnce) {
+    const std::vector<Box3f> boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    const Served served;
+    const auto engine = served.client();
+    for (const Order order : {Order::ascending, Order::octal}) {
+        PairList list;
+        const Summary summary = engine->find_pairs({boxes, {}}, list, {.order = order, .verify = true});
+        EXPECT_TRUE(summary.verification.done);
+        EXPECT_EQ(list.size(), engine->count_pairs({boxes, {}}, {.verify = true}));
+    }
 }
 
 class ServedHashes : public ::testing::TestWithParam<std::string> {};

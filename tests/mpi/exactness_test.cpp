@@ -1,22 +1,39 @@
-// Small scenes with tiny tuning on ranks, against brute force. The ranks of a test share the memory of the test hooks.
+// Ranks, on small scenes with tiny tuning against brute force, and on large ones against the second algorithm. The ranks of
+// a test share the memory of the test hooks.
 #include "exactness/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include "engine/mpi/leading.hpp"
+#include "exactness/large_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "mpi/ranks.hpp"
 #include "support/any_call.hpp"
 #include "support/compare.hpp"
+#include "support/families.hpp"
 #include "support/scale.hpp"
-
-#ifdef OCTOPAIR_TEST_HOOKS
 
 namespace octopair {
 namespace {
 
 using testing::AnyCall;
 using testing::Case;
+
+TEST(RankExactness, GivesEachPairOnceInLargeScenes) {
+    const auto local = make_local_engine(1), ranks = make_mpi_engine(MPI_COMM_WORLD);
+    Case long_tails;
+    long_tails.first.boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    for (const Case& whole : {long_tails, testing::cloth_case(testing::scaled(120'000, 8), 1)}) {
+        const Case own = testing::slice(whole, testing::Spread::lopsided);
+        const AnyCall ascending{own, Order::ascending, false, false}, octal{own, Order::octal, false, false};
+        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(ascending.made_by(*ranks)),
+                                        testing::second_algorithm_pairs(whole)));
+        const AnyCall alone{whole, Order::octal, false, false};
+        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
+    }
+}
+
+#ifdef OCTOPAIR_TEST_HOOKS
 
 /// Fewer than of one process, by as much whatever is asked for.
 testing::SceneRange seeds() {
@@ -101,7 +118,7 @@ TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
     });
 }
 
+#endif
+
 }  // namespace
 }  // namespace octopair
-
-#endif
