@@ -8,8 +8,13 @@
 // processes share; tests make them tiny, so that a scene of a few boxes takes every path. A test may lower a value to 1
 // unless its comment says otherwise. Values that size an array must not be raised.
 //
-// Constants elsewhere: those of a file or memory format (recordings, the layout that workers share, codes and keys),
-// the widths of registers, the arithmetic of rounding, how far ahead memory is prefetched, and times (timeouts, polls).
+// Constants that stand elsewhere, with their reasons:
+//   formats of files and memory (recordings, what workers share, codes, keys, blocks of two cache lines): layout, not choice
+//   widths of registers, the arithmetic of rounding, 8 entries a box: proofs depend on them
+//   how far ahead memory is prefetched, how much is committed at once: no path depends on them
+//   weights that share out work among ranks (engine/mpi/octant_owners.cpp): any weights give the same result
+//   timeouts, polls, retries of worker processes: tests of faults have plans of their own
+//   what measured seconds decide (scene/scene_step.cpp): Scene::step switches it off
 #pragma once
 
 #include <cstddef>

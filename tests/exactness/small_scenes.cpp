@@ -1,5 +1,7 @@
 #include "exactness/small_scenes.hpp"
 
+#include <cstdio>
+
 #include "exactness/tiny_tuning.hpp"
 #include "samples/random.hpp"
 #include "support/families.hpp"
@@ -49,7 +51,9 @@ void reset_test_hooks() {
 std::string paths_not_taken(std::initializer_list<Path> paths) {
     std::string names;
     for (const Path path : paths) {
-        if (test_hooks().paths[std::size_t(path)] == 0) names.append(" ").append(path_names[std::size_t(path)]);
+        const std::uint64_t taken = test_hooks().paths[std::size_t(path)];
+        std::printf("%-24s %12llu\n", path_names[std::size_t(path)].data(), static_cast<unsigned long long>(taken));
+        if (taken == 0) names.append(" ").append(path_names[std::size_t(path)]);
     }
     return names;
 }

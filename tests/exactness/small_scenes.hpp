@@ -39,7 +39,7 @@ std::optional<Finding> check_small_cases(const SceneRange& seeds, const EngineFo
 /// Counters of paths from 0 on, the usual tuning, no fault: also of processes that share a file.
 void reset_test_hooks();
 
-/// The names of those of these paths that were never taken.
+/// The names of those of these paths that were never taken. Prints how often each was.
 std::string paths_not_taken(std::initializer_list<Path> paths);
 
 #endif
