@@ -40,7 +40,7 @@ std::unique_ptr<ResultCheck> make_ascending_check(const RowPass& pass);
 
 /// Any order. Each pair is judged by the pair rule when it is taken, so that one that does not belong is named at once.
 /// For each object the number of its pairs and a sum (mod 2^64) of hashes of their b are compared at the end: pairs that
-/// are missing or were given twice pass unseen with a probability of 2^-64 an object. Of a truncated result an object's pairs
+/// are missing or were given twice pass unseen with a probability of 2^-128. Of a truncated result an object's pairs
 /// may be fewer, and then those given twice are found if the limit is at most 2^20 or one pair an object: all are kept.
 /// Memory: 12 bytes an object, and what is kept.
 std::unique_ptr<ResultCheck> make_set_check(const RowPass& pass, std::optional<std::uint64_t> limit);

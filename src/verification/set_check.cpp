@@ -1,4 +1,5 @@
-// Any order: each pair is judged alone, and each object's pairs are counted and summed up.
+// Any order: each pair is judged alone. Each object's pairs are counted and hashed, which names what differs; all pairs have
+// a hash of 128 bits, which decides. The hashes are sums, so the order of the pairs does not matter.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -14,13 +15,40 @@ namespace {
 constexpr std::size_t pairs_a_task = 1 << 12;
 constexpr std::uint64_t most_kept = 1 << 20;  // or one a row
 
-/// A hash of b whose sums tell sets apart (the finaliser of splitmix64, by Steele, Lea and Flood 2014).
-std::uint64_t hash_of(std::uint32_t b) {
-    std::uint64_t z = (std::uint64_t(b) + 1) * 0x9e3779b97f4a7c15u;
+/// The finaliser of splitmix64, by Steele, Lea and Flood 2014.
+std::uint64_t mixed(std::uint64_t z) {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
 }
+
+/// A hash of b whose sums tell sets apart.
+std::uint64_t hash_of(std::uint32_t b) { return mixed((std::uint64_t(b) + 1) * 0x9e3779b97f4a7c15u); }
+
+/// A hash of a set of pairs: two sums mod 2^64 of independent hashes of each pair.
+struct SetSum {
+    std::uint64_t first = 0, second = 0;
+
+    void add(const Pair& pair) {
+        const std::uint64_t once = mixed((std::uint64_t(pair.a) << 32 | pair.b) + 0x9e3779b97f4a7c15u);
+        first += once;
+        second += mixed(once ^ 0xd1b54a32d192ed03u);
+    }
+    bool operator==(const SetSum&) const = default;
+};
+
+/// A SetSum that several threads add to.
+class SharedSetSum {
+public:
+    void add(const SetSum& part) {
+        first_.fetch_add(part.first, std::memory_order_relaxed);
+        second_.fetch_add(part.second, std::memory_order_relaxed);
+    }
+    SetSum get() const { return {first_, second_}; }
+
+private:
+    std::atomic<std::uint64_t> first_ = 0, second_ = 0;
+};
 
 /// The pairs of an object.
 struct RowSum {
@@ -53,6 +81,9 @@ public:
         std::atomic<std::size_t> wrong = pairs.size();
         pass_.team().for_each((pairs.size() + pairs_a_task - 1) / pairs_a_task, [&](std::size_t task, unsigned) {
             const std::size_t end = std::min(pairs.size(), (task + 1) * pairs_a_task);
+            SetSum part;
+            for (std::size_t i = task * pairs_a_task; i < end; ++i) part.add(pairs[i]);
+            given_.add(part);
             for (std::size_t i = task * pairs_a_task; i < std::min(end, wrong.load(std::memory_order_relaxed)); ++i) {
                 if (take_one(pairs[i], i > 0 ? pairs[i - 1] : last_)) continue;
                 for (std::size_t least = wrong; i < least && !wrong.compare_exchange_weak(least, i);) {
@@ -67,14 +98,21 @@ public:
     void finish(const CallEnd& end) override {
         if (end.truncated) find_twice();
         std::atomic<std::uint64_t> all = 0;
+        SharedSetSum expected_sum;
         const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> columns) -> Fault {
             const RowSum expected = sum_of(columns);
             const RowSum given{pairs_[a], hashes_[a]};
             all.fetch_add(expected.pairs, std::memory_order_relaxed);
+            SetSum part;
+            for (const std::uint32_t b : columns) part.add({a, b});
+            expected_sum.add(part);
             if (given == expected || (end.truncated && given.pairs < expected.pairs)) return {};
             return fault_of_row(a, {columns.begin(), columns.end()}, end);
         };
         if (Fault fault = pass_.run({0, pass_.rows().rows()}, Columns::any, compare)) throw_verification_failed(*fault);
+        if (!end.truncated && expected_sum.get() != given_.get()) {
+            throw_verification_failed("the set of pairs has another hash than the set that the second algorithm finds");
+        }
         if (end.truncated && all <= end.pairs) {
             throw_verification_failed("the result is said to be truncated, but no further pair exists");
         }
@@ -147,6 +185,7 @@ private:
     const RowPass& pass_;
     std::vector<std::uint32_t> pairs_;   // given, of each object as a
     std::vector<std::uint64_t> hashes_;  // of their b, summed up
+    SharedSetSum given_;
     std::optional<Pair> last_;
     bool keeps_;
     std::vector<Pair> kept_;  // all, of a result with a small limit
