@@ -116,6 +116,9 @@ struct Tuning {
         std::size_t kept_regions = 4;             ///< held by lists; further lists get copies
         std::uint64_t ring_block = 1 << 15;       ///< pairs of a block of a stream, at most
         unsigned blocks_at_once = 16;             ///< that the client takes before it looks at other things
+        /// Bytes of the arena for each entry of a nested octree that workers share: a bound for homes (4), ghosts (32) and
+        /// sorted entries (9 * 32), rounded up for the counts of octants. Must not be lowered.
+        std::uint64_t nested_bytes = 512;
     } processes;
 
     /// MPI ranks (engine/mpi/).

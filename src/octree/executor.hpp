@@ -10,9 +10,12 @@
 #include <functional>
 #include <span>
 
+#include "base/memory.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
+
+class Executor;
 
 /// Where one share's pairs go, in order. One thread at a time.
 class PairWriter {
@@ -24,6 +27,13 @@ public:
     virtual void write_count(std::uint64_t pairs) = 0;
 };
 
+/// Which executor builds an octree, and in which pages.
+struct BuildPlace {
+    Executor& executor;
+    PageSource& pages;
+    PageSource& scratch;  ///< for data that nobody reads after the sort
+};
+
 class Executor {
 public:
     virtual ~Executor() = default;
@@ -33,6 +43,10 @@ public:
     virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
     /// The same, with pairs: those of share i come before those of share i + 1.
     virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) = 0;
+    /// Returns where a scan with this executor builds a nested octree of `entries` entries: usually with this executor, in
+    /// memory of this process. Processes that scan together must make the same calls, and get the same kind of place.
+    /// The executor returned is valid until the next call.
+    virtual BuildPlace build_place([[maybe_unused]] std::size_t entries) { return {*this, own_pages(), own_pages()}; }
 };
 
 /// For steps that write no pairs.

@@ -236,8 +236,9 @@ private:
             return false;
         }
         const EntriesOf entries(join);
-        LinearOctree octree;
-        octree.build(entries, executor_, context_.stop);
+        const BuildPlace place = executor_.build_place(entries.size());
+        LinearOctree octree(place.pages, place.scratch);
+        octree.build(entries, place.executor, context_.stop);
         if (!thins(octree, entries.size())) return false;
         ScanContext within = context_;
         ++within.nesting;

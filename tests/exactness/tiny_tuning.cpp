@@ -165,6 +165,7 @@ Tuning tiny_tuning(std::uint64_t seed) {
     shrink(tuning.ranks, to);
     shrink(tuning.scene, to);
     if (seed % 3 == 0) favour_crowds(tuning);
+    if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds them for itself
     return tuning;
 }
 

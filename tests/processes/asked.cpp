@@ -20,7 +20,26 @@ Options options_of(const Asked& asked) {
     return options;
 }
 
+/// Clusters, all of them in a part of the world that is smaller than the smallest octant.
+std::vector<Box3f> tiny_clusters(std::uint64_t objects, std::uint64_t seed) {
+    constexpr float part = 0x1p-27F;
+    std::vector<Box3f> boxes = make_boxes("clustered", objects, seed);
+    for (Box3f& box : boxes) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            box.min[axis] *= part;
+            box.max[axis] *= part;
+        }
+    }
+    return boxes;
+}
+
 std::vector<Box3f> boxes_of(const std::string& kind, std::uint64_t objects, std::uint64_t seed) {
+    if (kind == "speck") {
+        std::vector<Box3f> boxes = make_boxes("uniform", objects / 8, seed);
+        const std::vector<Box3f> speck = tiny_clusters(objects - objects / 8, seed);
+        boxes.insert(boxes.end(), speck.begin(), speck.end());
+        return boxes;
+    }
     if (kind != "crowd") return make_boxes(kind, objects, seed);
     std::vector<Box3f> boxes = make_boxes("uniform", objects - objects / 40, seed);
     const std::vector<Box3f> crowd = make_boxes("coincident", objects / 40, seed);

@@ -33,7 +33,8 @@ struct Scene {
     std::vector<Box3d> wide_first, wide_second;
     std::vector<double> padding;
 
-    /// `kind`: of samples, or "crowd", where one of 40 objects is in one place.
+    /// `kind`: of samples; "crowd", where one of 40 objects is in one place; or "speck", where 7 of 8 objects are in one
+    /// octant, which is large enough from 38,000 objects on for workers to share its nested octree.
     Scene(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
     Objects objects(const Asked& asked) const;
     Objects others(const Asked& asked) const;

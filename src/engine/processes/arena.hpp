@@ -18,6 +18,8 @@ public:
     void commit(void* memory, std::size_t bytes) override { memory_.commit(offset(memory), bytes); }
     void free(void*, std::size_t) noexcept override {}
 
+    /// Number of bytes that can still be reserved.
+    std::uint64_t left() const { return memory_.size() - used_; }
     /// How much is reserved, and back to that.
     std::uint64_t mark() const { return used_; }
     void rewind(std::uint64_t mark) { used_ = mark; }

@@ -5,8 +5,11 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 
+#include "base/test_hooks.hpp"
 #include "base/timed.hpp"
+#include "base/tuning.hpp"
 #include "engine/processes/shared_buckets.hpp"
 #include "engine/processes/sorted_lists.hpp"
 #include "octopair/error.hpp"
@@ -134,12 +137,15 @@ private:
     std::size_t step_ = 0;
 };
 
-/// Shares out what writes pairs. What prepares that, in a crowded octant, each worker does for itself: it is a function
-/// of the octree, which stays as it is, so that a worker that takes over finds the same.
+/// Shares out the steps that write pairs, and those that build the nested octrees of large octants. Each worker sorts and
+/// measures sets of boxes for itself: the results are functions of the octrees, which no longer change, so a replacement
+/// worker computes the same.
 class WorkerProgram::ScanExecutor final : public Executor {
 public:
-    ScanExecutor(ShareOut& shares, unsigned width, ShareOutput& output)
-        : shares_(shares), width_(width), output_(output) {}
+    /// Borrows all. `arena`: pages for nested octrees. It is not rewound before the pass ends: a worker that is slow, or
+    /// takes over, still reads octrees that others no longer need.
+    ScanExecutor(ShareOut& shares, unsigned width, ShareOutput& output, Arena& arena)
+        : shares_(shares), width_(width), output_(output), arena_(arena) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
         for (std::size_t i = 0; i < count; ++i) body(i);
@@ -156,11 +162,25 @@ public:
             output_.end(task);
         });
     }
+    BuildPlace build_place(std::size_t entries) override {
+        if (!worth_sharing(entries)) return Executor::build_place(entries);
+        count_path(Path::nested_shared);
+        return {build_.emplace(shares_, width_, false), arena_, arena_};
+    }
 
 private:
+    /// Whether to build a nested octree in the arena. All workers of the pass decide alike: the arguments are the same,
+    /// and all have reserved the same.
+    bool worth_sharing(std::size_t entries) const {
+        const bool several_blocks = width_ > 1 && entries / tuning().build.least_block > 1;
+        return several_blocks && entries <= arena_.left() / tuning().processes.nested_bytes;
+    }
+
     ShareOut& shares_;
     unsigned width_;
     ShareOutput& output_;
+    Arena& arena_;
+    std::optional<BuildExecutor> build_;  // of the nested octree that is being built
 };
 
 void WorkerProgram::run(const Pass& pass, const ShareOut::Self& self, std::stop_token stop) {
@@ -261,7 +281,7 @@ void WorkerProgram::scan(const Context& context) {
 }
 
 void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {
-    ScanExecutor executor(context.shares, context.pass.workers, output);
+    ScanExecutor executor(context.shares, context.pass.workers, output, job_->arena);
     octopair::scan(job_->octree, {job_->source, context.stop}, executor,
                    [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
 }
