@@ -98,6 +98,7 @@ TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
         Asked{.how = How::stream, .order = Order::octal},
         Asked{.how = How::stream, .order = Order::ascending, .windows = true}, Asked{.how = How::count}};
     std::vector<Answer> expected;
+    expected.reserve(calls.size());
     for (const Asked& asked : calls) expected.push_back(testing::ask(*local, scene, asked));
     const std::vector<Fault> faults = nested_faults();
     for (std::size_t i = 0; i < faults.size(); ++i) {
