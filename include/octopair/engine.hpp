@@ -53,12 +53,12 @@ struct StepSeconds {
     double encode = 0, sort = 0, merge = 0, scan = 0;
 };
 
-/// What Options::verify did.
+/// Outcome of Options::verify.
 struct Verification {
     bool done = false;   ///< the result was checked, and no difference was found
     double seconds = 0;  ///< wall clock; not part of the seconds of the call
-    /// What could not be checked of this result, for people; empty: nothing. In octal order the order itself, and with a
-    /// limit which pairs are the first; of a count, the pairs. A static text.
+    /// Static text for users that names the properties which were not checked; empty if all were. Examples: the order of the
+    /// pairs in octal order, which pairs are the first under a limit, which pairs were counted.
     std::string_view not_checked = {};
 };
 

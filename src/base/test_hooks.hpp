@@ -2,7 +2,7 @@
 //
 // Only a build with OCTOPAIR_TEST_HOOKS has them; elsewhere count_path() and planted() are empty constants that the
 // compiler removes. The state, one TestHooks, lies in a file that processes share if OCTOPAIR_TEST_HOOKS_FILE names one:
-// so the worker processes of a test use its tuning and faults, and it counts their paths.
+// then worker processes of a test use its tuning and its fault, and their paths are counted with its own.
 #pragma once
 
 #include <array>
@@ -82,7 +82,7 @@ enum class Fault : unsigned {
 };
 inline constexpr unsigned fault_count = 11;
 
-/// What tests set and read. Trivial but for the counters, so that it can lie in a file.
+/// State that tests set and read. It holds no pointers, so it can lie in a file that processes share.
 struct TestHooks {
     Tuning tuning;
     Fault fault = Fault::none;
@@ -91,8 +91,8 @@ struct TestHooks {
 
 #ifdef OCTOPAIR_TEST_HOOKS
 inline constexpr bool has_test_hooks = true;
-/// Of this process and those that share its file. Throws std::system_error if the file cannot be used.
-/// Thread safety: set nothing during a call.
+/// Returns the state of this process and of those that share its file. Throws: std::system_error if that file fails.
+/// Thread safety: counters may be read at any time; change tuning and fault only between calls.
 TestHooks& test_hooks();
 /// Counts that a path was taken. Thread-safe.
 void count_path(Path path);

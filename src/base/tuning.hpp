@@ -3,7 +3,7 @@
 // The values were found by measurement on the scenes of docs/scenes.md. They change times, memory and the octal order,
 // never the set of pairs or the ascending order.
 //
-// A release knows the values when it is compiled, so asking for them costs nothing. A build with test hooks
+// In a release the values are constants of the compiler, so reading them costs nothing. A build with test hooks
 // (OCTOPAIR_TEST_HOOKS, test_hooks.hpp) reads them from memory that tests change between calls, and that worker
 // processes share; tests make them tiny, so that a scene of a few boxes takes every path. A test may lower a value to 1
 // unless its comment says otherwise. Values that size an array must not be raised.
@@ -22,7 +22,7 @@
 
 namespace octopair {
 
-/// What decides whether a scene step searches around what changed, or everything.
+/// How a scene step chooses between a search around changed objects and a full one.
 enum class StepChoice : std::uint8_t { measured, full, incremental };
 
 struct Tuning {
@@ -60,7 +60,7 @@ struct Tuning {
         std::size_t hot_node = 4096;      ///< entries: swept at once where the first axis does
         std::uint64_t good_window = 192;  ///< tests a box
         double largest_part = 0.75;       ///< of the entries that one octant of a nested octree may hold
-        double most_growth = 4;           ///< entries of all nested octrees for each entry of the outermost octant
+        double most_growth = 4;           ///< of entries in nested octrees, multiplied along a path of nesting
         unsigned most_nesting = 8;        ///< octrees within octants of octrees
     } scan;
 
@@ -98,7 +98,7 @@ struct Tuning {
     struct Output {
         std::uint64_t least_buffer = 1 << 20;  ///< bytes: what Options::buffer_bytes is raised to
         std::size_t batch = 1 << 13;           ///< small batches are put together before a sink gets them
-        std::size_t handed_out = 1 << 16;      ///< at a time, so that progress is told in small steps
+        std::size_t handed_out = 1 << 16;      ///< at a time, so that progress grows in small steps
         std::size_t list_block = 1 << 15;      ///< of a PairList; at least 64 pages
         std::size_t page = 512;                ///< of a bucket of the ascending order
         unsigned bucket_row_bits = 12;         ///< objects of a bucket, as a power of two
@@ -153,7 +153,7 @@ struct Tuning {
 inline constexpr Tuning default_tuning;
 
 #ifdef OCTOPAIR_TEST_HOOKS
-/// What tests have set; otherwise default_tuning. Must not change during a call.
+/// Returns the values that tests have set; at first, default_tuning. They must not change during a call.
 const Tuning& tuning();
 #else
 constexpr const Tuning& tuning() { return default_tuning; }

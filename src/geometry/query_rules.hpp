@@ -1,4 +1,4 @@
-// What a query finds: the rules of queries.hpp, of one box. Those of distances are in box_distance.hpp.
+// The rules of queries.hpp for one box: overlaps and ray hits. Rules about distances are in box_distance.hpp.
 #pragma once
 
 #include <algorithm>

@@ -41,7 +41,7 @@ struct ScanContext {
     const PairRule& rule;
     std::stop_token stop;
     unsigned nesting = 0;  ///< octrees that hold the octant which the scanned octree is made of
-    double growth = 1;     ///< entries of the scanned octree for each entry of the outermost one
+    double growth = 1;     ///< product of entries / objects of the octrees around, up to the outermost
     std::optional<OutermostOctant> outermost = {};  ///< with test hooks
 };
 

@@ -23,7 +23,7 @@ constexpr double most_patience = 4;  // may the search take, where it turns out 
 constexpr double least_patience = 0.02;  // seconds beside, in which others may have had the processor
 constexpr double guessed_cost = 10;      // of an object that changed, in those of one in a full detection
 
-/// What measured seconds say, unless tuning says otherwise.
+/// Returns the choice that measured seconds suggest, unless tuning forces another one.
 bool is_wanted_incremental(bool measured) {
     const StepChoice choice = tuning().scene.step;
     return choice == StepChoice::measured ? measured : choice == StepChoice::incremental;

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t pairs_at_once = 1 << 16;
 
 /// The first difference between the pairs of a row, both ascending. `given` is the beginning of a row if `prefix`.
-Fault difference(std::uint32_t a, std::span<const std::uint32_t> expected, std::span<const Pair> given,
-                 bool prefix = false) {
+ResultFault difference(std::uint32_t a, std::span<const std::uint32_t> expected, std::span<const Pair> given,
+                       bool prefix = false) {
     std::size_t i = 0;
     while (i < given.size() && i < expected.size() && given[i].b == expected[i]) ++i;
     if (i == given.size()) {
@@ -64,7 +64,7 @@ private:
             const auto [begin, after] = std::equal_range(held_.begin(), held_.end(), Pair{a, 0}, by_row);
             return difference(a, expected, {begin, after});
         };
-        if (Fault fault = pass_.run({next_row_, end}, Columns::ascending, compare)) {
+        if (ResultFault fault = pass_.run({next_row_, end}, Columns::ascending, compare)) {
             throw_verification_failed(*fault);
         }
         next_row_ = end;
@@ -79,13 +79,13 @@ private:
                 more = expected.size() > held_.size();
                 return difference(a, expected, held_, true);
             };
-            if (Fault fault = pass_.run({last_->a, last_->a + 1}, Columns::ascending, compare)) {
+            if (ResultFault fault = pass_.run({last_->a, last_->a + 1}, Columns::ascending, compare)) {
                 throw_verification_failed(*fault);
             }
         }
         const auto look = [&](std::uint32_t, std::span<const std::uint32_t> columns) {
             if (!columns.empty()) more = true;
-            return Fault();
+            return ResultFault();
         };
         constexpr std::uint32_t rows_at_once = 1 << 12;
         const std::uint32_t rows = pass_.rows().rows();

@@ -19,7 +19,7 @@ public:
         (void)pass_.run({0, pass_.rows().rows()}, Columns::any,
                         [&](std::uint32_t, std::span<const std::uint32_t> columns) {
                             all.fetch_add(columns.size(), std::memory_order_relaxed);
-                            return Fault();
+                            return ResultFault();
                         });
         if (end.truncated ? all > end.pairs : all == end.pairs) return;
         throw_verification_failed(std::to_string(end.pairs) + (end.truncated ? " pairs and more" : " pairs") +

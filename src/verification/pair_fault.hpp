@@ -1,4 +1,4 @@
-// What can be wrong with a pair of a result, and how messages name it.
+// Faults of a result that concern one pair, and their messages.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace octopair {
 
-/// What is wrong, for people; none: nothing.
-using Fault = std::optional<std::string>;
+/// Message for users that describes a fault of a result; none if there is no fault.
+using ResultFault = std::optional<std::string>;
 
-/// Throws Error{engine_failed} with these words.
-[[noreturn]] void throw_verification_failed(const std::string& words);
+/// Throws: Error{engine_failed} with this message.
+[[noreturn]] void throw_verification_failed(const std::string& message);
 
 /// "pair (12, 40)"
 std::string name_of_pair(const Pair& pair);
 
-/// Whether the numbers of a pair are those of two objects: a < rows, b < columns, and a < b within one set.
+/// Returns whether both numbers of a pair name objects: a < rows, b < columns, and a < b within one set.
 bool has_position(const RowSearch& rows, const Pair& pair);
-/// Says why a pair has none. Requires: has_position() is false.
+/// Returns a message that says why has_position() is false. Requires: it is.
 std::string fault_of_position(const RowSearch& rows, const Pair& pair);
 
 }  // namespace octopair

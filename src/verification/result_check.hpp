@@ -30,7 +30,7 @@ public:
     virtual void take(std::span<const Pair> pairs) = 0;
     /// Call once, after the last pair.
     virtual void finish(const CallEnd& end) = 0;
-    /// What this check cannot find in such a result, for people; empty: nothing.
+    /// Returns text for users that names what this check cannot find in such a result; empty if it finds everything.
     virtual std::string_view not_checked(const CallEnd& end) const = 0;
 };
 

@@ -25,12 +25,12 @@ public:
     }
     /// Exclusive upper bound of the rows whose faults count.
     std::uint64_t row() const { return row_.load(std::memory_order_relaxed); }
-    Fault take() { return std::move(fault_); }
+    ResultFault take() { return std::move(fault_); }
 
 private:
     std::mutex mutex_;
     std::atomic<std::uint64_t> row_ = ~std::uint64_t(0);
-    Fault fault_;
+    ResultFault fault_;
 };
 
 }  // namespace
@@ -38,14 +38,14 @@ private:
 RowPass::RowPass(const RowSearch& rows, Team& team, std::stop_token stop, const ProgressSink& progress)
     : rows_(rows), team_(team), stop_(std::move(stop)), progress_(progress) {}
 
-Fault RowPass::run(const RowRange& range, Columns order, const Visit& visit) const {
+ResultFault RowPass::run(const RowRange& range, Columns order, const Visit& visit) const {
     LowestFault lowest;
     std::vector<std::vector<std::uint32_t>> columns(team_.threads());
     const auto visit_block = [&](std::uint64_t begin, std::uint64_t end, std::vector<std::uint32_t>& row) {
         for (std::uint64_t a = begin; a < std::min(end, lowest.row()); ++a) {
             throw_if_stopped(stop_);
             order == Columns::ascending ? rows_.row(std::uint32_t(a), row) : rows_.unordered_row(std::uint32_t(a), row);
-            if (Fault fault = visit(std::uint32_t(a), row)) lowest.report(a, std::move(*fault));
+            if (ResultFault fault = visit(std::uint32_t(a), row)) lowest.report(a, std::move(*fault));
         }
     };
     const std::uint64_t wave_rows = std::uint64_t(block_rows) * 64 * team_.threads();
@@ -55,7 +55,7 @@ Fault RowPass::run(const RowRange& range, Columns order, const Visit& visit) con
             const std::uint64_t block = begin + i * block_rows;
             visit_block(block, std::min(end, block + block_rows), columns[worker]);
         });
-        if (Fault fault = lowest.take()) return fault;
+        if (ResultFault fault = lowest.take()) return fault;
         if (progress_) progress_(double(end) / double(rows_.rows()));
     }
     return {};

@@ -31,11 +31,11 @@ public:
     const RowSearch& rows() const { return rows_; }
     Team& team() const { return team_; }
 
-    /// What is done with a row; called on several threads at once.
-    using Visit = std::function<Fault(std::uint32_t a, std::span<const std::uint32_t> columns)>;
+    /// Handles one row. Called on several threads at once.
+    using Visit = std::function<ResultFault(std::uint32_t a, std::span<const std::uint32_t> columns)>;
     /// Visits the rows of a range, each with its columns, in the order asked for. Rows after one with a fault may be left
     /// out. Returns the fault of the lowest row. Throws: Error{cancelled}.
-    Fault run(const RowRange& range, Columns order, const Visit& visit) const;
+    ResultFault run(const RowRange& range, Columns order, const Visit& visit) const;
 
 private:
     const RowSearch& rows_;

@@ -99,7 +99,7 @@ public:
         if (end.truncated) find_twice();
         std::atomic<std::uint64_t> all = 0;
         SharedSetSum expected_sum;
-        const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> columns) -> Fault {
+        const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> columns) -> ResultFault {
             const RowSum expected = sum_of(columns);
             const RowSum given{pairs_[a], hashes_[a]};
             all.fetch_add(expected.pairs, std::memory_order_relaxed);
@@ -109,7 +109,8 @@ public:
             if (given == expected || (end.truncated && given.pairs < expected.pairs)) return {};
             return fault_of_row(a, {columns.begin(), columns.end()}, end);
         };
-        if (Fault fault = pass_.run({0, pass_.rows().rows()}, Columns::any, compare)) throw_verification_failed(*fault);
+        if (ResultFault fault = pass_.run({0, pass_.rows().rows()}, Columns::any, compare))
+            throw_verification_failed(*fault);
         if (!end.truncated && expected_sum.get() != given_.get()) {
             throw_verification_failed("the set of pairs has another hash than the set that the second algorithm finds");
         }
@@ -125,7 +126,7 @@ public:
     }
 
 private:
-    /// What the sums of an incomplete row do not show.
+    /// Finds pairs that were given twice: the sums of an incomplete row do not show them.
     void find_twice() {
         std::sort(kept_.begin(), kept_.end());
         const auto twice = std::adjacent_find(kept_.begin(), kept_.end());

@@ -13,7 +13,7 @@
 
 namespace octopair {
 
-/// What is compared with the second algorithm.
+/// The kind of result that is compared with the second algorithm.
 enum class ResultKind : std::uint8_t { ascending, octal, count };
 
 class Verifier {

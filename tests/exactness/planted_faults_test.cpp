@@ -2,6 +2,7 @@
 // how many scenes.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <ostream>
 
@@ -45,17 +46,21 @@ TEST_P(PlantedFault, IsFound) {
                 checks.c_str());
 }
 
-INSTANTIATE_TEST_SUITE_P(, PlantedFault,
-                         ::testing::Values(Planted{"begins_bit_cleared", Fault::begins_bit_cleared},
-                                           Planted{"octant_border_open", Fault::octant_border_open},
-                                           Planted{"window_end_open", Fault::window_end_open},
-                                           Planted{"tile_end_open", Fault::tile_end_open},
-                                           Planted{"handed_to_wrong_child", Fault::handed_to_wrong_child},
-                                           Planted{"nested_frame_moved", Fault::nested_frame_moved},
-                                           Planted{"stream_windows_overlap", Fault::stream_windows_overlap},
-                                           Planted{"sweep_repeats_block", Fault::sweep_repeats_block},
-                                           Planted{"part_joined_twice", Fault::part_joined_twice}),
-                         name_of);
+constexpr auto planted_here = std::to_array<Planted>({
+    {"begins_bit_cleared", Fault::begins_bit_cleared},
+    {"octant_border_open", Fault::octant_border_open},
+    {"window_end_open", Fault::window_end_open},
+    {"tile_end_open", Fault::tile_end_open},
+    {"handed_to_wrong_child", Fault::handed_to_wrong_child},
+    {"nested_frame_moved", Fault::nested_frame_moved},
+    {"stream_windows_overlap", Fault::stream_windows_overlap},
+    {"sweep_repeats_block", Fault::sweep_repeats_block},
+    {"part_joined_twice", Fault::part_joined_twice},
+});
+// Beside these, tests/mpi plants the fault of a rank, and the first value is no fault.
+static_assert(planted_here.size() + 2 == fault_count);
+
+INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), name_of);
 
 }  // namespace
 }  // namespace octopair

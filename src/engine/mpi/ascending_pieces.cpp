@@ -12,8 +12,6 @@
 
 namespace octopair {
 
-namespace {}  // namespace
-
 PiecePlan::PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, const PieceGrid& grid)
     : bins_(bins),
       grid_(grid),

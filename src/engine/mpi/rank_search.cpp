@@ -431,7 +431,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
 
 /// To found_; false, with nothing found, where there are more.
 bool RankSearch::list_octal(Call& call, std::uint64_t most) {
-    // Memory that an earlier call left would not be asked for, and so not be bounded.
+    // A list that keeps memory from an earlier call fills it unasked, so its size would not be bounded.
     if (most < ~std::uint64_t(0)) found_ = PairList();
     PairList::Storage& list = found_.storage();
     std::uint64_t bytes = 0;
