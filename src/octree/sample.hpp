@@ -10,10 +10,9 @@ namespace octopair {
 /// does not fool the sample; fixed, so that it is a function of the size alone.
 class Sample {
 public:
-    /// About one of `stride`, but at most `most`.
+    /// About one of `stride` (1 or more), but at most `most`.
     Sample(std::size_t size, std::size_t stride, std::size_t most) : size_(size) {
         stride_ = stride > size / most ? stride : size / most;
-        if (stride_ == 0) stride_ = 1;
     }
 
     std::size_t size() const { return (size_ + stride_ - 1) / stride_; }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <random>
+#include <stop_token>
 
 #include "geometry/box_source.hpp"
+#include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/mutable_octree.hpp"
 #include "support/kinds.hpp"
@@ -19,17 +21,21 @@ bool overlap(const CellBox& a, const CellBox& b) {
     return true;
 }
 
+LinearOctree linear_octree_of(const std::vector<Box3f>& boxes) {
+    const Objects objects{std::span<const Box3f>(boxes)};
+    const BoxSource source(objects, nullptr, 0);
+    NoPairs none;
+    SerialExecutor executor(none);
+    LinearOctree octree;
+    octree.build(source, executor, {});
+    return octree;
+}
+
 /// An octree, and the cells of what is in it.
 class Changing {
 public:
     explicit Changing(const std::vector<Box3f>& boxes) {
-        const Objects objects{std::span<const Box3f>(boxes)};
-        const BoxSource source(objects, nullptr, 0);
-        NoPairs none;
-        SerialExecutor executor(none);
-        LinearOctree linear;
-        linear.build(source, executor, {});
-        octree_.build(linear, {});
+        octree_.build(linear_octree_of(boxes), {});
         cells_.resize(boxes.size());
         octree_.frame().cells(boxes, cells_);
         here_.assign(boxes.size(), true);
@@ -106,6 +112,23 @@ INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(testing::
 
 TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     MutableOctree octree;
+    std::vector<std::uint32_t> found;
+    octree.search({}, found);
+    EXPECT_TRUE(found.empty());
+}
+
+TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
+    const LinearOctree linear = linear_octree_of(testing::make_boxes("uniform", 1000, 1));
+    std::stop_source stop;
+    stop.request_stop();
+    MutableOctree octree;
+    octree.build(linear, {});
+    try {
+        octree.build(linear, stop.get_token());
+        FAIL() << "it went on";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
     std::vector<std::uint32_t> found;
     octree.search({}, found);
     EXPECT_TRUE(found.empty());

@@ -41,6 +41,7 @@ public:
     ~SceneServer() {
         go();
         std::filesystem::remove(path_);
+        std::filesystem::remove(path_.string() + ".lock");
     }
 
     std::string address() const { return "unix:" + path_.string(); }
