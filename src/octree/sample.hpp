@@ -10,7 +10,7 @@ namespace octopair {
 /// does not fool the sample; fixed, so that it is a function of the size alone.
 class Sample {
 public:
-    /// About one of `stride` (1 or more), but at most `most`.
+    /// About one position of each `stride`, but at most about `most`. Requires: `stride` and `most` are 1 or more.
     Sample(std::size_t size, std::size_t stride, std::size_t most) : size_(size) {
         stride_ = stride > size / most ? stride : size / most;
     }

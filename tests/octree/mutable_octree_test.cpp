@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <random>
 #include <stop_token>
+#include <thread>
 
 #include "geometry/box_source.hpp"
 #include "octopair/error.hpp"
@@ -117,21 +119,43 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     EXPECT_TRUE(found.empty());
 }
 
-TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
-    const LinearOctree linear = linear_octree_of(testing::make_boxes("uniform", 1000, 1));
+/// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether it was cancelled.
+bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, MutableOctree& octree) {
     std::stop_source stop;
-    stop.request_stop();
-    MutableOctree octree;
-    octree.build(linear, {});
+    if (delay.count() == 0) stop.request_stop();
+    std::jthread clock([&, until = std::chrono::steady_clock::now() + delay] {
+        std::this_thread::sleep_until(until);
+        stop.request_stop();
+    });
     try {
         octree.build(linear, stop.get_token());
-        FAIL() << "it went on";
+        return false;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
+        return true;
     }
-    std::vector<std::uint32_t> found;
-    octree.search({}, found);
-    EXPECT_TRUE(found.empty());
+}
+
+TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
+    constexpr unsigned moments = 12;
+    const std::vector<Box3f> boxes = testing::make_boxes("uniform", 50'000, 1);
+    const LinearOctree linear = linear_octree_of(boxes);
+    MutableOctree octree;
+    const auto begin = std::chrono::steady_clock::now();
+    octree.build(linear, {});
+    const auto whole = std::chrono::steady_clock::now() - begin;
+    std::vector<CellBox> cells(boxes.size());
+    octree.frame().cells(boxes, cells);
+    unsigned cancelled = 0;
+    // From before the first octant to about the last.
+    for (unsigned moment = 0; moment < moments; ++moment) {
+        if (!stopped_after(whole * moment / moments, linear, octree)) continue;
+        ++cancelled;
+        std::vector<std::uint32_t> found;
+        for (const CellBox& box : cells) octree.search(box, found);
+        EXPECT_TRUE(found.empty()) << "stopped at moment " << moment << " of " << moments;
+    }
+    EXPECT_GT(cancelled, 0u);
 }
 
 }  // namespace
