@@ -85,12 +85,6 @@ public:
         return node;
     }
 
-    /// Of the octant one level below `level`.
-    static unsigned digit_at(const Cell& cell, unsigned level) {
-        const unsigned bit = deepest - 1 - level;
-        return (cell[0] >> bit & 1u) | (cell[1] >> bit & 1u) << 1 | (cell[2] >> bit & 1u) << 2;
-    }
-
 private:
     NodeIndex append(const Octant& octant, NodeIndex parent, const OctantShape& shape);
     void make_table(const Frame& frame);

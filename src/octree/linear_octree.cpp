@@ -76,10 +76,6 @@ OctantPlan plan_octants(const EntrySource& source, const std::stop_token& stop) 
     return plan_octants(sampled, source.size(), stop);
 }
 
-PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
-    return plan_octants(sampled, objects, stop).planted();
-}
-
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop) {
     return plan_octants(source, stop).planted();
 }

@@ -54,7 +54,6 @@ struct OctantPlan {
 OctantPlan plan_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
 OctantPlan plan_octants(const EntrySource& source, const std::stop_token& stop);
 /// The same, planted.
-PlantedOctants plant_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
 PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop);
 
 class LinearOctree {

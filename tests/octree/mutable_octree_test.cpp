@@ -112,11 +112,24 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
 
+/// Takes every object.
+class TakeAll final : public Probe {
+public:
+    double at_least(const Box3d&) const override { return 0; }
+    double limit() const override { return 0; }
+    void take(std::uint32_t object) override { taken.push_back(object); }
+
+    std::vector<std::uint32_t> taken;
+};
+
 TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     MutableOctree octree;
     std::vector<std::uint32_t> found;
     octree.search({}, found);
     EXPECT_TRUE(found.empty());
+    TakeAll probe;
+    octree.search(probe);
+    EXPECT_TRUE(probe.taken.empty());
 }
 
 /// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether it was cancelled.
