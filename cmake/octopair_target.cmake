@@ -16,6 +16,10 @@ function(octopair_target target)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         # g++ 12 sees overlapping copies in "text" + std::string (GCC bug 105651).
         target_compile_options(${target} PRIVATE -Wno-restrict)
+        if(CMAKE_UNITY_BUILD)
+            # Sources look like headers to it then.
+            target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+        endif()
     endif()
     if(OCTOPAIR_WARNINGS_AS_ERRORS)
         target_compile_options(${target} PRIVATE -Werror)
@@ -28,4 +32,9 @@ function(octopair_target target)
                                                  -fno-sanitize-recover=all)
         target_link_options(${target} PUBLIC -fsanitize=${OCTOPAIR_SANITIZE})
     endif()
+endfunction()
+
+# Sources that are compiled by themselves: those that Highway includes once for each instruction set.
+function(octopair_kernels)
+    set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

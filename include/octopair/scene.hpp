@@ -20,12 +20,12 @@
 
 #include <compare>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "octopair/objects.hpp"
@@ -57,9 +57,9 @@ struct SceneOptions {
     unsigned threads = 0;  ///< 0: one per core
     Precision precision = Precision::float32;
     double margin = 0;  ///< as in Options
-    /// A file that all calls are written to, for `octopair replay` (docs/formats.md); empty: none. One that is there is
+    /// Path of a file that all calls are written to, for `octopair replay` (docs/formats.md); empty: none. One that is there is
     /// emptied. Written before and after each step, never synced; a call that cannot be written throws Error{io_failed}.
-    std::filesystem::path recording = {};
+    std::string recording = {};
     /// Asked before memory is taken for pairs, with its bytes, by any thread, one at a time. What it throws is thrown by the
     /// call that needed the memory, as if there were none. None: only the machine's memory is a limit.
     std::function<void(std::uint64_t bytes)> room_for_pairs = {};

@@ -18,7 +18,7 @@ constexpr std::size_t buffer_bytes = std::size_t(256) << 10;
 
 }  // namespace
 
-Recorder::Recorder(const SceneOptions& options) : path_(options.recording.string()), buffer_(buffer_bytes) {
+Recorder::Recorder(const SceneOptions& options) : path_(options.recording), buffer_(buffer_bytes) {
     // O_NONBLOCK: opening a pipe that nobody reads must not wait; it means nothing for a regular file.
     descriptor_ = Descriptor(::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC | O_NONBLOCK, 0666));
     if (!descriptor_.open()) fail_io(path_, "cannot create", errno);

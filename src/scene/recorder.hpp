@@ -5,7 +5,6 @@
 // each step. Nothing is synced: what was written outlives the process, but maybe not the machine.
 #pragma once
 
-#include <filesystem>
 #include <initializer_list>
 #include <string>
 
