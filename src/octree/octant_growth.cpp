@@ -12,11 +12,11 @@ namespace octopair {
 
 namespace {
 
-using Boxes = SampledOctant::Boxes;
+using SampledBoxes = SampledOctant::Boxes;
 
 /// Gives boxes, all of which touch `octant`, to those of the octants below that they touch; `list` is where.
-void hand_down(const Octant& octant, const Boxes& boxes, std::array<SampledOctant, 8>& below,
-               Boxes SampledOctant::*list) {
+void hand_down(const Octant& octant, const SampledBoxes& boxes, std::array<SampledOctant, 8>& below,
+               SampledBoxes SampledOctant::*list) {
     for (SampledOctant& child : below) (child.*list).reserve(boxes.size() / 6);
     for (const CellBox& box : boxes) {
         for (unsigned touched = octant.touched_below(box); touched != 0; touched &= touched - 1)

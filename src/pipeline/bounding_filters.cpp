@@ -18,7 +18,7 @@
 namespace octopair {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 /// The longest that a pose makes something of length 1, at most: the square root of a norm of its transpose times itself.
 double stretch_of(const Pose& pose) {
@@ -29,7 +29,7 @@ double stretch_of(const Pose& pose) {
             sum += std::fabs(vector::dot(vector::column(pose, i), vector::column(pose, k)));
         most = std::max(most, sum);
     }
-    return std::sqrt(most) * (1 + 4 * epsilon);
+    return std::sqrt(most) * (1 + 4 * rounding);
 }
 
 struct Ball {
@@ -42,7 +42,7 @@ Ball ball_of(const Geometry::Prepared& shape, const Pose& pose) {
     const ShapeBounds& bounds = shape.bounds;
     const double stretch = std::max(stretch_of(pose), shape.convex.radius > 0 ? 1.0 : 0.0);
     Ball ball = {vector::posed(pose, bounds.centre), stretch * bounds.radius, 0};
-    ball.slack = 32 * epsilon *
+    ball.slack = 32 * rounding *
                  (stretch * (vector::length(bounds.centre) + bounds.radius) + vector::length(vector::place(pose)));
     return ball;
 }
@@ -54,7 +54,7 @@ std::array<Point3d, 3> half_edges(const Geometry::Prepared& shape, const Pose& p
     constexpr double off_turn = 4e-6;
     std::array<Point3d, 3> edges;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double half = (box.max[k] / 2 - box.min[k] / 2) * (1 + 4 * epsilon) + off_turn * shape.convex.radius;
+        const double half = (box.max[k] / 2 - box.min[k] / 2) * (1 + 4 * rounding) + off_turn * shape.convex.radius;
         edges[k] = vector::times(vector::column(pose, k), half);
     }
     return edges;
@@ -78,7 +78,7 @@ const shape::Plane* plane_of(const Geometry::Prepared& shape) { return std::get_
 /// Whether a plane is further than `reach` from a ball, or from a box at its centre.
 bool plane_apart(const PosedPlane& plane, const Ball& ball, double thick, double reach) {
     const double height = vector::dot(vector::minus(ball.centre, plane.point), plane.normal);
-    const double slack = 2 * ball.slack + 32 * epsilon * (vector::length(plane.point) + std::fabs(height));
+    const double slack = 2 * ball.slack + 32 * rounding * (vector::length(plane.point) + std::fabs(height));
     return std::fabs(height) - thick - slack > reach;
 }
 
@@ -105,7 +105,7 @@ bool moving_balls_apart(const Couple& couple) {
     const double part = squared > 0 ? std::clamp(-vector::dot(from, way) / squared, 0.0, 1.0) : 0;
     const double nearest = vector::length(vector::plus(from, vector::times(way, part)));
     const double radii = std::max(a.radius, last_a.radius) + std::max(b.radius, last_b.radius);
-    const double slack = 4 * (a.slack + b.slack + last_a.slack + last_b.slack) + 32 * epsilon * std::sqrt(squared);
+    const double slack = 4 * (a.slack + b.slack + last_a.slack + last_b.slack) + 32 * rounding * std::sqrt(squared);
     return nearest - radii - aside - slack > couple.reach;
 }
 

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "baselines/baselines.hpp"
+#include "engine/jobs.hpp"
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
@@ -12,9 +13,8 @@
 namespace octopair {
 namespace {
 
+using testing::objects_of;
 using testing::same_bytes;
-
-Objects objects_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
 
 TEST(EngineCalls, ShortFormIsAscending) {
     const auto boxes = samples::make_scene("dense", 2000, 1);

@@ -16,15 +16,15 @@ using testing::HeldJob;
 using testing::objects_of;
 using testing::touching_boxes;
 
-constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
+constexpr milliseconds answer_time(testing::sanitized ? 3000 : 200);
 
-/// Expects `time` to return at most `patience`, in one of a few attempts: a machine busy with other work delays any
+/// Expects `time` to return at most `answer_time`, in one of a few attempts: a machine busy with other work delays any
 /// thread.
 void expect_soon(const std::function<Clock::duration()>& time) {
     Clock::duration took{};
     for (int attempt = 0; attempt < 3; ++attempt) {
         took = time();
-        if (took <= patience) return;
+        if (took <= answer_time) return;
     }
     ADD_FAILURE() << std::chrono::duration<double>(took).count() << " s";
 }

@@ -12,12 +12,13 @@
 namespace octopair {
 namespace {
 
-constexpr std::uint64_t least_objects = testing::scaled(40'000, 10), most_objects = testing::scaled(200'000, 10);
+constexpr std::uint64_t least_history_objects = testing::scaled(40'000, 10),
+                        most_history_objects = testing::scaled(200'000, 10);
 
 std::uint64_t object_count(std::uint64_t seed) {
     samples::RandomStream random(seed, 4);
-    return std::uint64_t(double(least_objects) *
-                         std::pow(double(most_objects) / double(least_objects), random.uniform()));
+    return std::uint64_t(double(least_history_objects) *
+                         std::pow(double(most_history_objects) / double(least_history_objects), random.uniform()));
 }
 
 TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {

@@ -19,7 +19,7 @@ std::uint64_t pairs_of(const Case& a_case, Engine& engine) {
                          : engine.count_pairs(first, options);
 }
 
-std::uint64_t objects_of(const Case& a_case) {
+std::uint64_t object_count_of(const Case& a_case) {
     return a_case.first.view().size() + (a_case.second ? a_case.second->view().size() : 0);
 }
 
@@ -33,7 +33,7 @@ Case large_case(std::uint64_t i, std::uint64_t least) {
         samples::RandomStream random(seed, 2);
         const auto objects = std::uint64_t(double(least) * (1 + 6 * random.uniform()));
         Case a_case = make_family_case(names[i % names.size()], objects, seed);
-        if (pairs_of(a_case, *engine) <= most_pairs_an_object * objects_of(a_case)) return a_case;
+        if (pairs_of(a_case, *engine) <= most_pairs_an_object * object_count_of(a_case)) return a_case;
     }
 }
 

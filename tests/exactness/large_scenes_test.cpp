@@ -18,15 +18,16 @@ namespace {
 using testing::Calls;
 using testing::Case;
 
-constexpr std::uint64_t usual = testing::scaled(20, 10);
-constexpr std::uint64_t parts = 4;  // of the scenes, so that several processes can share them
+constexpr std::uint64_t usual_scenes = testing::scaled(20, 10);
+constexpr std::uint64_t large_parts = 4;  // of the scenes, so that several processes can share them
 constexpr std::uint64_t least_objects = testing::scaled(9'000, 3);
 
 class LargeScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(LargeScenes, AgreeWithTheSecondAlgorithm) {
     const testing::EngineFor engines = testing::local_engines();
-    const testing::SceneRange scenes = testing::scene_range(testing::SceneSize::large, usual).part(GetParam(), parts);
+    const testing::SceneRange scenes =
+        testing::scene_range(testing::SceneSize::large, usual_scenes).part(GetParam(), large_parts);
     for (std::uint64_t i = scenes.begin; i < scenes.end; ++i) {
         const Case a_case = testing::large_case(i, least_objects);
         const auto finding = testing::check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
@@ -35,7 +36,7 @@ TEST_P(LargeScenes, AgreeWithTheSecondAlgorithm) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Parts, LargeScenes, ::testing::Range(std::uint64_t(0), parts));
+INSTANTIATE_TEST_SUITE_P(Parts, LargeScenes, ::testing::Range(std::uint64_t(0), large_parts));
 
 /// Scenes whose nested octrees once reported pairs twice.
 class LongTails : public ::testing::TestWithParam<std::uint64_t> {};

@@ -20,7 +20,7 @@ struct Planted {
 
 void PrintTo(const Planted& planted, std::ostream* out) { *out << planted.name; }
 
-std::string name_of(const ::testing::TestParamInfo<Planted>& info) { return info.param.name; }
+std::string planted_name_of(const ::testing::TestParamInfo<Planted>& info) { return info.param.name; }
 
 class PlantedFault : public ::testing::TestWithParam<Planted> {};
 
@@ -60,7 +60,7 @@ constexpr auto planted_here = std::to_array<Planted>({
 // Beside these, tests/mpi plants the fault of a rank, and the first value is no fault.
 static_assert(planted_here.size() + 2 == fault_count);
 
-INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), name_of);
+INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), planted_name_of);
 
 }  // namespace
 }  // namespace octopair

@@ -125,12 +125,12 @@ TEST_P(DoubledPairs, AreAnErrorThatChangesNothing) {
     EXPECT_GT(errors, 5);
 }
 
-std::string name_of(const ::testing::TestParamInfo<Fault>& info) {
+std::string fault_name_of(const ::testing::TestParamInfo<Fault>& info) {
     return info.param == Fault::part_joined_twice ? "part_joined_twice" : "sweep_repeats_block";
 }
 
 INSTANTIATE_TEST_SUITE_P(, DoubledPairs, ::testing::Values(Fault::sweep_repeats_block, Fault::part_joined_twice),
-                         name_of);
+                         fault_name_of);
 
 TEST(MissingPairs, OfAFullStepComeBackWithTheNext) {
     int missing = 0;

@@ -14,7 +14,7 @@
 namespace octopair {
 namespace {
 
-constexpr std::uint64_t usual = testing::scaled(1500, 20);
+constexpr std::uint64_t usual_histories = testing::scaled(1500, 20);
 
 /// Three of four names are of families.
 std::string history_name(samples::RandomStream& random) {
@@ -32,7 +32,7 @@ testing::HistorySize history_size(samples::RandomStream& random) {
 TEST(SmallHistories, AreWhatBruteForceFinds) {
     // As many more than usual as there are small scenes, unless the environment asks for a number of cases.
     const std::uint64_t scenes = testing::scene_range(testing::SceneSize::small, 10'000).size();
-    const std::uint64_t count = testing::case_count(std::max<std::uint64_t>(1, usual * scenes / 10'000));
+    const std::uint64_t count = testing::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t seed = testing::case_seed("small histories", i);
         samples::RandomStream random(seed, 2);
@@ -48,7 +48,7 @@ TEST(SmallHistories, AreWhatBruteForceFinds) {
         }
         if (HasFatalFailure()) return;
     }
-    if (count < usual) return;
+    if (count < usual_histories) return;
     using enum Path;
     EXPECT_EQ(
         testing::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,

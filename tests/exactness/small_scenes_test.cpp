@@ -9,16 +9,17 @@
 namespace octopair {
 namespace {
 
-constexpr std::uint64_t usual = testing::scaled(10'000, 20);
-constexpr std::uint64_t parts = 4;  // of the scenes, so that several processes can share them
+constexpr std::uint64_t usual_small_scenes = testing::scaled(10'000, 20);
+constexpr std::uint64_t small_parts = 4;  // of the scenes, so that several processes can share them
 
 class SmallScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(SmallScenes, AreWhatBruteForceFinds) {
-    const testing::SceneRange seeds = testing::scene_range(testing::SceneSize::small, usual).part(GetParam(), parts);
+    const testing::SceneRange seeds =
+        testing::scene_range(testing::SceneSize::small, usual_small_scenes).part(GetParam(), small_parts);
     const auto finding = testing::check_small_cases(seeds, testing::local_engines());
     ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
-    if (testing::sanitized || seeds.size() < usual / parts) return;
+    if (testing::sanitized || seeds.size() < usual_small_scenes / small_parts) return;
     // All paths but keys_wide, whose keys of more than 32 bits need many objects: tests/engine/ascending_test.cpp has them.
     using enum Path;
     EXPECT_EQ(testing::paths_not_taken({octant_divided,
@@ -92,7 +93,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
               "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Parts, SmallScenes, ::testing::Range(std::uint64_t(0), parts));
+INSTANTIATE_TEST_SUITE_P(Parts, SmallScenes, ::testing::Range(std::uint64_t(0), small_parts));
 
 }  // namespace
 }  // namespace octopair

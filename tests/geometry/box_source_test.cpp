@@ -16,7 +16,7 @@
 namespace octopair {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(BoxKernel, SeesEachFaultOfEachNumber) {
@@ -25,7 +25,7 @@ TEST(BoxKernel, SeesEachFaultOfEachNumber) {
     ASSERT_TRUE(copy_boxes(boxes, entries));
     for (const std::size_t place : {std::size_t(0), std::size_t(7), boxes.size() - 1}) {
         for (unsigned axis = 0; axis < 3; ++axis) {
-            for (const float bad : {infinity, -infinity, nan, -nan, 100.0f}) {
+            for (const float bad : {infinite, -infinite, nan, -nan, 100.0f}) {
                 auto spoilt = boxes;
                 spoilt[place].min[axis] = bad;
                 EXPECT_FALSE(copy_boxes(spoilt, entries)) << bad;
@@ -38,7 +38,7 @@ TEST(BoxKernel, SeesEachFaultOfEachNumber) {
 }
 
 TEST(BoxKernel, AgreesWithItsSpecification) {
-    const std::array<float, 10> values = {0, -0.0f, 1, -1, 1e-45f, FLT_MAX, -FLT_MAX, infinity, -infinity, nan};
+    const std::array<float, 10> values = {0, -0.0f, 1, -1, 1e-45f, FLT_MAX, -FLT_MAX, infinite, -infinite, nan};
     std::mt19937 random(1);
     std::array<std::size_t, 2> seen{};
     for (int i = 0; i < 20'000; ++i) {
@@ -85,7 +85,7 @@ void check_rounding(const OutwardRounding& rounding, bool padded) {
     EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
     boxes.back().max[1] = boxes.back().min[1];
     ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
-    for (const double bad : {-1.0, double(nan), double(infinity)}) {
+    for (const double bad : {-1.0, double(nan), double(infinite)}) {
         if (!padded) break;
         padding[17] = bad;
         EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries)) << bad;

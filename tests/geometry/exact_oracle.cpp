@@ -1,5 +1,7 @@
 #include "geometry/exact_oracle.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <set>
@@ -210,5 +212,7 @@ TrianglePair some_pair(unsigned kind, std::mt19937& random) {
     }
     return pair;
 }
+
+std::string text(const TrianglePair& pair) { return ::testing::PrintToString(pair); }
 
 }  // namespace octopair::test

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "octopair/filters.hpp"
@@ -30,5 +31,7 @@ using TrianglePair = std::array<Triangle3d, 2>;
 /// `kind`: 0 to pair_kinds - 1.
 inline constexpr unsigned pair_kinds = 8;
 TrianglePair some_pair(unsigned kind, std::mt19937& random);
+
+std::string text(const TrianglePair& pair);
 
 }  // namespace octopair::test

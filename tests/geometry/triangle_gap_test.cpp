@@ -24,8 +24,6 @@ using vector::minus;
 using vector::plus;
 using vector::times;
 
-std::string text(const TrianglePair& pair) { return ::testing::PrintToString(pair); }
-
 /// How much of the area or length that a place spans with the triangle is too much for it to be inside.
 double off_triangle(const Point3d& place, const Triangle3d& triangle) {
     const auto area = [](const Point3d& a, const Point3d& b, const Point3d& c) {

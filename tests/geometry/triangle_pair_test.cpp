@@ -19,8 +19,6 @@ namespace {
 
 constexpr double huge = 1.7e308;
 
-std::string text(const TrianglePair& pair) { return ::testing::PrintToString(pair); }
-
 /// What float64 alone says.
 int rounded_plane_side(const std::array<Point3d, 4>& at) {
     std::array<Point3d, 3> to;

@@ -14,10 +14,10 @@
 namespace octopair::test {
 namespace {
 
-Buffer<Box3d> parse(const std::string& text) { return io::parse_csv_boxes(text, "f.csv"); }
+Buffer<Box3d> parsed_csv(const std::string& text) { return io::parse_csv_boxes(text, "f.csv"); }
 
-std::string refusal(const std::string& text) {
-    return error_of(ErrorCode::bad_input, [&] { (void)parse(text); });
+std::string csv_refusal(const std::string& text) {
+    return error_of(ErrorCode::bad_input, [&] { (void)parsed_csv(text); });
 }
 
 TEST(Csv, ReadsLines) {
@@ -25,7 +25,7 @@ TEST(Csv, ReadsLines) {
          {"0,1,2,3,4,5.5\n-1,0,0,1e3,+2,.25\n", "0,1,2,3,4,5.5\r\n-1,0,0,1e3,+2,.25",
           "a,b,c,d,e,f\n0,1,2,3,4,5.5\n\n-1,0,0,1e3,2,.25\n",
           "\xef\xbb\xbfmin x,min y,min z,max x,max y,max z\r\n 0 , 1,\t2,3 ,4,5.5\r\n-1,0,0,1e3,2,.25\r\n\r\n"}) {
-        const auto boxes = parse(text);
+        const auto boxes = parsed_csv(text);
         ASSERT_EQ(boxes.size(), 2u) << text;
         EXPECT_EQ(boxes[0].max[2], 5.5);
         EXPECT_EQ(boxes[1].min[0], -1.0);
@@ -36,37 +36,37 @@ TEST(Csv, ReadsLines) {
 }
 
 TEST(Csv, ReadsFilesWithoutBoxes) {
-    EXPECT_EQ(parse("").size(), 0u);
-    EXPECT_EQ(parse("\n").size(), 0u);
-    EXPECT_EQ(parse("a,b,c,d,e,f\n").size(), 0u);
+    EXPECT_EQ(parsed_csv("").size(), 0u);
+    EXPECT_EQ(parsed_csv("\n").size(), 0u);
+    EXPECT_EQ(parsed_csv("a,b,c,d,e,f\n").size(), 0u);
 }
 
 TEST(Csv, LeavesJudgingToOthers) {
-    const auto boxes = parse("nan,0,0,inf,1,-inf\n");
+    const auto boxes = parsed_csv("nan,0,0,inf,1,-inf\n");
     ASSERT_EQ(boxes.size(), 1u);
     EXPECT_TRUE(std::isnan(boxes[0].min[0]));
     EXPECT_TRUE(std::isinf(boxes[0].max[0]));
 }
 
 TEST(Csv, NamesTheLine) {
-    EXPECT_EQ(refusal("0,0,0,1,1,1\n0,0,0,1,1\n"), "f.csv: line 2: 5 fields, not 6 numbers");
-    EXPECT_EQ(refusal("0,0,0,1,1,1,\n"), "f.csv: line 1: 7 fields, not 6 numbers");
-    EXPECT_EQ(refusal("0,0,0,1,1,1\n0,0,x,1,1,1\n"), "f.csv: line 2: field 3 is not a number: 'x'");
-    EXPECT_EQ(refusal("0,0,x,1,1,1\n"), "f.csv: line 1: field 3 is not a number: 'x'");
-    EXPECT_EQ(refusal("0,0,,1,1,1\n"), "f.csv: line 1: field 3 is not a number: ''");
-    EXPECT_EQ(refusal("\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
-    EXPECT_EQ(refusal("a,b,c,d,e,f\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
-    EXPECT_EQ(refusal("0,0,0,1,1,1e999\n"), "f.csv: line 1: field 6 is beyond float64: '1e999'");
-    EXPECT_EQ(refusal("0,0,0,1,1,0x10\n"), "f.csv: line 1: field 6 is not a number: '0x10'");
-    EXPECT_EQ(refusal("0,0,0,1,1,+-1\n"), "f.csv: line 1: field 6 is not a number: '+-1'");
-    EXPECT_EQ(refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
-    EXPECT_EQ(refusal("# comment\n0,0,0,1,1,1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
-    EXPECT_EQ(refusal(std::string("0,0,0,1,1,\x01\0x\n", 14)), "f.csv: line 1: field 6 is not a number: '??x'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\n0,0,0,1,1\n"), "f.csv: line 2: 5 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1,\n"), "f.csv: line 1: 7 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\n0,0,x,1,1,1\n"), "f.csv: line 2: field 3 is not a number: 'x'");
+    EXPECT_EQ(csv_refusal("0,0,x,1,1,1\n"), "f.csv: line 1: field 3 is not a number: 'x'");
+    EXPECT_EQ(csv_refusal("0,0,,1,1,1\n"), "f.csv: line 1: field 3 is not a number: ''");
+    EXPECT_EQ(csv_refusal("\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
+    EXPECT_EQ(csv_refusal("a,b,c,d,e,f\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1e999\n"), "f.csv: line 1: field 6 is beyond float64: '1e999'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,0x10\n"), "f.csv: line 1: field 6 is not a number: '0x10'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,+-1\n"), "f.csv: line 1: field 6 is not a number: '+-1'");
+    EXPECT_EQ(csv_refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("# comment\n0,0,0,1,1,1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal(std::string("0,0,0,1,1,\x01\0x\n", 14)), "f.csv: line 1: field 6 is not a number: '??x'");
 }
 
 TEST(Csv, IgnoresTheLocale) {
     const char* set = std::setlocale(LC_ALL, "de_DE.UTF-8");
-    EXPECT_EQ(parse("0.5,0,0,1.5,1,1\n")[0].min[0], 0.5) << (set != nullptr ? set : "no such locale here");
+    EXPECT_EQ(parsed_csv("0.5,0,0,1.5,1,1\n")[0].min[0], 0.5) << (set != nullptr ? set : "no such locale here");
     std::setlocale(LC_ALL, "C");
 }
 
@@ -79,7 +79,7 @@ RC_GTEST_PROP(Csv, RoundTripsEveryFiniteNumber, ()) {
         values.push_back(std::isfinite(any) ? any : double(bits[i]));
         text += fmt::format("{}{}", values.back(), i % 6 == 5 ? '\n' : ',');
     }
-    const auto boxes = parse(text);
+    const auto boxes = parsed_csv(text);
     RC_ASSERT(boxes.size() == 20u);
     RC_ASSERT(std::memcmp(boxes.data(), values.data(), values.size() * sizeof(double)) == 0);
 }
@@ -88,7 +88,7 @@ RC_GTEST_PROP(Csv, AnyTextIsBoxesOrAnError, (const std::string& raw)) {
     std::string text = raw;
     for (char& c : text) c = "0123456789,,,,.-e\n\r na"[std::uint8_t(c) % 22];
     try {
-        const auto boxes = parse(text);
+        const auto boxes = parsed_csv(text);
         RC_ASSERT(boxes.size() <= std::size_t(std::count(text.begin(), text.end(), '\n')) + 1);
     } catch (const Error& error) {
         RC_ASSERT(error.code() == ErrorCode::bad_input);

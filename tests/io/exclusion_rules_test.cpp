@@ -8,7 +8,7 @@
 namespace octopair::test {
 namespace {
 
-std::string refusal(const std::string& text) {
+std::string rules_refusal(const std::string& text) {
     return error_of(ErrorCode::bad_input, [&] { (void)io::parse_exclusion_rules(text, "r.json"); });
 }
 
@@ -37,35 +37,36 @@ TEST(ExclusionRules, MayBeLeftOut) {
 }
 
 TEST(ExclusionRules, NameThePlace) {
-    EXPECT_EQ(refusal("[]"), "r.json: an array, not an object");
-    EXPECT_EQ(refusal(R"({"excludes": []})"),
+    EXPECT_EQ(rules_refusal("[]"), "r.json: an array, not an object");
+    EXPECT_EQ(rules_refusal(R"({"excludes": []})"),
               "r.json: the key 'excludes' is not known here; these are: exclude, ignored_pairs, same_parent");
-    EXPECT_EQ(refusal(R"({"exclude": {}})"), "r.json: exclude: an object, not an array");
-    EXPECT_EQ(refusal(R"({"exclude": ["*"]})"), "r.json: exclude[0]: a string, not an object");
-    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"),
+    EXPECT_EQ(rules_refusal(R"({"exclude": {}})"), "r.json: exclude: an object, not an array");
+    EXPECT_EQ(rules_refusal(R"({"exclude": ["*"]})"), "r.json: exclude[0]: a string, not an object");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"),
               "r.json: exclude[1]: the key 'b' is missing");
-    EXPECT_EQ(refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0]: a: a number, not a string");
-    EXPECT_EQ(refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0]: a: a number, not a string");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
               "r.json: exclude[0]: the key 'c' is not known here; these are: a, b");
-    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a"]]})"), "r.json: ignored_pairs[0]: an array of 1, not of two names");
-    EXPECT_EQ(refusal(R"({"ignored_pairs": ["a"]})"), "r.json: ignored_pairs[0]: a string, not an array");
-    EXPECT_EQ(refusal(R"({"ignored_pairs": [["a", null]]})"), "r.json: ignored_pairs[0][1]: null, not a string");
-    EXPECT_EQ(refusal(R"({"same_parent": 1})"), "r.json: same_parent: a number, not true or false");
-    EXPECT_EQ(refusal(R"({"same_parent": true, "same_parent": false})"),
+    EXPECT_EQ(rules_refusal(R"({"ignored_pairs": [["a"]]})"),
+              "r.json: ignored_pairs[0]: an array of 1, not of two names");
+    EXPECT_EQ(rules_refusal(R"({"ignored_pairs": ["a"]})"), "r.json: ignored_pairs[0]: a string, not an array");
+    EXPECT_EQ(rules_refusal(R"({"ignored_pairs": [["a", null]]})"), "r.json: ignored_pairs[0][1]: null, not a string");
+    EXPECT_EQ(rules_refusal(R"({"same_parent": 1})"), "r.json: same_parent: a number, not true or false");
+    EXPECT_EQ(rules_refusal(R"({"same_parent": true, "same_parent": false})"),
               "r.json: the key 'same_parent' stands twice in one object");
 }
 
 TEST(ExclusionRules, MustBeJson) {
     for (const std::string text :
          {"", "{", "{} {}", "{\"exclude\": [}", "{'exclude': []}", "{\"exclude\": [],}", "\xff"}) {
-        const std::string words = refusal(text);
+        const std::string words = rules_refusal(text);
         EXPECT_TRUE(words.starts_with("r.json: parse error at line 1")) << words;
         EXPECT_EQ(words.find('\n'), std::string::npos) << words;
     }
 }
 
 TEST(ExclusionRules, NumbersAreNotTooLarge) {
-    EXPECT_EQ(refusal("{\"same_parent\": 4e442}"), "r.json: same_parent: number overflow parsing '4e442'");
+    EXPECT_EQ(rules_refusal("{\"same_parent\": 4e442}"), "r.json: same_parent: number overflow parsing '4e442'");
 }
 
 TEST(ExclusionRules, AreReadFromFiles) {

@@ -13,12 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> names = {"car/wheel", "</script><script>alert('x')</script>", "r\xFFight", "alone"};
+const std::vector<std::string> reported_names = {"car/wheel", "</script><script>alert('x')</script>", "r\xFFight",
+                                                 "alone"};
 const std::vector<Box3d> boxes = {
     {{0, 0, 0}, {1, 1, 1}}, {{0.5, 0, 0}, {2, 1, 1}}, {{0.1, 0, 0}, {1, 1, 1}}, {{9, 9, 9}, {9, 9, 9}}};
-const std::vector<Pair> pairs = {{0, 1}, {1, 2}};
+const std::vector<Pair> reported_pairs = {{0, 1}, {1, 2}};
 
-std::vector<Finding> findings() {
+std::vector<Finding> reported_findings() {
     std::vector<Finding> findings(2);
     findings[0].collision_class = CollisionClass::penetrating;
     findings[0].depth = 0.5;
@@ -58,16 +59,16 @@ protected:
 };
 
 TEST_F(HtmlReport, HoldsWhatWasWritten) {
-    const auto found = findings();
-    io::ReportScene scene{"car.glb", {{{names}, {names}}, true}, std::span(boxes), {}};
-    const std::string text = page(scene, {pairs, found, {}});
+    const auto found = reported_findings();
+    io::ReportScene scene{"car.glb", {{{reported_names}, {reported_names}}, true}, std::span(boxes), {}};
+    const std::string text = page(scene, {reported_pairs, found, {}});
     EXPECT_EQ(
         data_of(text, "rows"),
         json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5]],[1,2,1,null,0.25,null,null,null,0,[0,0,0]]]"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 1u);
     EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1]"));
-    EXPECT_EQ(objects[0][1][1], names[1]);
+    EXPECT_EQ(objects[0][1][1], reported_names[1]);
     EXPECT_EQ(objects[0][2][1], "r\xEF\xBF\xBDight");
     EXPECT_EQ(data_of(text, "others"), json::parse("[[9,9,9,9,9,9]]"));
     EXPECT_EQ(data_of(text, "gone"), json::array());
@@ -78,8 +79,8 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
 }
 
 TEST_F(HtmlReport, NamesAreTextAndNothingIsFetched) {
-    const io::ReportScene scene{"<b>car</b>", {{{names}, {names}}}, std::span(boxes), {}};
-    const std::string text = page(scene, {pairs, {}, {}});
+    const io::ReportScene scene{"<b>car</b>", {{{reported_names}, {reported_names}}}, std::span(boxes), {}};
+    const std::string text = page(scene, {reported_pairs, {}, {}});
     EXPECT_EQ(count(text, "<script"), 6u);  // five with data, one with the page's own
     EXPECT_EQ(count(text, "</script"), 6u);
     EXPECT_EQ(count(text, "<b>"), 0u);
@@ -91,7 +92,8 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
     const std::vector<Pair> pair = {{0, 3}};
     const std::vector<io::Change> changes = {io::Change::same};
     const std::vector<Box3f> others = {{{0, 0, 0}, {1, 1, 1}}, {}, {}, {{0, 0, 0}, {0.5f, 1, 1}}};
-    const io::ReportScene scene{"t", {{{names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
+    const io::ReportScene scene{
+        "t", {{{reported_names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
     const std::string text =
         page(scene, {pair, {}, changes}, {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"contacts":[{}]})"});
     EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null]]"));

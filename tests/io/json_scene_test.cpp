@@ -14,7 +14,7 @@ namespace {
 using io::LoadedScene;
 using io::LoadedShapes;
 
-LoadedScene parse(const std::string& text) {
+LoadedScene parsed_scene(const std::string& text) {
     return io::parse_json_scene(text, "f.json", [](const std::string& name) -> shape::Mesh {
         if (name != "part.obj") throw Error(ErrorCode::io_failed, name + ": cannot open");
         return {{{1, 2, 3}}, {{0, 0, 0}}};
@@ -25,7 +25,7 @@ std::string with_shape(const std::string& shape) { return R"({"objects":[{"shape
 
 template <typename Shape>
 Shape shape_of(const std::string& shape) {
-    const LoadedScene scene = parse(with_shape(shape));
+    const LoadedScene scene = parsed_scene(with_shape(shape));
     return std::get<Shape>(scene.shapes->shapes.at(scene.shapes->geometry.at(0)));
 }
 
@@ -46,7 +46,7 @@ TEST(JsonScene, EveryShape) {
 }
 
 TEST(JsonScene, ObjectsHaveDefaults) {
-    const LoadedScene scene = parse(with_shape(R"({"type":"sphere","radius":1})"));
+    const LoadedScene scene = parsed_scene(with_shape(R"({"type":"sphere","radius":1})"));
     EXPECT_EQ(scene.objects, 1u);
     EXPECT_TRUE(scene.lacks_boxes());
     EXPECT_EQ(scene.names, std::vector<std::string>{""});
@@ -56,7 +56,7 @@ TEST(JsonScene, ObjectsHaveDefaults) {
 }
 
 TEST(JsonScene, ObjectsShareShapesAndSayWhatTheyAre) {
-    const LoadedScene scene = parse(R"({
+    const LoadedScene scene = parsed_scene(R"({
         "shapes": {"ball": {"type": "sphere", "radius": 1}, "unused": {"type": "sphere", "radius": 2}},
         "objects": [
             {"name": "still", "shape": "ball", "position": [0.1, 1e300, -3], "parent": "car"},
@@ -84,7 +84,7 @@ TEST(JsonScene, ObjectsShareShapesAndSayWhatTheyAre) {
     EXPECT_NE(loaded.parents[3], loaded.parents[1]);
 }
 
-TEST(JsonScene, AnEmptySceneIsOne) { EXPECT_EQ(parse(R"({"objects": []})").objects, 0u); }
+TEST(JsonScene, AnEmptySceneIsOne) { EXPECT_EQ(parsed_scene(R"({"objects": []})").objects, 0u); }
 
 TEST(JsonScene, RefusesInClearWords) {
     const std::string ball = R"("shape":{"type":"sphere","radius":1})";
@@ -144,10 +144,11 @@ TEST(JsonScene, RefusesInClearWords) {
          "f.json: object 0: shape: triangle 0: 2 vertices, not 3"},
     };
     for (const auto& [text, words] : cases) {
-        EXPECT_EQ(error_of(ErrorCode::bad_input, [&, &json = text] { (void)parse(json); }), words) << text;
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&, &json = text] { (void)parsed_scene(json); }), words) << text;
     }
-    EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { (void)parse(with_shape(R"({"type":"mesh","file":"none.obj"})")); }),
-              "f.json: object 0: shape: none.obj: cannot open");
+    EXPECT_EQ(
+        error_of(ErrorCode::io_failed, [&] { (void)parsed_scene(with_shape(R"({"type":"mesh","file":"none.obj"})")); }),
+        "f.json: object 0: shape: none.obj: cannot open");
 }
 
 TEST(JsonScene, RefusesWhatIsNoJson) {
@@ -155,12 +156,12 @@ TEST(JsonScene, RefusesWhatIsNoJson) {
          {std::string(), std::string("{"), std::string("{\"objects\":[NaN]}"), std::string("{\"objects\":[1e999]}"),
           std::string("{\"objects\":[\"\xFF\"]}"), std::string("{\"objects\":[]} x"),
           "{\"objects\":" + std::string(100000, '['), "{\"a\n\x01\":" + std::string(300, '7') + "x}"}) {
-        const std::string words = error_of(ErrorCode::bad_input, [&] { (void)parse(text); });
+        const std::string words = error_of(ErrorCode::bad_input, [&] { (void)parsed_scene(text); });
         EXPECT_TRUE(words.starts_with("f.json: ")) << words;
         EXPECT_LT(words.size(), 300u);
         EXPECT_EQ(words.find('\n'), std::string::npos);
     }
-    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)parse("{\"objects\":" + std::string(100000, '[')); }),
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)parsed_scene("{\"objects\":" + std::string(100000, '[')); }),
               "f.json: objects[0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: more than 16 levels of nesting");
 }
 

@@ -15,12 +15,12 @@ namespace {
 using io::NpyHeader;
 using io::NpyType;
 
-NpyHeader parse(const std::string& file) {
+NpyHeader parsed_header(const std::string& file) {
     return io::parse_npy_header(std::as_bytes(std::span(file)), file.size(), "f.npy");
 }
 
-std::string refusal(const std::string& file) {
-    return error_of(ErrorCode::bad_input, [&] { (void)parse(file); });
+std::string header_refusal(const std::string& file) {
+    return error_of(ErrorCode::bad_input, [&] { (void)parsed_header(file); });
 }
 
 /// A file of version `major` with the dict literal `dict`, padded, and `data_bytes` of data.
@@ -41,42 +41,43 @@ const std::string boxes_dict = "{'descr': '<f4', 'fortran_order': False, 'shape'
 
 TEST(NpyHeader, AcceptsWhatNumpyWrites) {
     for (const char version : {'\1', '\2', '\3'}) {
-        const NpyHeader header = parse(file_of(boxes_dict, 72, version));
+        const NpyHeader header = parsed_header(file_of(boxes_dict, 72, version));
         EXPECT_EQ(header.type, NpyType::float32);
         EXPECT_EQ(header.shape, (std::vector<std::uint64_t>{3, 6}));
         EXPECT_EQ(header.data_offset % 64, 0u);
     }
-    EXPECT_EQ(parse(file_of("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", 24)).shape.size(), 1u);
-    EXPECT_EQ(parse(file_of("{'descr': '<u8', 'fortran_order': False, 'shape': (), }", 8)).shape.size(), 0u);
+    EXPECT_EQ(parsed_header(file_of("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", 24)).shape.size(), 1u);
+    EXPECT_EQ(parsed_header(file_of("{'descr': '<u8', 'fortran_order': False, 'shape': (), }", 8)).shape.size(), 0u);
 }
 
 TEST(NpyHeader, AcceptsOtherLayoutsOfTheSameDict) {
-    EXPECT_EQ(parse(file_of("{\"shape\":(3,6),\"descr\":\"<f4\",\"fortran_order\":False}", 72)).shape[0], 3u);
-    EXPECT_EQ(parse(file_of("{ 'fortran_order' : False , 'descr' : '<f4' , 'shape' : ( 3 , 6 , ) , }", 72)).shape[0],
-              3u);
+    EXPECT_EQ(parsed_header(file_of("{\"shape\":(3,6),\"descr\":\"<f4\",\"fortran_order\":False}", 72)).shape[0], 3u);
+    EXPECT_EQ(
+        parsed_header(file_of("{ 'fortran_order' : False , 'descr' : '<f4' , 'shape' : ( 3 , 6 , ) , }", 72)).shape[0],
+        3u);
 }
 
 TEST(NpyHeader, SaysWhatItFound) {
     const auto dict = [](const std::string& type, const std::string& order, const std::string& shape) {
         return "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
     };
-    EXPECT_EQ(refusal(""), "f.npy: not an npy file: it is empty");
-    EXPECT_EQ(refusal("PK\x03\x04 something"), "f.npy: not an npy file: it begins with 'PK\\x03\\x04 s'");
-    EXPECT_EQ(refusal(file_of(boxes_dict, 72, 4)),
+    EXPECT_EQ(header_refusal(""), "f.npy: not an npy file: it is empty");
+    EXPECT_EQ(header_refusal("PK\x03\x04 something"), "f.npy: not an npy file: it begins with 'PK\\x03\\x04 s'");
+    EXPECT_EQ(header_refusal(file_of(boxes_dict, 72, 4)),
               "f.npy: npy format version 4.0; versions 1.0, 2.0 and 3.0 are known");
-    EXPECT_EQ(refusal(file_of(dict("<f4", "True", "(3, 6)"), 72)),
+    EXPECT_EQ(header_refusal(file_of(dict("<f4", "True", "(3, 6)"), 72)),
               "f.npy: its array is in Fortran order; C order is needed");
-    EXPECT_EQ(refusal(file_of(dict(">f4", "False", "(3, 6)"), 72)),
+    EXPECT_EQ(header_refusal(file_of(dict(">f4", "False", "(3, 6)"), 72)),
               "f.npy: its array is of type '>f4' (big endian); '<f4' or '<f8' is needed");
-    EXPECT_EQ(refusal(file_of(dict("<i4", "False", "(3, 6)"), 72)),
+    EXPECT_EQ(header_refusal(file_of(dict("<i4", "False", "(3, 6)"), 72)),
               "f.npy: its array is of type '<i4'; '<f4' or '<f8' is needed");
-    EXPECT_EQ(refusal(file_of(dict("<f4", "False", "(3, 6)"), 71)),
+    EXPECT_EQ(header_refusal(file_of(dict("<f4", "False", "(3, 6)"), 71)),
               "f.npy: the file is truncated: shape (3, 6) of '<f4' needs 72 bytes of data, found 71");
-    EXPECT_EQ(refusal(file_of(dict("<f4", "False", "(3, 6)"), 73)),
+    EXPECT_EQ(header_refusal(file_of(dict("<f4", "False", "(3, 6)"), 73)),
               "f.npy: the file has trailing bytes: shape (3, 6) of '<f4' needs 72 bytes of data, found 73");
-    EXPECT_NE(
-        refusal(file_of("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3,), }", 12)).find("structured"),
-        std::string::npos);
+    EXPECT_NE(header_refusal(file_of("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3,), }", 12))
+                  .find("structured"),
+              std::string::npos);
 }
 
 TEST(NpyHeader, RefusesShapesBeyond64Bits) {
@@ -85,7 +86,7 @@ TEST(NpyHeader, RefusesShapesBeyond64Bits) {
          {"(4294967296, 4294967296, 6)", "(18446744073709551615, 6)", "(2305843009213693952, 8)",
           "(18446744073709551616, 6)", "(99999999999999999999999999, 6)"}) {
         for (const std::size_t data : {std::size_t(0), std::size_t(24)}) {
-            EXPECT_NE(refusal(file_of(begin + shape + ", }", data)), "") << shape;
+            EXPECT_NE(header_refusal(file_of(begin + shape + ", }", data)), "") << shape;
         }
     }
 }
@@ -112,14 +113,15 @@ TEST(NpyHeader, RefusesWhatIsNotExactlyTheDict) {
         "{'descr': \"<f4', 'fortran_order': False, 'shape': (3, 6)}",
         "\t{'descr': '<f4', 'fortran_order': False, 'shape': (3, 6)}",
     };
-    for (const std::string& dict : wrong) EXPECT_NE(refusal(file_of(dict, 72)), "") << dict;
-    EXPECT_NE(refusal(file_of("{'descr': '<f4', 'fortran_order': False, 'shape': (18)}", 72)), "");
+    for (const std::string& dict : wrong) EXPECT_NE(header_refusal(file_of(dict, 72)), "") << dict;
+    EXPECT_NE(header_refusal(file_of("{'descr': '<f4', 'fortran_order': False, 'shape': (18)}", 72)), "");
 }
 
 TEST(NpyHeader, RefusesEveryPrefix) {
     for (const char version : {'\1', '\2', '\3'}) {
         const std::string whole = file_of(boxes_dict, 72, version);
-        for (std::size_t size = 0; size < whole.size(); ++size) EXPECT_NE(refusal(whole.substr(0, size)), "") << size;
+        for (std::size_t size = 0; size < whole.size(); ++size)
+            EXPECT_NE(header_refusal(whole.substr(0, size)), "") << size;
     }
 }
 

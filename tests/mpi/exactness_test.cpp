@@ -88,14 +88,14 @@ TEST_F(MpiSmallScenes, OfSlices) {
 
 /// On rank 0 makes calls of an engine; the other ranks follow it.
 template <typename Calls>
-void lead(const Calls& calls) {
+void lead_engines(const Calls& calls) {
     if (testing::own_rank() != 0) return follow(MPI_COMM_WORLD);
     const std::shared_ptr<Engine> leading = make_leading_engine(MPI_COMM_WORLD), local = make_local_engine(2);
     calls([=](unsigned threads) -> Engine& { return threads == 1 ? *local : *leading; });
 }
 
 TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
-    lead([](const testing::EngineFor& engines) {
+    lead_engines([](const testing::EngineFor& engines) {
         const auto finding = testing::check_small_cases(seeds(), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
         if (!are_enough()) return;
@@ -106,7 +106,7 @@ TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
 
 TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
     if (testing::rank_count() == 1) GTEST_SKIP() << "no neighbour";
-    lead([](const testing::EngineFor& engines) {
+    lead_engines([](const testing::EngineFor& engines) {
         const testing::FaultScope planted(Fault::rank_takes_neighbour);
         const auto finding = testing::check_small_cases({0, 300}, engines);
         ASSERT_TRUE(finding);

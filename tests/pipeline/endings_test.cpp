@@ -28,7 +28,7 @@ protected:
     const std::unique_ptr<Engine> engine_ = make_local_engine(2);
 };
 
-std::string name_of(const ::testing::TestParamInfo<Ending>& info) {
+std::string ending_name_of(const ::testing::TestParamInfo<Ending>& info) {
     return std::to_string(info.param.threads) + (info.param.order == Order::octal ? "Octal" : "Ascending");
 }
 
@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(, Endings,
                          ::testing::Values(Ending{1, Order::octal}, Ending{1, Order::ascending},
                                            Ending{2, Order::octal}, Ending{2, Order::ascending},
                                            Ending{7, Order::octal}),
-                         name_of);
+                         ending_name_of);
 
 /// What comes out before does not depend on threads.
 TEST_P(Endings, FiltersThrowWhereTheirPairIs) {

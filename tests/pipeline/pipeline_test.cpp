@@ -65,12 +65,12 @@ protected:
     }
 };
 
-std::string name_of(const ::testing::TestParamInfo<Arrangement>& info) {
+std::string arrangement_name_of(const ::testing::TestParamInfo<Arrangement>& info) {
     return std::to_string(info.param.threads) + (info.param.order == Order::octal ? "Octal" : "Ascending") +
            (info.param.buffer_bytes > 1 << 20 ? "Large" : "Small");
 }
 
-INSTANTIATE_TEST_SUITE_P(, AnyPipeline, ::testing::ValuesIn(arrangements()), name_of);
+INSTANTIATE_TEST_SUITE_P(, AnyPipeline, ::testing::ValuesIn(arrangements()), arrangement_name_of);
 
 TEST_P(AnyPipeline, LetsThroughWhatAPlainLoopDoes) {
     const auto boxes = samples::make_scene("dense", 40'000, 1);  // pairs for more than a small buffer

@@ -309,10 +309,10 @@ TEST_F(Recording, RecordsThatNobodyWroteAreRefused) {
     refused(std::uint32_t(RecordKind::result), std::string(32, '\0'), "the result of no step");
 }
 
-constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
+constexpr Box3f unit_box = {{0, 0, 0}, {1, 1, 1}};
 
 TEST_F(Recording, ACallThatFailsIsNotInIt) {
-    const std::vector<Box3f> boxes = {unit, unit}, wrong = {{{0, 0, 0}, {-1, 1, 1}}, unit};
+    const std::vector<Box3f> boxes = {unit_box, unit_box}, wrong = {{{0, 0, 0}, {-1, 1, 1}}, unit_box};
     Scene scene(options());
     std::vector<ObjectId> ids(2);
     scene.add(Objects{std::span(boxes)}, ids);
@@ -336,7 +336,7 @@ TEST_F(Recording, ACallThatFailsIsNotInIt) {
 }
 
 TEST_F(Recording, IsThereBeforeAndAfterEachStep) {
-    const std::vector<Box3f> boxes = {unit, unit};
+    const std::vector<Box3f> boxes = {unit_box, unit_box};
     Scene scene(options());
     EXPECT_EQ(content().size(), sizeof(RecordingHead));
     std::vector<ObjectId> ids(2);
@@ -355,7 +355,7 @@ TEST_F(Recording, AScenesLastCallsAreInIt) {
     {
         Scene scene(options());
         std::vector<ObjectId> ids(1);
-        const std::vector<Box3f> boxes = {unit};
+        const std::vector<Box3f> boxes = {unit_box};
         scene.add(Objects{std::span(boxes)}, ids);
         Scene other = std::move(scene);
         other.remove(ids);
@@ -403,13 +403,13 @@ private:
 };
 
 TEST_F(Recording, AFullDiskChangesNothing) {
-    const std::vector<Box3f> boxes = {unit, unit}, many(20'000, unit);
+    const std::vector<Box3f> boxes = {unit_box, unit_box}, many(20'000, unit_box);
     const std::string full = path() + ": cannot write: File too large";
     Scene scene(options());
     std::vector<ObjectId> ids(2);
     scene.add(Objects{std::span(boxes)}, ids);
     (void)scene.step();
-    const std::vector<Box3f> apart = {unit, {{5, 5, 5}, {6, 6, 6}}};
+    const std::vector<Box3f> apart = {unit_box, {{5, 5, 5}, {6, 6, 6}}};
     {
         const FullDisk disk(content().size() + 10);
         std::vector<ObjectId> more(many.size(), ids[0]);
@@ -431,7 +431,7 @@ TEST_F(Recording, AFullDiskChangesNothing) {
 }
 
 TEST_F(Recording, AStepThatWasMadeStandsThoughItsResultIsWrittenLater) {
-    const std::vector<Box3f> boxes = {unit, unit};
+    const std::vector<Box3f> boxes = {unit_box, unit_box};
     Scene scene(options());
     std::vector<ObjectId> ids(2);
     scene.add(Objects{std::span(boxes)}, ids);
@@ -456,7 +456,7 @@ TEST_F(Recording, IsByteForByteWhatTheDocumentationShows) {
     {
         Scene scene(options());
         std::vector<ObjectId> ids(2);
-        const std::vector<Box3f> boxes = {unit, {{1, 0, 0}, {2, 1, 1}}};
+        const std::vector<Box3f> boxes = {unit_box, {{1, 0, 0}, {2, 1, 1}}};
         scene.add(Objects{std::span(boxes)}, ids);
         (void)scene.step();
     }

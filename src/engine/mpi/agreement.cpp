@@ -34,21 +34,21 @@ namespace {
 enum class Ending : std::uint8_t { bad_object, error, foreign, stopped, good };
 
 /// What a rank tells of itself.
-struct Told {
+struct ToldEnding {
     Ending ending = Ending::good;
     ErrorCode code = ErrorCode::engine_failed;
     std::uint32_t length = 0;    // of the message
     std::uint64_t position = 0;  // of a bad object
 };
 
-bool before(const Told& a, const Told& b) {
+bool before(const ToldEnding& a, const ToldEnding& b) {
     return a.ending != b.ending ? a.ending < b.ending : a.position < b.position;
 }
 
 }  // namespace
 
 struct Agreement::Outcome {
-    Told told;
+    ToldEnding told;
     std::string message;
     std::exception_ptr failure = {};
 };
@@ -72,7 +72,7 @@ Agreement::Outcome Agreement::outcome_of(const std::function<void()>& part) {
 void Agreement::together(const std::function<void()>& part) {
     Outcome own = outcome_of(part);
     own.told.length = std::uint32_t(own.message.size());
-    const std::vector<Told> all = comm_.all_gather(own.told);
+    const std::vector<ToldEnding> all = comm_.all_gather(own.told);
     const auto first = std::min_element(all.begin(), all.end(), before);
     if (first->ending == Ending::good) return;
     const unsigned rank = unsigned(first - all.begin());

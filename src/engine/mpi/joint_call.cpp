@@ -18,7 +18,7 @@ struct ToldSlice {
 };
 
 /// What a rank says of its call.
-struct Told {
+struct ToldCall {
     Outlet outlet;
     Order order;
     bool join, limited, verify;
@@ -32,7 +32,7 @@ ToldSlice told_of(const Objects* set) {
     return {set->size(), std::holds_alternative<std::span<const Box3d>>(set->boxes), !set->padding.empty()};
 }
 
-Told told_of(const Engine::Request& request, Outlet outlet) {
+ToldCall told_of(const Engine::Request& request, Outlet outlet) {
     const Options& options = request.options;
     return {.outlet = outlet,
             .order = options.order,
@@ -46,7 +46,7 @@ Told told_of(const Engine::Request& request, Outlet outlet) {
 }
 
 /// What two ranks' calls do not have in common, or nothing.
-std::string_view difference(const Told& a, const Told& b) {
+std::string_view difference(const ToldCall& a, const ToldCall& b) {
     if (a.outlet != b.outlet) return "whether pairs are counted, listed or streamed";
     if (a.join != b.join) return "whether there is a second set";
     if (a.order != b.order) return "the order";
@@ -57,7 +57,7 @@ std::string_view difference(const Told& a, const Told& b) {
 }
 
 /// The first rank with an object in a set, which says for all how the set is held.
-std::size_t spokesman(const std::vector<Told>& all, unsigned set) {
+std::size_t spokesman(const std::vector<ToldCall>& all, unsigned set) {
     std::size_t rank = 0;
     while (rank + 1 < all.size() && all[rank].slices[set].size == 0) ++rank;
     return rank;
@@ -68,8 +68,8 @@ std::size_t spokesman(const std::vector<Told>& all, unsigned set) {
                                       std::to_string(rank) + " and on rank " + std::to_string(other));
 }
 
-void check_likeness(const std::vector<Told>& all) {
-    for (const Told& told : all) {
+void check_likeness(const std::vector<ToldCall>& all) {
+    for (const ToldCall& told : all) {
         if (told.verify) throw Error(ErrorCode::usage, "verify: not on ranks, none of which has all objects");
     }
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
@@ -109,7 +109,7 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
 
 JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet, std::uint64_t most_objects) {
     Agreement(comm).together([&] { check_request(request); });
-    const std::vector<Told> all = comm.all_gather(told_of(request, outlet));
+    const std::vector<ToldCall> all = comm.all_gather(told_of(request, outlet));
     check_likeness(all);
     JointCall call;
     call.join = request.second != nullptr;

@@ -8,11 +8,11 @@ namespace octopair {
 namespace {
 
 /// How many values of a list go from a rank, and where to.
-struct Told {
+struct ToldSizes {
     std::uint64_t to, values;
 };
 
-Exchange exchange_of(const std::vector<Told>& told, unsigned rank) {
+Exchange exchange_of(const std::vector<ToldSizes>& told, unsigned rank) {
     Exchange exchange{RankCounts(told.size(), 0), RankCounts(told.size(), 0)};
     if (told[rank].to != rank) exchange.sent[told[rank].to] = told[rank].values;
     for (unsigned from = 0; from < told.size(); ++from) {
@@ -26,9 +26,9 @@ Exchange exchange_of(const std::vector<Told>& told, unsigned rank) {
 std::vector<SortedList> ListExchange::bring(const SortedList& own, unsigned to) {
     const unsigned rank = comm_.rank();
     const std::size_t nodes = own.home_begins.size();
-    std::vector<Told> told = comm_.all_gather(Told{to, own.entries.size()});
+    std::vector<ToldSizes> told = comm_.all_gather(ToldSizes{to, own.entries.size()});
     const Exchange entries = exchange_of(told, rank);
-    for (Told& one : told) one.values = 2 * nodes;
+    for (ToldSizes& one : told) one.values = 2 * nodes;
     const Exchange counts = exchange_of(told, rank);
     Agreement(comm_).together([&] {
         const Metered metered(comm_, costs_.pack);

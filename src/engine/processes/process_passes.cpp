@@ -14,7 +14,7 @@ namespace octopair {
 
 namespace {
 
-[[noreturn]] void throw_damaged() {
+[[noreturn]] void throw_damaged_result() {
     throw Error(ErrorCode::engine_failed, "what worker processes left in shared memory makes no sense");
 }
 
@@ -87,7 +87,7 @@ void ProcessPasses::take_results(Call& call) {
 std::span<Share> ProcessPasses::shares_done() {
     const auto shares = crew_.view().shares(0, crew_.shares());
     for (const Share& share : shares) {
-        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) throw_damaged();
+        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) throw_damaged_result();
     }
     return shares;
 }
@@ -125,7 +125,7 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
         }
     }
     const std::uint64_t place = crew_.view().slot(0).number;
-    if (place % alignof(std::uint32_t) != 0) throw_damaged();
+    if (place % alignof(std::uint32_t) != 0) throw_damaged_result();
     std::copy_n(arena_->memory.array<std::uint32_t>(place, counts.size()), counts.size(), counts.begin());
 }
 
@@ -149,14 +149,14 @@ void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const As
 void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs) {
     const DeskView& view = crew_.view();
     const std::uint64_t written = view.desk().next_block.load();
-    if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged();
+    if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged_result();
     const std::span<const Pair> all{pairs->memory.array<const Pair>(0, written * list_block_pairs),
                                     std::size_t(written * list_block_pairs)};
     std::vector<std::span<const Pair>> runs;
     std::uint64_t size = 0;
     for (const Share& share : shares_done()) {
         for (const Run& run : view.runs(share.first_run, share.runs)) {
-            if (run.begin > all.size() || run.count > all.size() - run.begin) throw_damaged();
+            if (run.begin > all.size() || run.count > all.size() - run.begin) throw_damaged_result();
             runs.push_back(all.subspan(run.begin, run.count));
             size += run.count;
         }
@@ -179,7 +179,7 @@ void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double prog
     watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
     run(call, progress, pairs, std::move(watch));
     while (reader.take()) throw_if_stopped(call.stop.get_token());
-    if (!reader.complete(crew_.shares())) throw_damaged();
+    if (!reader.complete(crew_.shares())) throw_damaged_result();
 }
 
 }  // namespace octopair

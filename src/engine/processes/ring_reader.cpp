@@ -10,7 +10,7 @@ namespace octopair {
 
 namespace {
 
-[[noreturn]] void throw_damaged() {
+[[noreturn]] void throw_damaged_ring() {
     throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
 }
 
@@ -61,7 +61,7 @@ std::optional<RingEntry> RingReader::front(unsigned number) const {
     if (filled == taken) return std::nullopt;
     const RingEntry entry = crew_.view().ring_entry(number, taken);
     const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs;
-    if (!sound) throw_damaged();
+    if (!sound) throw_damaged_ring();
     return entry;
 }
 
@@ -76,7 +76,7 @@ bool RingReader::take_block(unsigned number) {
     const auto next = front(number);
     if (!next) return false;
     const RingEntry entry = *next;
-    if (entry.share > share_) throw_damaged();
+    if (entry.share > share_) throw_damaged_ring();
     if (entry.share == share_) {
         const std::uint64_t taken = crew_.view().slot(number).ring_taken.load();
         if (taken >= pass_.ring_blocks) count_path(Path::ring_wrapped);
@@ -104,7 +104,7 @@ void RingReader::forget_unfinished(unsigned number) {
     const ShareState state = ShareState::of(crew_.view().shares(share - 1, 1)[0].state.load());
     if (!state.is(crew_.number(), ShareStatus::claimed)) return;
     std::uint64_t filled = slot.ring_filled.load();
-    if (filled - slot.ring_taken.load() > pass_.ring_blocks) throw_damaged();
+    if (filled - slot.ring_taken.load() > pass_.ring_blocks) throw_damaged_ring();
     while (filled > slot.ring_taken.load() && crew_.view().ring_entry(number, filled - 1).share == share - 1) --filled;
     slot.ring_filled.store(filled);
     if (share - 1 == share_) passed_ = 0;

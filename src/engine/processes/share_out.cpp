@@ -10,8 +10,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr unsigned looks = 2000;  // about 40 us: the others tend to end at the same time
-constexpr milliseconds longest_sleep(100);
+constexpr unsigned looks_for_event = 2000;  // about 40 us: the others tend to end at the same time
+constexpr milliseconds longest_event_sleep(100);
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void ShareOut::wait_for_others(std::span<Share> records) {
         if (done == records.size()) return;
         throw_if_stopped(stop_);
         const Waiting waiting(slot_);
-        event.wait(seen, longest_sleep, looks);
+        event.wait(seen, longest_event_sleep, looks_for_event);
     }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t page_bytes() { return page_pairs() * sizeof(Pair); }
 
-[[noreturn]] void throw_damaged() {
+[[noreturn]] void throw_damaged_buckets() {
     throw Error(ErrorCode::engine_failed, "what a worker left of its buckets makes no sense");
 }
 
@@ -129,12 +129,12 @@ SharedBuckets::Strings SharedBuckets::committed_strings(unsigned slot) const {
     const Commit& commit = place_.view.commit(slot, number);
     std::vector<std::vector<Pair*>> pages(plan_.buckets());
     for (const LoggedPage& logged : place_.view.log(slot, commit.log_size)) {
-        if (logged.bucket >= pages.size()) throw_damaged();
+        if (logged.bucket >= pages.size()) throw_damaged_buckets();
         pages[logged.bucket].push_back(place_.pairs.array<Pair>(logged.page * page_bytes(), page_pairs()));
     }
     for (std::size_t bucket = 0; bucket < strings.size(); ++bucket) {
         const std::uint64_t size = commit.sizes[bucket];
-        if ((size + page_pairs() - 1) / page_pairs() != pages[bucket].size()) throw_damaged();
+        if ((size + page_pairs() - 1) / page_pairs() != pages[bucket].size()) throw_damaged_buckets();
         strings[bucket] = PageString(std::move(pages[bucket]), size);
     }
     return strings;

@@ -18,8 +18,8 @@ namespace octopair {
 
 namespace {
 
-constexpr unsigned looks = 4000;  // for a next pass, about 80 us: calls tend to come one after another
-constexpr std::chrono::seconds longest_sleep(3600);
+constexpr unsigned looks_for_pass = 4000;  // for a next pass, about 80 us: calls tend to come one after another
+constexpr std::chrono::seconds longest_pass_sleep(3600);
 
 /// The stop source of the pass under way, and which pass was stopped last.
 class Stops {
@@ -87,7 +87,7 @@ public:
             if (asked == slot.finished.load()) {
                 if (forgot_.exchange(false)) program.forget_job();
                 const Waiting waiting(slot);
-                slot.command.wait(seen, longest_sleep, looks);
+                slot.command.wait(seen, longest_pass_sleep, looks_for_pass);
                 continue;
             }
             const Pass pass = view.desk().pass;

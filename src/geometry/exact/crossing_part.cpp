@@ -16,19 +16,19 @@ using IntegerPoint = std::array<Integer, 3>;
 /// How many of float64's 53 bits of a height must be right.
 constexpr double sure = 0x1p30;
 
-struct Height {
+struct RoundedHeight {
     double value, error;
     bool is_sure() const { return std::abs(value) > sure * error; }
 };
 
-Height rounded_height(const Triangle3d& triangle, const Point3d& place) {
+RoundedHeight rounded_height(const Triangle3d& triangle, const Point3d& place) {
     Point3d b, c, d;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         b[axis] = triangle[1][axis] - triangle[0][axis];
         c[axis] = triangle[2][axis] - triangle[0][axis];
         d[axis] = place[axis] - triangle[0][axis];
     }
-    Height height = {0, filter::underflow};
+    RoundedHeight height = {0, filter::underflow};
     for (std::size_t i = 0; i < 3; ++i) {
         const double left = b[(i + 1) % 3] * c[(i + 2) % 3], right = b[(i + 2) % 3] * c[(i + 1) % 3];
         height.value += d[i] * (left - right);
@@ -38,7 +38,7 @@ Height rounded_height(const Triangle3d& triangle, const Point3d& place) {
     return height;
 }
 
-Height rounded_height(const SeenLine& line, const Point3d& place) {
+RoundedHeight rounded_height(const SeenLine& line, const Point3d& place) {
     const unsigned u = (line.axis + 1) % 3, v = (line.axis + 2) % 3;
     const double left = (line.b[u] - line.a[u]) * (place[v] - line.a[v]);
     const double right = (line.b[v] - line.a[v]) * (place[u] - line.a[u]);
@@ -88,7 +88,7 @@ Integer cross(const IntegerPoint& a, const IntegerPoint& b, std::size_t axis) {
 }  // namespace
 
 double part_to_plane(const Triangle3d& triangle, const Point3d& begin, const Point3d& end) {
-    const Height from = rounded_height(triangle, begin), to = rounded_height(triangle, end);
+    const RoundedHeight from = rounded_height(triangle, begin), to = rounded_height(triangle, end);
     if (from.is_sure() && to.is_sure()) return from.value / (from.value - to.value);
     const IntegerPoints<5> points({&triangle[0], &triangle[1], &triangle[2], &begin, &end});
     const IntegerPoint b = points.from_first(1), c = points.from_first(2);
@@ -103,7 +103,7 @@ double part_to_plane(const Triangle3d& triangle, const Point3d& begin, const Poi
 }
 
 double part_to_line(const SeenLine& line, const Point3d& begin, const Point3d& end) {
-    const Height from = rounded_height(line, begin), to = rounded_height(line, end);
+    const RoundedHeight from = rounded_height(line, begin), to = rounded_height(line, end);
     if (from.is_sure() && to.is_sure()) return from.value / (from.value - to.value);
     const IntegerPoints<4> points({&line.a, &line.b, &begin, &end});
     const IntegerPoint b = points.from_first(1);

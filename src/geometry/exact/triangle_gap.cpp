@@ -40,16 +40,16 @@ double part_nearest(const Point3d& way, const Point3d& place) {
     return square > 0 ? std::clamp(dot(way, place) / square, 0.0, 1.0) : 0.0;
 }
 
-struct Edge {
+struct GapEdge {
     const Point3d& begin;
     Point3d way;
-    Edge(const Point3d& from, const Point3d& to) : begin(from), way(minus(to, from)) {}
+    GapEdge(const Point3d& from, const Point3d& to) : begin(from), way(minus(to, from)) {}
     Point3d at(double part) const { return plus(begin, times(way, part)); }
     Point3d nearest(const Point3d& place) const { return at(part_nearest(way, minus(place, begin))); }
 };
 
 /// Between the ends of both.
-void try_edges(const Edge& a, const Edge& b, Nearest& nearest) {
+void try_edges(const GapEdge& a, const GapEdge& b, Nearest& nearest) {
     const Point3d between = minus(a.begin, b.begin);
     const double aa = dot(a.way, a.way), ab = dot(a.way, b.way), bb = dot(b.way, b.way);
     const double a_between = dot(a.way, between), b_between = dot(b.way, between);
@@ -63,7 +63,7 @@ void try_edges(const Edge& a, const Edge& b, Nearest& nearest) {
 /// A triangle as the corners of the other one see it.
 struct Face {
     const Point3d& corner;
-    Edge first, second;
+    GapEdge first, second;
     Point3d normal;
     double square;
 
@@ -87,8 +87,8 @@ struct Face {
 
 Nearest nearest_of(const Triangle3d& a, const Triangle3d& b) {
     Nearest nearest;
-    const std::array<Edge, 3> a_edges = {Edge{a[0], a[1]}, {a[1], a[2]}, {a[2], a[0]}};
-    const std::array<Edge, 3> b_edges = {Edge{b[0], b[1]}, {b[1], b[2]}, {b[2], b[0]}};
+    const std::array<GapEdge, 3> a_edges = {GapEdge{a[0], a[1]}, {a[1], a[2]}, {a[2], a[0]}};
+    const std::array<GapEdge, 3> b_edges = {GapEdge{b[0], b[1]}, {b[1], b[2]}, {b[2], b[0]}};
     const Face a_face(a), b_face(b);
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
@@ -121,8 +121,8 @@ double triangle_gap(const Point3d& point, const Triangle3d& triangle) {
     const NearOrigin near(place, triangle);
     const Triangle3d& corners = near.b;  // about the point
     Nearest nearest;
-    for (const Edge& edge :
-         {Edge{corners[0], corners[1]}, Edge{corners[1], corners[2]}, Edge{corners[2], corners[0]}}) {
+    for (const GapEdge& edge :
+         {GapEdge{corners[0], corners[1]}, GapEdge{corners[1], corners[2]}, GapEdge{corners[2], corners[0]}}) {
         nearest.offer({}, edge.nearest({}));
     }
     Point3d inside;

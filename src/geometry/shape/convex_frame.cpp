@@ -36,7 +36,7 @@ double size_of(const PosedConvex& convex) {
 }
 
 /// The smaller one comes second; of equals, the one that stands at smaller coordinates, or is turned less.
-bool comes_first(const PosedConvex& a, const PosedConvex& b) {
+bool solid_comes_first(const PosedConvex& a, const PosedConvex& b) {
     const double size_a = size_of(a), size_b = size_of(b);
     if (size_a != size_b) return size_a > size_b;
     const Point3d place_a = place_of(a), place_b = place_of(b);
@@ -99,7 +99,7 @@ Point3d FramedConvex::middle() const {
 }
 
 ConvexFrame::ConvexFrame(const PosedConvex& a, const PosedConvex& b)
-    : swapped_(!comes_first(a, b)),
+    : swapped_(!solid_comes_first(a, b)),
       origin_(place_of(swapped_ ? a : b)),
       a_(swapped_ ? b : a, origin_),
       b_(swapped_ ? a : b, origin_) {}

@@ -14,17 +14,17 @@
 namespace octopair {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::bad_input, what); }
+[[noreturn]] void refuse_geometry(const std::string& what) { throw Error(ErrorCode::bad_input, what); }
 
 void check_length(double value, const std::string& what) {
     if (!(value > 0) || !std::isfinite(value)) {
-        refuse(what + " is " + std::to_string(value) + "; it must be finite and above 0");
+        refuse_geometry(what + " is " + std::to_string(value) + "; it must be finite and above 0");
     }
 }
 
 void check_point(const Point3d& point, const std::string& what) {
     for (const double at : point) {
-        if (!std::isfinite(at)) refuse(what + " has a coordinate that is not finite: " + std::to_string(at));
+        if (!std::isfinite(at)) refuse_geometry(what + " has a coordinate that is not finite: " + std::to_string(at));
     }
 }
 
@@ -37,7 +37,8 @@ void check_shape(const shape::Box& box) { check_lengths(box.half_extents, "a box
 void check_shape(const shape::Capsule& capsule) {
     check_length(capsule.radius, "a capsule's radius");
     if (!(capsule.length >= 0) || !std::isfinite(capsule.length)) {
-        refuse("a capsule's length is " + std::to_string(capsule.length) + "; it must be finite and not below 0");
+        refuse_geometry("a capsule's length is " + std::to_string(capsule.length) +
+                        "; it must be finite and not below 0");
     }
 }
 void check_shape(const shape::Cylinder& cylinder) {
@@ -51,15 +52,17 @@ void check_shape(const shape::Cone& cone) {
 void check_shape(const shape::Ellipsoid& ellipsoid) { check_lengths(ellipsoid.radii, "an ellipsoid's radius"); }
 void check_shape(const shape::Plane& plane) {
     check_point(plane.normal, "a plane's normal");
-    if (plane.normal == Point3d{0, 0, 0}) refuse("a plane's normal is 0");
-    if (!std::isfinite(plane.offset)) refuse("a plane's offset is not finite: " + std::to_string(plane.offset));
+    if (plane.normal == Point3d{0, 0, 0}) refuse_geometry("a plane's normal is 0");
+    if (!std::isfinite(plane.offset))
+        refuse_geometry("a plane's offset is not finite: " + std::to_string(plane.offset));
     const double length = vector::length(plane.normal);
     if (!std::isfinite(length) || !std::isfinite(plane.offset / length)) {
-        refuse("a plane's offset is " + std::to_string(plane.offset) + ", beyond float64 for a normal of its length");
+        refuse_geometry("a plane's offset is " + std::to_string(plane.offset) +
+                        ", beyond float64 for a normal of its length");
     }
 }
 void check_shape(const shape::ConvexHull& hull) {
-    if (hull.points.empty()) refuse("a convex hull has no points");
+    if (hull.points.empty()) refuse_geometry("a convex hull has no points");
     for (std::size_t i = 0; i < hull.points.size(); ++i) {
         check_point(hull.points[i], "point " + std::to_string(i) + " of a convex hull");
     }
@@ -71,8 +74,8 @@ void check_shape(const shape::Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const std::uint32_t vertex : mesh.triangles[i]) {
             if (vertex < mesh.vertices.size()) continue;
-            refuse("triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) + " of " +
-                   std::to_string(mesh.vertices.size()));
+            refuse_geometry("triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) +
+                            " of " + std::to_string(mesh.vertices.size()));
         }
     }
 }
@@ -142,7 +145,7 @@ ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>
         points ? farthest_from(bounds.centre, vertices.empty() ? solid.points : vertices) : reach(solid);
     // The centre is rounded, and so are differences, squares and their sum.
     bounds.radius = (core + solid.radius) * (1 + 16 * std::numeric_limits<double>::epsilon());
-    if (!std::isfinite(bounds.radius)) refuse("a shape is larger than float64 can tell");
+    if (!std::isfinite(bounds.radius)) refuse_geometry("a shape is larger than float64 can tell");
     return bounds;
 }
 

@@ -17,9 +17,8 @@ namespace octopair {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Box3d world_box(const PosedMesh& mesh) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     for (const auto& corners : mesh.tree.triangles) {
         for (const std::uint32_t corner : corners) {

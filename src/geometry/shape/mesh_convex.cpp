@@ -22,14 +22,12 @@ void visit_near(const PosedMesh& mesh, const BoxedSolid& solid, const Tell& tell
     });
 }
 
-PosedConvex posed(const BoxedSolid& solid) { return {solid.solid, solid.box.pose}; }
-
 }  // namespace
 
 bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid) {
     bool meets = false;
     visit_near(mesh, solid, [&](std::uint32_t, const Triangle3d& triangle) {
-        meets = convex_meet(PosedConvex(triangle), posed(solid));
+        meets = convex_meet(PosedConvex(triangle), solid.posed());
         return !meets;
     });
     return meets;
@@ -38,7 +36,7 @@ bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid) {
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
                              const std::function<bool(std::uint32_t at, const Triangle3d&)>& tell) {
     visit_near(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
-        return !convex_meet(PosedConvex(triangle), posed(solid)) || tell(at, triangle);
+        return !convex_meet(PosedConvex(triangle), solid.posed()) || tell(at, triangle);
     });
 }
 
@@ -49,7 +47,7 @@ bool encloses_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
 bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
     const auto held = [&](std::uint32_t vertex) {
         const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[vertex]);
-        return convex_holds(posed(solid), PosedConvex(place));
+        return convex_holds(solid.posed(), PosedConvex(place));
     };
     const auto& triangles = mesh.tree.triangles;
     return !triangles.empty() && std::all_of(triangles.begin(), triangles.end(), [&](const auto& corners) {
@@ -60,17 +58,17 @@ bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
 std::optional<ConvexGap> surface_gap(const PosedMesh& mesh, const BoxedSolid& solid, double most) {
     if (mesh.tree.nodes.empty()) return std::nullopt;
     std::optional<ConvexGap> best;
-    MeshWalk walk(mesh, solid.box, round_up(most));
+    MeshWalk walk(mesh, solid.box, reach_above(most));
     std::array<NodePair, 1> at;
     while (next_leaves(walk, at) > 0) {
         const MeshNode& leaf = mesh.tree.nodes[at[0].a];
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
-            const ConvexGap gap = convex_gap(PosedConvex(triangle), posed(solid));
+            const ConvexGap gap = convex_gap(PosedConvex(triangle), solid.posed());
             if (gap.at_least > most || (best && gap.distance >= best->distance)) continue;
             best = gap;
             most = std::min(most, gap.distance);
-            walk.reach = round_up(most);
+            walk.reach = reach_above(most);
         }
     }
     return best;

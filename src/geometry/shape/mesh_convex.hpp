@@ -15,6 +15,8 @@ namespace octopair {
 struct BoxedSolid {
     const ConvexSolid& solid;
     PosedMesh box;
+
+    PosedConvex posed() const { return {solid, box.pose}; }
 };
 
 /// Whether some triangle meets the solid, which is full: one that lies inside does.

@@ -12,7 +12,7 @@
 namespace octopair {
 
 /// As a reach of walks: upward, so that what is within it stays so.
-inline float round_up(double reach) { return std::nextafter(float(reach), std::numeric_limits<float>::infinity()); }
+inline float reach_above(double reach) { return std::nextafter(float(reach), std::numeric_limits<float>::infinity()); }
 
 /// Calls leaves(node of a, node of b) for leaves that may be no further apart than `reach`, until it returns false.
 template <typename Leaves>

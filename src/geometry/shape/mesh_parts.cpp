@@ -48,7 +48,7 @@ std::vector<std::uint32_t> merge_places(const std::vector<Point3d>& vertices) {
 }
 
 /// An edge of a triangle, its ends ascending; `forward`: as the triangle runs through it.
-struct Edge {
+struct SharedEdge {
     std::uint32_t low, high;
     std::uint32_t part;
     bool forward;
@@ -59,9 +59,10 @@ struct PartState {
 };
 
 /// Each edge of a closed part is in an even number of triangles; of an oriented one, as often forward as backward.
-void judge_edges(std::vector<Edge>& edges, std::vector<PartState>& states) {
-    std::sort(edges.begin(), edges.end(),
-              [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+void judge_edges(std::vector<SharedEdge>& edges, std::vector<PartState>& states) {
+    std::sort(edges.begin(), edges.end(), [](const SharedEdge& a, const SharedEdge& b) {
+        return a.low != b.low ? a.low < b.low : a.high < b.high;
+    });
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
         std::size_t forward = 0;
         while (end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high) {
@@ -83,7 +84,7 @@ MeshParts find_parts(const MeshTree& tree) {
         sets.join(place[a], place[b]);
         sets.join(place[a], place[c]);
     }
-    std::vector<Edge> edges;
+    std::vector<SharedEdge> edges;
     edges.reserve(tree.triangles.size() * 3);
     for (const auto& corners : tree.triangles) {
         for (int k = 0; k < 3; ++k) {

@@ -13,8 +13,6 @@ namespace octopair {
 
 namespace {
 
-PosedConvex posed(const BoxedSolid& solid) { return {solid.solid, solid.box.pose}; }
-
 /// A place of the core that is deep in it: the mean of its points, or the origin of its space.
 Point3d deep_place_of(const ConvexSolid& solid) {
     Point3d middle = {};
@@ -57,7 +55,7 @@ double deepest_in_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
     double deepest = 0;
     const auto look_at = [&](const Point3d& place) {
         const PosedConvex point(place);
-        if (convex_meet(point, posed(solid))) deepest = std::max(deepest, convex_contact(point, posed(solid)).depth);
+        if (convex_meet(point, solid.posed())) deepest = std::max(deepest, convex_contact(point, solid.posed()).depth);
     };
     for (std::size_t i = 0; i < mesh.tree.triangles.size(); i += step) {
         const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, std::uint32_t(i));
@@ -81,7 +79,7 @@ void lead_out(const Triangle3d& triangle, const Point3d& outward, const BoxedSol
     if (vector::dot(contact.normal, outward) >= 0) return;
     contact.normal = outward;
     const PosedPlane side{outward, triangle[0]};
-    contact.depth = std::max(0.0, -height_above(side, span_across(side, posed(solid)).lowest));
+    contact.depth = std::max(0.0, -height_above(side, span_across(side, solid.posed()).lowest));
 }
 
 }  // namespace
@@ -97,7 +95,7 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
     visit_meeting_triangles(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
         const bool oriented = mesh.tree.parts.sides[at] == MeshParts::Side::oriented;
         const Point3d outward = oriented ? outward_of(triangle, mesh.pose) : Point3d{};
-        const ConvexContact least = convex_contact(PosedConvex(triangle), posed(solid));
+        const ConvexContact least = convex_contact(PosedConvex(triangle), solid.posed());
         Contact contact = {least.point, least.normal, least.depth, mesh.tree.numbers[at]};
         deepest = std::max(deepest, least.depth);
         if (least.depth > request.touch) lead_out(triangle, outward, solid, contact);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Bounds {
+struct TriangleBounds {
     Point3d min = {infinity, infinity, infinity};
     Point3d max = {-infinity, -infinity, -infinity};
 
@@ -23,7 +23,7 @@ struct Bounds {
             max[axis] = std::max(max[axis], point[axis]);
         }
     }
-    void add(const Bounds& other) {
+    void add(const TriangleBounds& other) {
         for (int axis = 0; axis < 3; ++axis) {
             min[axis] = std::min(min[axis], other.min[axis]);
             max[axis] = std::max(max[axis], other.max[axis]);
@@ -41,7 +41,7 @@ struct Bounds {
     }
 };
 
-void set_node_box(MeshNode& node, const Bounds& bounds, const Point3d& origin) {
+void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& origin) {
     for (int axis = 0; axis < 3; ++axis) {
         const double low = bounds.min[axis] - origin[axis], high = bounds.max[axis] - origin[axis];
         node.centre[axis] = float(low / 2 + high / 2);
@@ -56,7 +56,7 @@ void set_node_box(MeshNode& node, const Bounds& bounds, const Point3d& origin) {
 
 /// A triangle while the tree is made.
 struct Item {
-    Bounds bounds;
+    TriangleBounds bounds;
     Point3d centre;
     std::uint32_t number;
 };
@@ -68,7 +68,7 @@ public:
     void build() {
         tree_.vertices = mesh_.vertices;
         if (mesh_.triangles.empty()) return;
-        Bounds all;
+        TriangleBounds all;
         items_.reserve(mesh_.triangles.size());
         for (const auto& corners : mesh_.triangles) {
             Item item{{}, {}, std::uint32_t(items_.size())};
@@ -115,7 +115,7 @@ private:
     }
 
     void set_box(const Task& task) {
-        Bounds bounds;
+        TriangleBounds bounds;
         for (std::uint32_t i = task.begin; i < task.end; ++i) bounds.add(items_[i].bounds);
         set_node_box(tree_.nodes[task.node], bounds, tree_.origin);
     }
@@ -123,7 +123,7 @@ private:
     /// Where the items are cut, after they were put in order: each side gets at least one.
     std::uint32_t split(const Task& task) {
         const std::span items(items_.data() + task.begin, task.end - task.begin);
-        Bounds centres;
+        TriangleBounds centres;
         for (const Item& item : items) centres.add(item.centre);
         int axis = 0;
         for (int other = 1; other < 3; ++other) {
@@ -155,21 +155,21 @@ private:
     /// The first bin of the right side, by the least sum of area times count.
     template <typename BinOf>
     static int best_cut(std::span<const Item> items, const BinOf& bin_of) {
-        std::array<Bounds, bins> bounds;
+        std::array<TriangleBounds, bins> bounds;
         std::array<std::size_t, bins> counts = {};
         for (const Item& item : items) {
             bounds[bin_of(item)].add(item.bounds);
             ++counts[bin_of(item)];
         }
         std::array<double, bins> cost_right = {};
-        Bounds right;
+        TriangleBounds right;
         std::size_t count = 0;
         for (int cut = bins - 1; cut > 0; --cut) {
             right.add(bounds[cut]);
             count += counts[cut];
             cost_right[cut] = right.area() * double(count);
         }
-        Bounds left;
+        TriangleBounds left;
         count = 0;
         int best = bins / 2;
         double least = infinity;
@@ -199,7 +199,7 @@ std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh) {
 }
 
 MeshTree make_box_tree(const Box3d& box) {
-    Bounds bounds;
+    TriangleBounds bounds;
     bounds.add(Point3d{box.min[0], box.min[1], box.min[2]});
     bounds.add(Point3d{box.max[0], box.max[1], box.max[2]});
     MeshTree tree;

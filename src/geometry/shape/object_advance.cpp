@@ -38,7 +38,7 @@ public:
     LeastTime(const Passing& passing, double most) : passing_(passing), least_(most) {}
 
     /// Pairs that are further apart than this do not matter any more.
-    float reach() const { return round_up(passing_.reach + passing_.keep + least_ * passing_.fastest() * 2); }
+    float reach() const { return reach_above(passing_.reach + passing_.keep + least_ * passing_.fastest() * 2); }
     double least() const { return least_; }
 
     void add(const PosedConvex& a, const PosedConvex& b, double gap, const std::array<Point3d, 2>& nearest) {

@@ -10,12 +10,12 @@
 namespace octopair {
 namespace {
 
-struct Bounds {
+struct CornerBounds {
     Point3d low, high;
 };
 
-Bounds bounds_of(std::span<const Point3d> points) {
-    Bounds bounds = {points.front(), points.front()};
+CornerBounds corner_bounds_of(std::span<const Point3d> points) {
+    CornerBounds bounds = {points.front(), points.front()};
     for (const Point3d& point : points) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             bounds.low[axis] = std::min(bounds.low[axis], point[axis]);
@@ -28,7 +28,7 @@ Bounds bounds_of(std::span<const Point3d> points) {
 /// Brings neighbours together: halves the points across their longest side, down to blocks.
 void arrange(std::span<Point3d> points, std::size_t block_size) {
     if (points.size() <= block_size) return;
-    const Bounds bounds = bounds_of(points);
+    const CornerBounds bounds = corner_bounds_of(points);
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k) {
         if (bounds.high[k] - bounds.low[k] > bounds.high[axis] - bounds.low[axis]) axis = k;
@@ -68,7 +68,7 @@ VertexBlocks::VertexBlocks(std::vector<Point3d> vertices) {
     for (std::size_t begin = 0; begin < vertices.size(); begin += block_size) {
         const auto points =
             std::span<const Point3d>(vertices).subspan(begin, std::min(block_size, vertices.size() - begin));
-        const Bounds bounds = bounds_of(points);
+        const CornerBounds bounds = corner_bounds_of(points);
         Block& block = blocks_.emplace_back();
         Places& places = places_.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis) {
