@@ -219,7 +219,7 @@ Placer far_outlier(const Population& population) {
     };
 }
 
-constexpr Kind kinds[] = {
+constexpr Kind kind_table[] = {
     {"uniform", "equal cubes anywhere in the unit cube, n/2 pairs", false, uniform},
     {"dense", "equal cubes anywhere in the unit cube, 5 n pairs", false, dense},
     {"mixed", "cubes whose sizes span three decades, 2.4 n pairs", false, mixed},
@@ -244,7 +244,7 @@ constexpr Kind kinds[] = {
 
 }  // namespace
 
-std::span<const Kind> all_kinds() { return kinds; }
+std::span<const Kind> all_kinds() { return kind_table; }
 
 double cube_side(std::uint64_t objects, double pairs_per_object) {
     // n^2 / 2 pairs of objects, each with the chance (2 side)^3.

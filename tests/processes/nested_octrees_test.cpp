@@ -1,5 +1,5 @@
-// Nested octrees of large octants, which workers build together: the pairs are those of the local engine, also where
-// workers are lost while they build one.
+// Nested octrees of large octants, which crew_size build together: the pairs are those of the local engine, also where
+// crew_size are lost while they build one.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -29,8 +29,8 @@ using testing::Scene;
 
 constexpr std::uint64_t objects = 60'000;
 constexpr std::uint64_t most_pairs = 2'000'000;
-constexpr unsigned workers = 2;
-constexpr std::uint32_t octree_blocks = 2 * workers;  // shares of encode, and of sort, of the outermost octree
+constexpr unsigned crew_size = 2;
+constexpr std::uint32_t octree_blocks = 2 * crew_size;  // shares of encode, and of sort, of the outermost octree
 
 class NestedOctrees : public testing::Processes {};
 
@@ -92,7 +92,7 @@ std::vector<Fault> nested_faults() {
 TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
     const Scene scene("speck", objects, 3);
     testing::MappedPlan plan;
-    const auto local = make_local_engine(1), engine = testing::make_faulty_engine(workers);
+    const auto local = make_local_engine(1), engine = testing::make_faulty_engine(crew_size);
     constexpr std::array calls = {
         Asked{.how = How::list, .order = Order::octal}, Asked{.how = How::list, .order = Order::ascending},
         Asked{.how = How::stream, .order = Order::octal},
