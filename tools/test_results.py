@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
-"""Reads results of ctest, JUnit files such as build/STAGE/tests.xml.
+"""Reads results of ctest, JUnit files such as build/results/STAGE.xml.
 
     test_results.py --count FILE     prints "PASSED FAILED SKIPPED"; no readable results are one failure
+    test_results.py --slowest BEGIN BUILDS FILE...
+                                     prints the tests that took longest, and what took longest to compile since BEGIN,
+                                     seconds since 1970, in the build folders in BUILDS
     test_results.py FILE...          prints the failed tests and the end of what each said, so that it stands where a
                                      long log ends; files that are missing or unreadable are skipped
 """
 import collections
+import heapq
 import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
 
 LAST_LINES = 40  # of what a test printed
+SLOWEST = 10
 
 
 def outcome(case):
@@ -39,14 +44,42 @@ def print_count(results):
 def print_failed(results):
     for case, result in tests(results) or []:
         if result == "failed":
-            print(f"\n{results.parent.name}: {case.get('name')} failed")
+            print(f"\n{results.stem}: {case.get('name')} failed")
             for line in (case.findtext("system-out") or "").rstrip().splitlines()[-LAST_LINES:]:
                 print(f"    {line}")
+
+
+def print_slowest_tests(files):
+    times = [(float(case.get("time", 0)), f"{results.stem}: {case.get('name')}")
+             for results in files for case, result in tests(results) or [] if result == "passed"]
+    print(f"\nslowest of {len(times)} tests, which took {sum(time for time, _ in times):.0f} s in all:")
+    for time, name in heapq.nlargest(SLOWEST, times):
+        print(f"  {time:6.1f} s  {name}")
+
+
+def compiled(builds, begin):
+    """How long, and what: the object files in ninja's logs that were written since `begin`."""
+    for log in builds.glob("*/.ninja_log"):
+        lines = log.read_text(encoding="utf-8").splitlines()[1:]
+        for start, end, written, output, _ in (line.split("\t") for line in lines):
+            if output.endswith(".o") and int(written) / 1e9 >= begin:
+                yield (int(end) - int(start)) / 1000, f"{log.parent.name}: {output.replace('/CMakeFiles', '')}"
+
+
+def print_slowest_files(builds, begin):
+    times = sorted(set(compiled(builds, begin)), reverse=True)
+    print(f"\nslowest of {len(times)} files compiled, which took {sum(time for time, _ in times):.0f} s in all:")
+    for time, name in times[:SLOWEST]:
+        print(f"  {time:6.1f} s  {name}")
 
 
 def main(arguments):
     if len(arguments) == 2 and arguments[0] == "--count":
         print_count(pathlib.Path(arguments[1]))
+        return
+    if len(arguments) > 3 and arguments[0] == "--slowest":
+        print_slowest_tests([pathlib.Path(name) for name in arguments[3:]])
+        print_slowest_files(pathlib.Path(arguments[2]), float(arguments[1]))
         return
     for name in arguments:
         print_failed(pathlib.Path(name))

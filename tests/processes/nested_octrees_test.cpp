@@ -1,5 +1,5 @@
-// Nested octrees of large octants, which crew_size build together: the pairs are those of the local engine, also where
-// crew_size are lost while they build one.
+// Nested octrees of large octants, which workers build together: the pairs are those of the local engine, also where
+// workers are lost while they build one.
 #include <gtest/gtest.h>
 
 #include <array>

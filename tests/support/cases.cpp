@@ -110,7 +110,10 @@ Case make_case(const std::string& kind, std::uint64_t seed) {
 std::uint64_t case_count(std::uint64_t usual) {
     if (std::getenv("OCTOPAIR_TEST_SEED") != nullptr) return 1;
     const char* asked = std::getenv("OCTOPAIR_TEST_CASES");
-    return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
+    if (asked != nullptr) return std::strtoull(asked, nullptr, 10);
+    const char* share = std::getenv("OCTOPAIR_TEST_SHARE");
+    if (share == nullptr) return usual;
+    return std::max<std::uint64_t>(1, usual * std::strtoull(share, nullptr, 10) / 100);
 }
 
 SceneRange SceneRange::part(std::uint64_t i, std::uint64_t parts) const {

@@ -2,6 +2,7 @@
 //
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that one case.
 // Soak:   OCTOPAIR_TEST_CASES=<number> runs so many cases of each kind instead of the usual number;
+//         OCTOPAIR_TEST_SHARE=<per cent> a share of the usual number;
 //         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> do so for the tests of exactness.
 #pragma once
 
