@@ -83,62 +83,62 @@ int run_paper(BenchRequest request) {
     return 0;
 }
 
-void add_numbers(CLI::App& command, BenchRequest& request) {
+void add_numbers(Command& command, BenchRequest& request) {
     constexpr unsigned most_rounds = 1000;
     command
-        .add_option_function<std::vector<std::string>>(
+        .add_option(
             "--objects",
             [&request](const std::vector<std::string>& texts) { request.plan.objects = parse_objects(texts); },
             "how many, several times (default 100000 250000 500000 1000000 1500000 2000000)")
-        ->type_name("N");
+        .type_name("N");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--threads",
             [&request](const std::string& text) {
                 request.plan.threads = unsigned(parse_count("--threads", text, most_threads));
             },
             "on 1 to K processors (default 0: all cores)")
-        ->type_name("K");
+        .type_name("K");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--rounds",
             [&request](const std::string& text) {
                 request.plan.rounds = unsigned(parse_between("--rounds", text, {1, most_rounds}));
             },
             "runs of each, of which the median counts (default 7)")
-        ->type_name("R");
+        .type_name("R");
 }
 
-void add_paper(CLI::App& bench, Action& action) {
-    CLI::App* command = bench.add_subcommand("paper", "the figure and the tables of the paper's section 5");
+void add_paper(Command& bench, Action& action) {
+    Command command = bench.add_subcommand("paper", "the figure and the tables of the paper's section 5");
     const auto request = std::make_shared<BenchRequest>();
     command
-        ->add_option_function<std::string>(
+        .add_option(
             "--scene",
             [request](const std::string& kind) {
                 (void)samples::scene_description(kind);
                 request->plan.scene = kind;
             },
             "a kind of octopair generate (default uniform)")
-        ->type_name("KIND");
-    add_numbers(*command, *request);
+        .type_name("KIND");
+    add_numbers(command, *request);
 #ifdef OCTOPAIR_WITH_MPI
-    add_machines_options(*command, request->machines);
+    add_machines_options(command, request->machines);
 #endif
-    command->add_option("--json", request->json, "write every time measured as JSON")->type_name("FILE");
-    command->add_flag("--quiet", request->quiet, "no progress on standard error");
-    command->callback([request, &action] { action = [request] { return run_paper(*request); }; });
+    command.add_option("--json", request->json, "write every time measured as JSON").type_name("FILE");
+    command.add_flag("--quiet", request->quiet, "no progress on standard error");
+    command.callback([request, &action] { action = [request] { return run_paper(*request); }; });
 }
 
 }  // namespace
 
-void add_bench(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("bench", "measure");
-    command->require_subcommand(1);
-    add_paper(*command, action);
+void add_bench(Command& program, Action& action) {
+    Command command = program.add_subcommand("bench", "measure");
+    command.require_subcommand();
+    add_paper(command, action);
 #ifdef OCTOPAIR_WITH_MPI
-    add_bench_cluster(*command, action);
-    add_bench_scaling(*command, action);
+    add_bench_cluster(command, action);
+    add_bench_scaling(command, action);
 #endif
 }
 

@@ -71,9 +71,9 @@ int run_cluster(const ClusterRequest& request) {
     return 0;
 }
 
-void add_arrangement(CLI::App& command, const std::shared_ptr<ClusterRequest>& request) {
+void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& request) {
     command
-        .add_option_function<std::vector<std::string>>(
+        .add_option(
             "--arrangement",
             [request](const std::vector<std::string>& names) {
                 request->plan.arrangements.clear();
@@ -83,33 +83,33 @@ void add_arrangement(CLI::App& command, const std::shared_ptr<ClusterRequest>& r
                 }
             },
             "shared (default), or paper: a master deals out, merges and scans; or both")
-        ->type_name("WORD");
+        .type_name("WORD");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--ranks-per-machine",
             [request](const std::string& text) {
                 request->plan.ranks_per_machine = unsigned(parse_some("--ranks-per-machine", text));
             },
             "in the paper's arrangement (default 2)")
-        ->type_name("N");
+        .type_name("N");
 }
 
 }  // namespace
 
-void add_bench_cluster(CLI::App& bench, Action& action) {
-    CLI::App* command = bench.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
+void add_bench_cluster(Command& bench, Action& action) {
+    Command command = bench.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
     const auto request = std::make_shared<ClusterRequest>();
-    add_scenes(*command, request->plan.scenes);
-    add_numbers(*command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
-    add_numbers(*command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
-    add_arrangement(*command, request);
-    add_rounds(*command, request->plan.rounds);
-    command->add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
-        ->type_name("COMMAND");
-    command->add_option("--json", request->json, "write every rank's costs as JSON")->type_name("FILE");
-    command->add_option("--on-ranks", request->on_ranks)->group("");
-    command->add_flag("--quiet", request->quiet, "no progress on standard error");
-    command->callback([request, &action] { action = [request] { return run_cluster(*request); }; });
+    add_scenes(command, request->plan.scenes);
+    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
+    add_numbers(command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
+    add_arrangement(command, request);
+    add_rounds(command, request->plan.rounds);
+    command.add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
+        .type_name("COMMAND");
+    command.add_option("--json", request->json, "write every rank's costs as JSON").type_name("FILE");
+    command.add_option("--on-ranks", request->on_ranks).hide();
+    command.add_flag("--quiet", request->quiet, "no progress on standard error");
+    command.callback([request, &action] { action = [request] { return run_cluster(*request); }; });
 }
 
 }  // namespace octopair::cli

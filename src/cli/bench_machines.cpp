@@ -1,8 +1,8 @@
 #include "cli/bench_machines.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "cli/command.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/numbers.hpp"
 #include "cli/study_output.hpp"
@@ -31,34 +31,34 @@ std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-void add_machines_options(CLI::App& command, MachinesRequest& request) {
-    CLI::Option* const machines =
+void add_machines_options(Command& command, MachinesRequest& request) {
+    const Option machines =
         command
-            .add_option_function<std::vector<std::string>>(
+            .add_option(
                 "--machines",
                 [&request](const std::vector<std::string>& texts) { request.machines = parse_machines(texts); },
                 "tables 1 and 2 on ranks, instead: so many machines of 2 processors, several times")
-            ->type_name("N");
+            .type_name("N");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--latency",
             [&request](const std::string& text) { request.latency_seconds = parse_length("--latency", text) / 1e6; },
             "of the network's model, with --machines: microseconds a message (default 10)")
-        ->needs(machines)
-        ->type_name("US");
+        .needs(machines)
+        .type_name("US");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--bandwidth",
             [&request](const std::string& text) {
                 request.bytes_per_second = parse_length("--bandwidth", text) * 1e6 / 8;
                 if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
             },
             "of the network's model, with --machines: Mbit/s of each machine (default 800)")
-        ->needs(machines)
-        ->type_name("MBIT");
+        .needs(machines)
+        .type_name("MBIT");
     command.add_option("--mpirun", request.mpirun, "with --machines: the command that starts ranks (default mpirun)")
-        ->needs(machines)
-        ->type_name("COMMAND");
+        .needs(machines)
+        .type_name("COMMAND");
 }
 
 int run_machines(const MachinesRequest& request, const MachinesScene& scene) {

@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
-
 namespace octopair::cli {
+
+class Command;
 
 struct MachinesRequest {
     std::vector<unsigned> machines;                           ///< how many, ascending; empty: not asked for
@@ -19,7 +17,7 @@ struct MachinesRequest {
 };
 
 /// --machines, --latency, --bandwidth, --mpirun.
-void add_machines_options(CLI::App& command, MachinesRequest& request);
+void add_machines_options(Command& command, MachinesRequest& request);
 
 /// What else `bench paper` says.
 struct MachinesScene {

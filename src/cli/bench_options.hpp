@@ -1,13 +1,13 @@
 // Options that subcommands of `bench` share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/numbers.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
@@ -23,9 +23,9 @@ inline std::uint64_t parse_some(const std::string& name, const std::string& text
 
 /// Numbers from 1 on, which come to stand in ascending order.
 template <typename Number>
-void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
+void add_numbers(Command& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
     command
-        .add_option_function<std::vector<std::string>>(
+        .add_option(
             name,
             [&numbers, name](const std::vector<std::string>& texts) {
                 numbers.clear();
@@ -33,29 +33,29 @@ void add_numbers(CLI::App& command, const std::string& name, std::vector<Number>
                 std::ranges::sort(numbers);
             },
             what)
-        ->type_name("N");
+        .type_name("N");
 }
 
 /// --scene, several times.
-inline void add_scenes(CLI::App& command, std::vector<std::string>& scenes) {
+inline void add_scenes(Command& command, std::vector<std::string>& scenes) {
     command
-        .add_option_function<std::vector<std::string>>(
+        .add_option(
             "--scene",
             [&scenes](const std::vector<std::string>& kinds) {
                 for (const std::string& kind : kinds) (void)samples::scene_description(kind);
                 scenes = kinds;
             },
             "kinds of octopair generate (default uniform)")
-        ->type_name("KIND");
+        .type_name("KIND");
 }
 
 /// --rounds, of which the median counts.
-inline void add_rounds(CLI::App& command, unsigned& rounds) {
+inline void add_rounds(Command& command, unsigned& rounds) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_some("--rounds", text)); },
             "calls of each, of which the median counts (default " + std::to_string(rounds) + ')')
-        ->type_name("R");
+        .type_name("R");
 }
 
 }  // namespace octopair::cli

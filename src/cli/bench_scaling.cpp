@@ -80,23 +80,22 @@ int run_scaling(ScalingRequest request) {
 
 }  // namespace
 
-void add_bench_scaling(CLI::App& bench, Action& action) {
-    CLI::App* command =
-        bench.add_subcommand("scaling", "how long a call takes on so many threads, and on so many ranks");
+void add_bench_scaling(Command& bench, Action& action) {
+    Command command = bench.add_subcommand("scaling", "how long a call takes on so many threads, and on so many ranks");
     const auto request = std::make_shared<ScalingRequest>();
-    add_scenes(*command, request->plan.scenes);
-    add_numbers(*command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
-    command->add_flag("--weak", request->plan.weak, "so many objects for each core, not in all");
-    add_numbers(*command, "--cores", request->plan.cores, "on how many, several times (default 1 2 4 ... all)");
-    add_numbers(*command, "--threads-per-rank", request->plan.threads_per_rank,
+    add_scenes(command, request->plan.scenes);
+    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
+    command.add_flag("--weak", request->plan.weak, "so many objects for each core, not in all");
+    add_numbers(command, "--cores", request->plan.cores, "on how many, several times (default 1 2 4 ... all)");
+    add_numbers(command, "--threads-per-rank", request->plan.threads_per_rank,
                 "also ranks of so many threads, several times (default 1)");
-    add_rounds(*command, request->plan.rounds);
-    command->add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
-        ->type_name("COMMAND");
-    command->add_option("--json", request->json, "write every time measured as JSON")->type_name("FILE");
-    command->add_option("--on-ranks", request->on_ranks)->group("");
-    command->add_flag("--quiet", request->quiet, "no progress on standard error");
-    command->callback([request, &action] { action = [request] { return run_scaling(*request); }; });
+    add_rounds(command, request->plan.rounds);
+    command.add_option("--mpirun", request->plan.mpirun, "the command that starts ranks (default mpirun)")
+        .type_name("COMMAND");
+    command.add_option("--json", request->json, "write every time measured as JSON").type_name("FILE");
+    command.add_option("--on-ranks", request->on_ranks).hide();
+    command.add_flag("--quiet", request->quiet, "no progress on standard error");
+    command.callback([request, &action] { action = [request] { return run_scaling(*request); }; });
 }
 
 }  // namespace octopair::cli

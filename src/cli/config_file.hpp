@@ -3,14 +3,12 @@
 
 #include <string>
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
+#include "cli/command.hpp"
 
 namespace octopair::cli {
 
 /// Gives `command`, which was parsed, those options of the file that the command line does not have. Throws Error{usage}
 /// that names the file and the key, Error{io_failed} if it cannot be read.
-void apply_config(CLI::App& command, const std::string& file);
+void apply_config(const Command& command, const std::string& file);
 
 }  // namespace octopair::cli

@@ -96,33 +96,34 @@ int run_detect(const DetectRequest& request) {
     return exit_status_of(request, report);
 }
 
-void add_what(CLI::App& command, DetectRequest& request) {
+void add_what(Command& command, DetectRequest& request) {
     add_scene_options(command, request);
     add_pipeline_options(command, request.pipeline);
     command.add_flag("--events", request.events,
                      "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
 }
 
-void add_outcome(CLI::App& command, DetectRequest& request) {
-    auto* output =
-        command.add_option("--output", request.output,
-                           "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)");
-    output->type_name("FILE");
+void add_outcome(Command& command, DetectRequest& request) {
+    const Option output =
+        command
+            .add_option("--output", request.output,
+                        "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)")
+            .type_name("FILE");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--index-type",
             [&request](const std::string& word) {
                 check_word({"--index-type", {"uint32", "uint64"}, {}}, word);
                 request.wide_indices = word == "uint64";
             },
             "of indices in .npy (default uint32; with --engine mpi uint64 where there are more objects)")
-        ->type_name("TYPE");
+        .type_name("TYPE");
     add_order_options(command, request, "the first N pairs (with --events: rows)");
-    command.add_flag("--count-only", request.count_only, "print the number of pairs alone")->excludes(output);
+    command.add_flag("--count-only", request.count_only, "print the number of pairs alone").excludes(output);
     command.add_flag("--verify", request.verify,
                      "check the pairs of boxes by a second algorithm; exit status 6 if they differ");
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
-    command.add_option("--stats", request.stats, "write numbers about the run as JSON")->type_name("FILE");
+    command.add_option("--stats", request.stats, "write numbers about the run as JSON").type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
@@ -162,16 +163,16 @@ void check_outputs(const DetectRequest& request) {
 
 }  // namespace
 
-void add_detect(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("detect", "find the colliding pairs of a scene");
+void add_detect(Command& program, Action& action) {
+    Command command = program.add_subcommand("detect", "find the colliding pairs of a scene");
     const auto request = std::make_shared<DetectRequest>();
-    add_what(*command, *request);
-    add_outcome(*command, *request);
-    add_engine_options(*command, request->engine);
+    add_what(command, *request);
+    add_outcome(command, *request);
+    add_engine_options(command, request->engine);
 #ifdef OCTOPAIR_WITH_SERVICE
-    add_server_options(*command, request->engine.server);
+    add_server_options(command, request->engine.server);
 #endif
-    command->callback([request, &action] {
+    command.callback([request, &action] {
         check_engine_choice(request->engine);
         if (!request->output.empty()) (void)io::pair_format(request->output);
         if (request->events) check_event_options(*request);

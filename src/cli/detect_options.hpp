@@ -3,16 +3,14 @@
 
 #include "cli/detection.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
-
 namespace octopair::cli {
 
+class Command;
+
 /// INPUT, --against, --objects, --margin, --padding.
-void add_scene_options(CLI::App& command, DetectRequest& request);
+void add_scene_options(Command& command, DetectRequest& request);
 
 /// --order, --limit. `limited`: what the limit counts.
-void add_order_options(CLI::App& command, DetectRequest& request, const std::string& limited);
+void add_order_options(Command& command, DetectRequest& request, const std::string& limited);
 
 }  // namespace octopair::cli

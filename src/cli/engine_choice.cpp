@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
 #include <thread>
 
+#include "cli/command.hpp"
 #include "cli/numbers.hpp"
 #include "cli/words.hpp"
 #include "octopair/client.hpp"
@@ -76,15 +76,15 @@ struct CountOption {
     unsigned most;
 };
 
-void add_count(CLI::App& command, const CountOption& option, std::optional<unsigned>& value) {
+void add_count(Command& command, const CountOption& option, std::optional<unsigned>& value) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             option.name,
             [option, &value](const std::string& text) {
                 value = unsigned(parse_count(option.name, text, option.most));
             },
             option.description)
-        ->type_name("N");
+        .type_name("N");
 }
 
 }  // namespace
@@ -96,11 +96,11 @@ std::vector<std::string_view> engine_names() {
     return names;
 }
 
-void add_engine_options(CLI::App& command, EngineChoice& choice) {
+void add_engine_options(Command& command, EngineChoice& choice) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--engine", [&choice](const std::string& word) { parse_engine(word, choice); }, engine_help())
-        ->type_name("ENGINE");
+        .type_name("ENGINE");
     add_count(
         command,
         {"--threads", "threads of the local engine (default 0: one a core), or of each rank (default 1)", most_threads},

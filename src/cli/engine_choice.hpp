@@ -11,11 +11,9 @@
 #include "cli/server_choice.hpp"
 #include "octopair/engine.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
-
 namespace octopair::cli {
+
+class Command;
 
 enum class EngineKind : std::uint8_t { local, processes, mpi, server };
 
@@ -39,7 +37,7 @@ struct EngineCrew {
 std::vector<std::string_view> engine_names();
 
 /// --engine, --threads, --workers.
-void add_engine_options(CLI::App& command, EngineChoice& choice);
+void add_engine_options(Command& command, EngineChoice& choice);
 
 /// Throws Error{usage} for threads, workers or a server's options of an engine that has none.
 void check_engine_choice(const EngineChoice& choice);

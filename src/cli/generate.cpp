@@ -60,44 +60,44 @@ std::string kinds_text() {
     return text;
 }
 
-void add_numbers(CLI::App& command, GenerateRequest& request) {
+void add_numbers(Command& command, GenerateRequest& request) {
     constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--objects",
             [&request](const std::string& text) {
                 request.spec.objects = parse_count("--objects", text, most_objects);
             },
             "how many")
-        ->type_name("N")
-        ->required();
+        .type_name("N")
+        .required();
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--seed", [&request](const std::string& text) { request.spec.seed = parse_count("--seed", text); },
             "another seed, another scene (default 0)")
-        ->type_name("S");
+        .type_name("S");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--frames",
             [&request](const std::string& text) {
                 request.spec.frames = parse_count("--frames", text, 1'000'000);
                 request.moving = true;
             },
             "a moving scene of F frames")
-        ->type_name("F");
+        .type_name("F");
 }
 
 }  // namespace
 
-void add_generate(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("generate", "make a seeded scene, the same bytes everywhere");
+void add_generate(Command& program, Action& action) {
+    Command command = program.add_subcommand("generate", "make a seeded scene, the same bytes everywhere");
     const auto request = std::make_shared<GenerateRequest>();
-    command->add_option("KIND", request->spec.kind, "what kind of scene, see below")->required();
-    add_numbers(*command, *request);
-    command->add_option("--output", request->output, "the file to write")->type_name("FILE.npy")->required();
-    command->add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
-    command->footer(kinds_text());
-    command->callback([request, &action] {
+    command.add_option("KIND", request->spec.kind, "what kind of scene, see below").required();
+    add_numbers(command, *request);
+    command.add_option("--output", request->output, "the file to write").type_name("FILE.npy").required();
+    command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
+    command.footer(kinds_text());
+    command.callback([request, &action] {
         if (!request->output.ends_with(".npy")) {
             throw Error(ErrorCode::usage,
                         fmt::format("--output: the name of '{}' does not end in .npy", request->output));

@@ -59,8 +59,8 @@ int run_info() {
 
 }  // namespace
 
-void add_info(CLI::App& app, Action& action) {
-    app.add_subcommand("info", "version, build, engines, instruction set")->callback([&action] { action = run_info; });
+void add_info(Command& program, Action& action) {
+    program.add_subcommand("info", "version, build, engines, instruction set").callback([&action] { action = run_info; });
 }
 
 }  // namespace octopair::cli

@@ -184,59 +184,59 @@ int run_result(const JobRequest& request) {
     return 0;
 }
 
-void add_result_options(CLI::App& command, JobRequest& request) {
+void add_result_options(Command& command, JobRequest& request) {
     command
         .add_option("--output", request.output,
                     "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)")
-        ->type_name("FILE");
-    auto* keep = command.add_flag("--keep", request.keep, "the server keeps job and result (default)");
+        .type_name("FILE");
+    const Option keep = command.add_flag("--keep", request.keep, "the server keeps job and result (default)");
     command.add_flag("--release", request.release, "the server forgets job and result when they are written")
-        ->excludes(keep);
+        .excludes(keep);
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
 }  // namespace
 
-void add_status(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("status", "how jobs of a server stand");
+void add_status(Command& program, Action& action) {
+    Command command = program.add_subcommand("status", "how jobs of a server stand");
     const auto request = std::make_shared<JobRequest>();
-    auto* id = command->add_option("ID", request->id, "of the job (default: all your jobs)");
+    const Option id = command.add_option("ID", request->id, "of the job (default: all your jobs)");
     command
-        ->add_option_function<std::string>(
+        .add_option(
             "--wait", [request](const std::string& text) { request->wait = parse_length("--wait", text); },
             "wait until the job has ended, for at most so long")
-        ->type_name("SECONDS")
-        ->needs(id);
-    command->add_flag("--json", request->json, "as JSON");
-    add_server_address(*command, request->server);
-    command->callback([request, id, &action] {
+        .type_name("SECONDS")
+        .needs(id);
+    command.add_flag("--json", request->json, "as JSON");
+    add_server_address(command, request->server);
+    command.callback([request, id, &action] {
         check_server_named(request->server);
-        if (id->count() > 0 && request->id.empty()) throw Error(ErrorCode::usage, "ID: an empty one is no job's");
+        if (id.is_given() && request->id.empty()) throw Error(ErrorCode::usage, "ID: an empty one is no job's");
         action = [request] { return request->id.empty() ? run_list(*request) : run_status(*request); };
     });
 }
 
-void add_result(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("result", "the pairs of a submitted job; waits for them");
+void add_result(Command& program, Action& action) {
+    Command command = program.add_subcommand("result", "the pairs of a submitted job; waits for them");
     const auto request = std::make_shared<JobRequest>();
-    command->add_option("ID", request->id, "of the job")->required();
-    add_result_options(*command, *request);
-    add_server_address(*command, request->server);
-    command->callback([request, &action] {
+    command.add_option("ID", request->id, "of the job").required();
+    add_result_options(command, *request);
+    add_server_address(command, request->server);
+    command.callback([request, &action] {
         check_server_named(request->server);
         if (!request->output.empty()) (void)io::pair_format(request->output);
         action = [request] { return run_result(*request); };
     });
 }
 
-void add_cancel(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("cancel", "end a job of a server");
+void add_cancel(Command& program, Action& action) {
+    Command command = program.add_subcommand("cancel", "end a job of a server");
     const auto request = std::make_shared<JobRequest>();
-    command->add_option("ID", request->id, "of the job")->required();
-    command->add_flag("--release", request->release, "the server forgets it, however it ended");
-    command->add_flag("--json", request->json, "as JSON");
-    add_server_address(*command, request->server);
-    command->callback([request, &action] {
+    command.add_option("ID", request->id, "of the job").required();
+    command.add_flag("--release", request->release, "the server forgets it, however it ended");
+    command.add_flag("--json", request->json, "as JSON");
+    add_server_address(command, request->server);
+    command.callback([request, &action] {
         check_server_named(request->server);
         action = [request] { return run_cancel(*request); };
     });

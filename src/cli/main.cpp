@@ -1,9 +1,9 @@
 // The program: parses, runs the chosen subcommand, and turns what it throws into a line and an exit status.
 #include <csignal>
 #include <new>
-#include <string>
 #include <system_error>
 
+#include "cli/command.hpp"
 #include "cli/failure.hpp"
 #include "cli/subcommands.hpp"
 #include "octopair/error.hpp"
@@ -14,29 +14,24 @@ namespace octopair::cli {
 namespace {
 
 int run(int argc, char** argv) {
-    CLI::App app("Every colliding pair among millions of moving 3D objects.", "octopair");
-    app.set_version_flag("--version", "octopair " OCTOPAIR_VERSION);
-    app.require_subcommand(1);
+    CommandLine line("octopair", "Every colliding pair among millions of moving 3D objects.",
+                     "octopair " OCTOPAIR_VERSION);
+    Command program = line.program();
+    program.require_subcommand();
     Action action;
-    add_detect(app, action);
-    add_generate(app, action);
-    add_info(app, action);
-    add_replay(app, action);
+    add_detect(program, action);
+    add_generate(program, action);
+    add_info(program, action);
+    add_replay(program, action);
 #ifdef OCTOPAIR_WITH_SERVICE
-    add_serve(app, action);
-    add_submit(app, action);
-    add_status(app, action);
-    add_result(app, action);
-    add_cancel(app, action);
+    add_serve(program, action);
+    add_submit(program, action);
+    add_status(program, action);
+    add_result(program, action);
+    add_cancel(program, action);
 #endif
-    add_bench(app, action);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& success) {
-        return app.exit(success);
-    } catch (const CLI::ParseError& error) {
-        return fail(ErrorCode::usage, (std::string(error.what()) + " (octopair --help tells more)").c_str());
-    }
+    add_bench(program, action);
+    if (const auto status = line.parse(argc, argv)) return *status;
     return action();
 }
 

@@ -73,21 +73,21 @@ int run_replay(const ReplayRequest& request) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("replay", "make the recorded calls of a scene again");
+void add_replay(Command& program, Action& action) {
+    Command command = program.add_subcommand("replay", "make the recorded calls of a scene again");
     const auto request = std::make_shared<ReplayRequest>();
-    command->add_option("FILE", request->file, "a recording, from SceneOptions::recording")->required();
+    command.add_option("FILE", request->file, "a recording, from SceneOptions::recording").required();
     command
-        ->add_option_function<std::string>(
+        .add_option(
             "--threads",
             [request](const std::string& text) {
                 request->threads = unsigned(parse_count("--threads", text, most_threads));
             },
             "threads (default 0: one a core)")
-        ->type_name("N");
-    command->add_flag("--check", request->check, "every step must find what was recorded; else exit status 6");
-    command->add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
-    command->callback([request, &action] { action = [request] { return run_replay(*request); }; });
+        .type_name("N");
+    command.add_flag("--check", request->check, "every step must find what was recorded; else exit status 6");
+    command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
+    command.callback([request, &action] { action = [request] { return run_replay(*request); }; });
 }
 
 }  // namespace octopair::cli

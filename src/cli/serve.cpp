@@ -40,12 +40,12 @@ int run_serve(const ServeRequest& request) {
 
 }  // namespace
 
-void add_serve(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("serve", "find pairs for others: a server");
+void add_serve(Command& program, Action& action) {
+    Command command = program.add_subcommand("serve", "find pairs for others: a server");
     const auto request = std::make_shared<ServeRequest>();
-    add_serve_options(*command, *request);
-    command->callback([command, request, &action] {
-        complete_serve_request(*command, *request);
+    add_serve_options(command, *request);
+    command.callback([command, request, &action] {
+        complete_serve_request(command, *request);
         action = [request] { return run_serve(*request); };
     });
 }

@@ -1,9 +1,9 @@
 #include "cli/serve_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
 
+#include "cli/command.hpp"
 #include "cli/config_file.hpp"
 #include "cli/numbers.hpp"
 #include "cli/words.hpp"
@@ -19,28 +19,28 @@ struct Described {
     const char* description;
 };
 
-void add_number(CLI::App& command, const Described& option, std::uint64_t& value) {
+void add_number(Command& command, const Described& option, std::uint64_t& value) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             option.name, [option, &value](const std::string& text) { value = parse_count(option.name, text); },
             option.description)
-        ->type_name(option.type);
+        .type_name(option.type);
 }
 
-void add_bytes(CLI::App& command, const Described& option, std::uint64_t& value) {
+void add_bytes(Command& command, const Described& option, std::uint64_t& value) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             option.name, [option, &value](const std::string& text) { value = parse_bytes(option.name, text); },
             option.description)
-        ->type_name(option.type);
+        .type_name(option.type);
 }
 
 /// Whole, at least `least`. `Seconds`: some, or perhaps some.
 template <typename Seconds>
-void add_seconds(CLI::App& command, const Described& option, Seconds& value, unsigned least) {
+void add_seconds(Command& command, const Described& option, Seconds& value, unsigned least) {
     constexpr std::uint64_t most = 1'000'000'000;
     command
-        .add_option_function<std::string>(
+        .add_option(
             option.name,
             [option, least, &value](const std::string& text) {
                 const std::uint64_t seconds = parse_count(option.name, text, most);
@@ -48,10 +48,10 @@ void add_seconds(CLI::App& command, const Described& option, Seconds& value, uns
                 value = std::chrono::seconds(seconds);
             },
             option.description)
-        ->type_name(option.type);
+        .type_name(option.type);
 }
 
-void add_limits(CLI::App& command, service::ServerLimits& limits) {
+void add_limits(Command& command, service::ServerLimits& limits) {
     add_number(command, {"--max-objects", "N", "objects of a job or a scene (default 50000000; 0: no limit, as below)"},
                limits.objects);
     add_bytes(command, {"--max-input", "BYTES", "bytes of a job's input; K, M, G, T count by 1024 (default 4G)"},
@@ -62,70 +62,70 @@ void add_limits(CLI::App& command, service::ServerLimits& limits) {
                limits.jobs_per_client);
     add_number(command, {"--max-connections", "N", "connections at a time (default 1000)"}, limits.connections);
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--max-seconds",
             [&limits](const std::string& text) { limits.job_seconds = parse_length("--max-seconds", text); },
             "that a job may run (default 600)")
-        ->type_name("SECONDS");
+        .type_name("SECONDS");
     add_bytes(command, {"--max-memory", "BYTES", "memory of all jobs together (default 8G)"}, limits.memory_bytes);
     add_bytes(command, {"--max-state", "BYTES", "disk of all detached jobs together (default 16G)"},
               limits.state_bytes);
 }
 
-void add_state(CLI::App& command, service::ServerOptions& options) {
+void add_state(Command& command, service::ServerOptions& options) {
     command
         .add_option("--state", options.state_folder,
                     "a folder for detached jobs, which outlive the server (default: there are none)")
-        ->type_name("DIR")
-        ->check([](const std::string& folder) { return folder.empty() ? "a folder is wanted" : ""; });
+        .type_name("DIR")
+        .check([](const std::string& folder) { return folder.empty() ? "a folder is wanted" : ""; });
     add_seconds(command, {"--keep", "SECONDS", "that results of detached jobs wait to be released (default 86400)"},
                 options.keep, 1);
 }
 
-void add_access(CLI::App& command, service::ServerOptions& options) {
+void add_access(Command& command, service::ServerOptions& options) {
     command.add_option("--tls-certificate", options.tls.certificate, "encrypt, with this certificate")
-        ->type_name("FILE.pem");
-    command.add_option("--tls-key", options.tls.key, "the key of the certificate")->type_name("FILE.pem");
+        .type_name("FILE.pem");
+    command.add_option("--tls-key", options.tls.key, "the key of the certificate").type_name("FILE.pem");
     command
         .add_option("--tls-client-authority", options.tls.client_authority,
                     "clients must have a certificate of this authority")
-        ->type_name("FILE.pem");
+        .type_name("FILE.pem");
     command.add_option("--tokens", options.token_file, "clients must have one of these tokens: lines NAME TOKEN")
-        ->type_name("FILE");
+        .type_name("FILE");
 }
 
-void add_watching(CLI::App& command, ServeRequest& request) {
+void add_watching(Command& command, ServeRequest& request) {
     command.add_option("--metrics", request.metrics, "show metrics for Prometheus there, on this machine alone")
-        ->type_name("HOST:PORT");
+        .type_name("HOST:PORT");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--log",
             [&request](const std::string& word) {
                 check_word({"--log", {"text", "json"}, {}}, word);
                 request.log_form = word == "json" ? service::LogForm::json : service::LogForm::text;
             },
             "form of the log's lines on standard error: text (default) or json")
-        ->type_name("FORM");
+        .type_name("FORM");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--log-level",
             [&request](const std::string& word) {
                 check_word({"--log-level", {"debug", "info", "warn", "error"}, {}}, word);
                 request.log_level = word;
             },
             "what is logged: debug, info (default), warn or error")
-        ->type_name("LEVEL");
+        .type_name("LEVEL");
     command.add_flag("--quiet", request.quiet, "log errors alone");
 }
 
 }  // namespace
 
-void add_serve_options(CLI::App& command, ServeRequest& request) {
+void add_serve_options(Command& command, ServeRequest& request) {
     command.add_option("--config", request.config, "options from a file, as lines NAME = VALUE (TOML)")
-        ->type_name("FILE");
-    command.add_option("--listen", request.listen, "unix:PATH or HOST:PORT")->type_name("ADDRESS");
+        .type_name("FILE");
+    command.add_option("--listen", request.listen, "unix:PATH or HOST:PORT").type_name("ADDRESS");
     add_engine_options(command, request.engine);
-    command.get_option("--engine")->description("where the server looks for pairs: as in `octopair info`, itself");
+    command.find_option("--engine")->description("where the server looks for pairs: as in `octopair info`, itself");
     add_seconds(command,
                 {"--rank-timeout", "SECONDS", "that a rank may be silent while a job is under way (default 60)"},
                 request.rank_silence, 1);
@@ -139,7 +139,7 @@ void add_serve_options(CLI::App& command, ServeRequest& request) {
     add_watching(command, request);
 }
 
-void complete_serve_request(CLI::App& command, ServeRequest& request) {
+void complete_serve_request(const Command& command, ServeRequest& request) {
     if (!request.config.empty()) apply_config(command, request.config);
     if (request.listen.empty()) throw Error(ErrorCode::usage, "serve: --listen is missing: unix:PATH or HOST:PORT");
     request.options.listen = service::parse_address(request.listen);

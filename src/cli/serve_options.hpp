@@ -22,9 +22,9 @@ struct ServeRequest {
     bool quiet = false;
 };
 
-void add_serve_options(CLI::App& command, ServeRequest& request);
+void add_serve_options(Command& command, ServeRequest& request);
 
 /// After parsing: takes the file in, and checks what belongs together. Throws Error{usage}.
-void complete_serve_request(CLI::App& command, ServeRequest& request);
+void complete_serve_request(const Command& command, ServeRequest& request);
 
 }  // namespace octopair::cli

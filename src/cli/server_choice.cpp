@@ -1,38 +1,38 @@
 #include "cli/server_choice.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 
+#include "cli/command.hpp"
 #include "cli/numbers.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/private_file.hpp"
 
 namespace octopair::cli {
 
-void add_server_options(CLI::App& command, ServerChoice& choice) {
+void add_server_options(Command& command, ServerChoice& choice) {
     command
         .add_option("--token-file", choice.token_file,
                     "of a server: holds the token that it wants (default: $OCTOPAIR_TOKEN)")
-        ->type_name("FILE");
+        .type_name("FILE");
     command.add_flag("--tls", choice.options.tls, "of a server: encrypt, and trust the system's authorities");
     command.add_option("--tls-authority", choice.options.authority, "of a server: encrypt, and trust this authority")
-        ->type_name("FILE.pem");
+        .type_name("FILE.pem");
     command.add_option("--tls-certificate", choice.options.certificate, "of a server: our own certificate")
-        ->type_name("FILE.pem");
+        .type_name("FILE.pem");
     command.add_option("--tls-key", choice.options.key, "of a server: the key of our certificate")
-        ->type_name("FILE.pem");
+        .type_name("FILE.pem");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--patience", [&choice](const std::string& text) { choice.patience = parse_length("--patience", text); },
             "of a server that was there: how long it may be away (default 30)")
-        ->type_name("SECONDS");
+        .type_name("SECONDS");
 }
 
-void add_server_address(CLI::App& command, ServerChoice& choice) {
+void add_server_address(Command& command, ServerChoice& choice) {
     command.add_option("--server", choice.address, "the server: unix:PATH or HOST:PORT (default: $OCTOPAIR_SERVER)")
-        ->envname("OCTOPAIR_SERVER")
-        ->type_name("ADDRESS");
+        .environment("OCTOPAIR_SERVER")
+        .type_name("ADDRESS");
     add_server_options(command, choice);
 }
 

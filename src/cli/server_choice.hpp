@@ -6,11 +6,9 @@
 
 #include "octopair/client.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
-
 namespace octopair::cli {
+
+class Command;
 
 struct ServerChoice {
     std::string address;  ///< unix:PATH or HOST:PORT; empty: none
@@ -21,10 +19,10 @@ struct ServerChoice {
 
 /// --token-file, --tls, --tls-authority, --tls-certificate, --tls-key, --patience. No token itself: others see the command
 /// line.
-void add_server_options(CLI::App& command, ServerChoice& choice);
+void add_server_options(Command& command, ServerChoice& choice);
 
 /// --server, which the environment may give (OCTOPAIR_SERVER), and those.
-void add_server_address(CLI::App& command, ServerChoice& choice);
+void add_server_address(Command& command, ServerChoice& choice);
 
 /// Throws Error{usage} if no server was named.
 void check_server_named(const ServerChoice& choice);

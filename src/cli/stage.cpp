@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "cli/command.hpp"
 #include "cli/detection.hpp"
 #include "cli/numbers.hpp"
 #include "cli/words.hpp"
@@ -64,39 +64,39 @@ std::vector<std::string_view> stage_names() {
                          : std::vector<std::string_view>{"pairs"};
 }
 
-void add_pipeline_options(CLI::App& command, PipelineRequest& request) {
+void add_pipeline_options(Command& command, PipelineRequest& request) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); },
             "how far down the pipeline: pairs of boxes, objects that meet (default for meshes), or features: where and "
             "how")
-        ->type_name("STAGE");
+        .type_name("STAGE");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
             "triangles that share corners: beyond-shared (default: if they meet elsewhere), exclude or include")
-        ->type_name("WHICH");
+        .type_name("WHICH");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
             "with --stage features: contacts of each pair, the deepest first (default 16)")
-        ->type_name("N");
+        .type_name("N");
     command.add_option("--exclude", request.exclude, "leave out pairs by rules of names, see docs/formats.md")
-        ->type_name("RULES.json");
+        .type_name("RULES.json");
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--same-parent",
             [&request](const std::string& word) {
                 check_word({"--same-parent", {"include", "exclude"}, {}}, word);
                 request.same_parent = word == "exclude";
             },
             "pairs of objects of one parent: include (default) or exclude")
-        ->type_name("WHAT");
+        .type_name("WHAT");
     command
         .add_option("--baseline", request.baseline, "an older result: say which collisions are new, gone or the same")
-        ->type_name("OLD.jsonl");
+        .type_name("OLD.jsonl");
     command.add_option("--report", request.report, "write a page about the collisions for people")
-        ->type_name("FILE.html");
+        .type_name("FILE.html");
 }
 
 Stage stage_of(const DetectRequest& request) {

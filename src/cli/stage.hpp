@@ -9,11 +9,9 @@
 
 #include "octopair/filters.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
-class App;
-}
-
 namespace octopair::cli {
+
+class Command;
 
 struct DetectRequest;
 
@@ -34,7 +32,7 @@ struct PipelineRequest {
 std::vector<std::string_view> stage_names();
 
 /// --stage, --adjacent, --max-contacts, --exclude, --same-parent, --baseline, --report.
-void add_pipeline_options(CLI::App& command, PipelineRequest& request);
+void add_pipeline_options(Command& command, PipelineRequest& request);
 
 /// The one that was asked for; else `objects` where all inputs have shapes and this program has a pipeline for them, and
 /// `pairs` where not.

@@ -2,25 +2,26 @@
 // work after parsing and returns the exit status. Both may throw Error.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli/command.hpp"
 
 namespace octopair::cli {
 
 using Action = std::function<int()>;
 
-void add_bench(CLI::App& app, Action& action);
+void add_bench(Command& program, Action& action);
 /// Of `bench`.
-void add_bench_cluster(CLI::App& bench, Action& action);
-void add_bench_scaling(CLI::App& bench, Action& action);
-void add_cancel(CLI::App& app, Action& action);
-void add_detect(CLI::App& app, Action& action);
-void add_generate(CLI::App& app, Action& action);
-void add_info(CLI::App& app, Action& action);
-void add_replay(CLI::App& app, Action& action);
-void add_result(CLI::App& app, Action& action);
-void add_serve(CLI::App& app, Action& action);
-void add_status(CLI::App& app, Action& action);
-void add_submit(CLI::App& app, Action& action);
+void add_bench_cluster(Command& bench, Action& action);
+void add_bench_scaling(Command& bench, Action& action);
+void add_cancel(Command& program, Action& action);
+void add_detect(Command& program, Action& action);
+void add_generate(Command& program, Action& action);
+void add_info(Command& program, Action& action);
+void add_replay(Command& program, Action& action);
+void add_result(Command& program, Action& action);
+void add_serve(Command& program, Action& action);
+void add_status(Command& program, Action& action);
+void add_submit(Command& program, Action& action);
 
 }  // namespace octopair::cli

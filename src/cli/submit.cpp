@@ -71,17 +71,17 @@ int run_submit(const SubmitRequest& request) {
 
 }  // namespace
 
-void add_submit(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("submit", "have a server find pairs, and collect them later");
+void add_submit(Command& program, Action& action) {
+    Command command = program.add_subcommand("submit", "have a server find pairs, and collect them later");
     const auto request = std::make_shared<SubmitRequest>();
-    add_scene_options(*command, request->what);
-    add_order_options(*command, request->what, "the first N pairs");
-    command->add_flag("--count-only", request->what.count_only, "the number of pairs alone");
-    command->add_option("--id", request->id, "the job's name; again: the same job (default: a random one)")
-        ->type_name("UUID");
-    add_server_address(*command, request->server);
-    command->add_flag("--quiet", request->what.quiet, "no progress on standard error");
-    command->callback([request, &action] {
+    add_scene_options(command, request->what);
+    add_order_options(command, request->what, "the first N pairs");
+    command.add_flag("--count-only", request->what.count_only, "the number of pairs alone");
+    command.add_option("--id", request->id, "the job's name; again: the same job (default: a random one)")
+        .type_name("UUID");
+    add_server_address(command, request->server);
+    command.add_flag("--quiet", request->what.quiet, "no progress on standard error");
+    command.callback([request, &action] {
         check_server_named(request->server);
         action = [request] { return run_submit(*request); };
     });

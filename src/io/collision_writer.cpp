@@ -1,11 +1,10 @@
 #include "io/collision_writer.hpp"
 
-#include <iterator>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
+#include "io/json_fields.hpp"
 #include "io/json_text.hpp"
 #include "io/pair_writer.hpp"
 #include "octopair/error.hpp"
@@ -14,21 +13,21 @@ namespace octopair::io {
 
 namespace {
 
-std::string json_point(const Point3d& point) {
+std::string point_json(const Point3d& point) {
     return fmt::format("[{},{},{}]", json_number(point[0]), json_number(point[1]), json_number(point[2]));
 }
 
-std::string json_contact(const Contact& contact) {
-    std::string text = fmt::format("{{\"point\":{},\"normal\":{},\"depth\":{}", json_point(contact.point),
-                                   json_point(contact.normal), json_number(contact.depth));
+std::string contact_json(const Contact& contact) {
+    std::string text = fmt::format("{{\"point\":{},\"normal\":{},\"depth\":{}", point_json(contact.point),
+                                   point_json(contact.normal), json_number(contact.depth));
     if (contact.feature_a != Contact::no_feature) text += fmt::format(",\"a_feature\":{}", contact.feature_a);
     if (contact.feature_b != Contact::no_feature) text += fmt::format(",\"b_feature\":{}", contact.feature_b);
     return text + '}';
 }
 
-class JsonlWriter final : public CollisionWriter {
+class CollisionJsonlWriter final : public CollisionWriter {
 public:
-    JsonlWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {}
+    CollisionJsonlWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {}
 
     void write(const CollisionRows& rows) override {
         for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
@@ -45,9 +44,7 @@ public:
 
     void write_gone(std::span<const std::string_view> lines) override {
         for (const std::string_view line : lines) {
-            auto row = nlohmann::ordered_json::parse(line);
-            row["change"] = word_of(Change::gone);
-            out_->write(row.dump() + '\n');
+            out_->write(with_key(line, "change", word_of(Change::gone)) + '\n');
         }
     }
 
@@ -55,7 +52,7 @@ public:
 
 private:
     void append(std::string_view key, std::string_view value) {
-        fmt::format_to(std::back_inserter(line_), ",\"{}\":{}", key, value);
+        line_ += fmt::format(",\"{}\":{}", key, value);
     }
 
     void append_object(std::string_view side, const ObjectNames& names, std::uint32_t object) {
@@ -71,7 +68,7 @@ private:
         if (form_.times) append("time", json_number(finding.time));
         if (!meet(what)) {
             append("distance", json_number(finding.distance));
-            append("nearest", fmt::format("[{},{}]", json_point(finding.nearest[0]), json_point(finding.nearest[1])));
+            append("nearest", fmt::format("[{},{}]", point_json(finding.nearest[0]), point_json(finding.nearest[1])));
         } else if (form_.features) {
             append("depth", json_number(finding.depth));
             append_contacts(finding);
@@ -82,7 +79,7 @@ private:
         line_ += ",\"contacts\":[";
         for (std::size_t i = 0; i < finding.contacts.size(); ++i) {
             if (i > 0) line_ += ',';
-            line_ += json_contact(finding.contacts[i]);
+            line_ += contact_json(finding.contacts[i]);
         }
         line_ += ']';
         if (finding.more_contacts) append("more_contacts", "true");
@@ -93,9 +90,9 @@ private:
     std::string line_;
 };
 
-class CsvWriter final : public CollisionWriter {
+class CollisionCsvWriter final : public CollisionWriter {
 public:
-    CsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {
+    CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {
         out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts");
         out_->write(form_.changes ? std::string_view(",change\n") : std::string_view("\n"));
     }
@@ -114,7 +111,7 @@ public:
 
     void write_gone(std::span<const std::string_view> lines) override {
         for (const std::string_view line : lines) {
-            const auto row = nlohmann::json::parse(line);
+            const nlohmann::json row = parse_json(line, "older result");
             line_.clear();
             for (const char* key : {"a", "b", "a_name", "b_name", "class", "distance", "depth", "time"}) {
                 append(old_field(row, key));
@@ -133,13 +130,16 @@ public:
     void finish() override { out_->commit(); }
 
 private:
-    void append(std::string_view field) { fmt::format_to(std::back_inserter(line_), ",{}", field); }
+    void append(std::string_view field) {
+        line_ += ',';
+        line_ += field;
+    }
 
     static std::string old_field(const nlohmann::json& row, const char* key) {
         const auto value = row.find(key);
         if (value == row.end() || value->is_null()) return {};
         if (value->is_string()) return csv_field(value->get_ref<const std::string&>());
-        return value->is_number_float() ? json_number(value->get<double>()) : csv_field(value->dump());
+        return value->is_number_float() ? json_number(value->get<double>()) : csv_field(dump_json(*value));
     }
 
     static std::string point_text(const Point3d& point) {
@@ -204,12 +204,12 @@ std::string csv_field(std::string_view text) {
 
 std::unique_ptr<CollisionWriter> make_collision_jsonl_writer(std::unique_ptr<OutputStream> out,
                                                              const CollisionForm& form) {
-    return std::make_unique<JsonlWriter>(std::move(out), form);
+    return std::make_unique<CollisionJsonlWriter>(std::move(out), form);
 }
 
 std::unique_ptr<CollisionWriter> make_collision_csv_writer(std::unique_ptr<OutputStream> out,
                                                            const CollisionForm& form) {
-    return std::make_unique<CsvWriter>(std::move(out), form);
+    return std::make_unique<CollisionCsvWriter>(std::move(out), form);
 }
 
 std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& path, const CollisionForm& form) {

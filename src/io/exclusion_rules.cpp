@@ -3,6 +3,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "io/failure.hpp"
 #include "io/input_file.hpp"

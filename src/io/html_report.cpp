@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/json_fields.hpp"
 #include "io/json_text.hpp"
 #include "io/report_page.hpp"
 
@@ -51,9 +52,9 @@ std::string json_place(const Finding& finding, bool features) {
 
 /// An object of an old row.
 nlohmann::json old_label(const nlohmann::json& row, const std::string& side) {
-    const std::string name = row.value(side + "_name", "#" + row.at(side).dump());
+    const std::string name = row.value(side + "_name", "#" + dump_json(row.at(side)));
     const auto triangle = row.find(side + "_triangle");
-    return triangle == row.end() ? name : name + ", triangle " + triangle->dump();
+    return triangle == row.end() ? name : name + ", triangle " + dump_json(*triangle);
 }
 
 nlohmann::json old_number(const nlohmann::json& row, const char* key) {
@@ -114,7 +115,7 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
     begin_list("gone");
     of_change_[std::size_t(Change::gone)] = lines.size();
     for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), most_rows))) {
-        const auto old = nlohmann::json::parse(line);
+        const nlohmann::json old = parse_json(line, "older result");
         const auto contacts = old.find("contacts"), kind = old.find("class");
         const nlohmann::json row = {old_label(old, "a"),
                                     old_label(old, "b"),
@@ -124,7 +125,7 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
                                     old_number(old, "time"),
                                     contacts == old.end() ? nlohmann::json() : nlohmann::json(contacts->size())};
         separate();
-        out_->write(script_json(row.dump()));
+        out_->write(script_json(dump_json(row)));
     }
     end_list();
 }
@@ -190,7 +191,7 @@ void HtmlReport::write_summary() {
     }
     const json summary = {
         {"title", clean_text(scene_.title)}, {"join", scene_.join}, {"facts", facts}, {"notes", notes}};
-    out_->write("<script type=\"application/json\" id=\"summary\">" + script_json(summary.dump()) + "</script>\n");
+    out_->write("<script type=\"application/json\" id=\"summary\">" + script_json(dump_json(summary)) + "</script>\n");
 }
 
 void HtmlReport::finish() {

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <set>
-#include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "io/failure.hpp"
+#include "io/json_text.hpp"
 
 namespace octopair::io {
 
@@ -155,7 +156,7 @@ std::uint32_t json_index(const json& value, const std::string& place) {
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (value.is_number_unsigned() && value.get<std::uint64_t>() <= most) return value.get<std::uint32_t>();
     const std::string wanted = fmt::format("a whole number from 0 to {}", most);
-    if (value.is_number()) refuse(place, fmt::format("{} is not {}", value.dump(), wanted));
+    if (value.is_number()) refuse(place, fmt::format("{} is not {}", dump_json(value), wanted));
     refuse_type(place, value, wanted);
 }
 

@@ -7,8 +7,9 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "octopair/shapes.hpp"
 
@@ -24,7 +25,7 @@ std::string shown_text(std::string_view text);
 /// What a value is, or throw Error{bad_input} "PLACE: a string, not ...".
 Point3d json_point(const nlohmann::json& value, const std::string& place);
 std::uint32_t json_index(const nlohmann::json& value, const std::string& place);
-const nlohmann::json::array_t& json_array(const nlohmann::json& value, const std::string& place);
+const std::vector<nlohmann::json>& json_array(const nlohmann::json& value, const std::string& place);
 const std::string& json_text(const nlohmann::json& value, const std::string& place);
 
 /// The keys of a JSON object, borrowed. All calls throw Error{bad_input} that begins with the place.

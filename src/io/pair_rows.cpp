@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -29,8 +28,10 @@ void write_csv_rows(OutputStream& out, std::string_view begin, std::span<const P
 
 void JsonlRows::write(OutputStream& out, std::string_view begin, std::span<const Pair> pairs) {
     for (const Pair pair : pairs) {
-        line_.clear();
-        fmt::format_to(std::back_inserter(line_), "{{{}\"a\":{},\"b\":{}", begin, pair.a, pair.b);
+        line_ = '{';
+        line_ += begin;
+        append_number("\"a\":", pair.a);
+        append_number(",\"b\":", pair.b);
         append_name("a_name", names_.a, pair.a);
         append_name("b_name", names_.b, pair.b);
         line_ += "}\n";
@@ -40,7 +41,13 @@ void JsonlRows::write(OutputStream& out, std::string_view begin, std::span<const
 
 void JsonlRows::append_name(std::string_view key, const std::vector<std::string>* names, std::uint32_t object) {
     if (names == nullptr || names->empty() || (*names)[object].empty()) return;
-    fmt::format_to(std::back_inserter(line_), ",\"{}\":{}", key, json_string((*names)[object]));
+    line_ += fmt::format(",\"{}\":{}", key, json_string((*names)[object]));
+}
+
+void JsonlRows::append_number(std::string_view before, std::uint32_t number) {
+    char digits[10];
+    line_ += before;
+    line_.append(digits, put_number(digits, number));
 }
 
 }  // namespace octopair::io

@@ -20,6 +20,7 @@ public:
     void write(OutputStream& out, std::string_view begin, std::span<const Pair> pairs);
 
 private:
+    void append_number(std::string_view before, std::uint32_t number);
     void append_name(std::string_view key, const std::vector<std::string>* names, std::uint32_t object);
 
     PairNames names_;
