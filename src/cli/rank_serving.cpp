@@ -60,7 +60,7 @@ private:
     }
 
     void lose(const std::string& what) {
-        log_->error("{}: the program ends", what);
+        service::log_text(*log_, service::LogLevel::error, what + ": the program ends");
         lost_ = true;
         end_.request_stop();
     }

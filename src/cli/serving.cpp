@@ -1,6 +1,6 @@
 #include "cli/serving.hpp"
 
-#include <spdlog/spdlog.h>
+#include <spdlog/logger.h>
 
 #include <condition_variable>
 #include <cstdint>
@@ -52,7 +52,7 @@ void tell_start(spdlog::logger& log, const service::Server& server, const servic
                                           {"engine", options.engine_name},
                                           {"width", std::uint64_t(options.lanes.large)}};
     fields.insert(fields.end(), more.begin(), more.end());
-    service::log_event(log, spdlog::level::info, "started", fields);
+    service::log_event(log, service::LogLevel::info, "started", fields);
 }
 
 void wait_for(const std::stop_token& stop) {
@@ -63,9 +63,9 @@ void wait_for(const std::stop_token& stop) {
 }
 
 void drain(spdlog::logger& log, service::Server& server) {
-    log.info("stopping: no more jobs are taken");
+    service::log_text(log, service::LogLevel::info, "stopping: no more jobs are taken");
     server.drain();
-    log.info("stopped");
+    service::log_text(log, service::LogLevel::info, "stopped");
 }
 
 }  // namespace octopair::cli

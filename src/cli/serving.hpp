@@ -1,7 +1,7 @@
 // What servers of this program have in common, whatever they look for pairs with: options, log, beginning and end.
 #pragma once
 
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <memory>
 #include <stop_token>

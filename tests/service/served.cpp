@@ -1,6 +1,7 @@
 #include "service/served.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/logger.h>
 #include <spdlog/sinks/null_sink.h>
 
 #include "octopair/error.hpp"

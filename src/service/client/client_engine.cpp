@@ -14,13 +14,13 @@ namespace {
 class ClientEngine final : public Engine {
 public:
     ClientEngine(std::string_view address, const ClientOptions& options) : connection_(address, options) {
-        (void)connection_.describe();
+        connection_.check_server();
     }
 
 private:
     Summary run(const Request& request, const Output& output, const Control& control) override {
         const Turns::Turn turn(turns_, control.stop);
-        return service::RemoteJob(connection_, request, output, control).run();
+        return service::find_remotely(connection_, request, output, control);
     }
     JobQueue& jobs() override { return jobs_; }
 

@@ -1,5 +1,7 @@
 #include "service/client/connection.hpp"
 
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 
@@ -12,6 +14,7 @@
 #include "service/protocol/certificate.hpp"
 #include "service/protocol/library.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/private_file.hpp"
 #include "service/protocol/status.hpp"
 
@@ -90,9 +93,7 @@ Connection::Connection(std::string_view address, const ClientOptions& options)
       connect_timeout_(options.connect_timeout),
       patience_(options.patience),
       channel_(grpc::CreateCustomChannel(parse_address(address).text(), credentials_of(parse_address(address), options),
-                                         arguments())),
-      raw_(channel_),
-      calls_(v1::Octopair::NewStub(channel_)) {
+                                         arguments())) {
     check_token(token_);
     keep_grpc();
 }
@@ -101,16 +102,16 @@ void Connection::prepare(grpc::ClientContext& context) const {
     if (!token_.empty()) context.AddMetadata("authorization", "Bearer " + token_);
 }
 
-v1::ServerDescription Connection::describe() {
+void Connection::check_server() {
+    const auto calls = v1::Octopair::NewStub(channel_);
     v1::ServerDescription description;
     persist({}, [&] {
         grpc::ClientContext context;
         prepare(context);
         context.set_deadline(std::chrono::system_clock::now() +
                              std::max<std::chrono::milliseconds>(connect_timeout_, shortest_wait));
-        return calls_->Describe(&context, {}, &description);
+        return calls->Describe(&context, {}, &description);
     });
-    return description;
 }
 
 void Connection::give_up(const grpc::Status& status, bool refused) const {

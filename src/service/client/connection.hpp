@@ -1,9 +1,7 @@
 // Connection: the way to a server, which may break and come back.
 #pragma once
 
-#include <grpcpp/channel.h>
-#include <grpcpp/client_context.h>
-#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/support/status.h>
 
 #include <atomic>
 #include <chrono>
@@ -13,7 +11,11 @@
 #include <string_view>
 
 #include "octopair/client.hpp"
-#include "service/protocol/octopair.grpc.pb.h"
+
+namespace grpc {
+class Channel;
+class ClientContext;
+}  // namespace grpc
 
 namespace octopair::service {
 
@@ -26,13 +28,12 @@ public:
     Connection(std::string_view address, const ClientOptions& options);
 
     const std::string& server() const { return server_; }
-    /// Methods whose messages have a large field, as bytes.
-    grpc::GenericStub& raw() { return raw_; }
-    v1::Octopair::Stub& calls() { return *calls_; }
+    /// For stubs, which cost little to make.
+    const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
     /// Every call's context goes through here.
     void prepare(grpc::ClientContext& context) const;
-    /// What the server is. Throws as persist.
-    v1::ServerDescription describe();
+    /// Asks the server what it is, to find out whether there is one. Throws as persist.
+    void check_server();
 
     /// Jobs with an input of at most so many bytes had results that fit into one message, as far as is known.
     std::atomic<std::uint64_t>& small_input() { return small_input_; }
@@ -75,8 +76,6 @@ private:
     std::string token_;
     std::chrono::milliseconds connect_timeout_, patience_;
     std::shared_ptr<grpc::Channel> channel_;
-    grpc::GenericStub raw_;
-    std::unique_ptr<v1::Octopair::Stub> calls_;
     std::atomic<Clock::time_point> heard_ = Clock::time_point();
     std::atomic<bool> met_ = false;  // the server was there once
     std::atomic<std::uint64_t> small_input_ = ~std::uint64_t(0);

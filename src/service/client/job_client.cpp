@@ -2,6 +2,9 @@
 
 #include "octopair/job_client.hpp"
 
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,6 +17,7 @@
 #include "service/client/received.hpp"
 #include "service/client/uploader.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/status.hpp"
 
 namespace octopair {
@@ -64,7 +68,8 @@ v1::JobName name_of(const std::string& id) {
 
 class JobClient::State {
 public:
-    State(std::string_view address, const ClientOptions& options) : connection_(address, options) {}
+    State(std::string_view address, const ClientOptions& options)
+        : connection_(address, options), calls_(v1::Octopair::NewStub(connection_.channel())) {}
 
     /// Makes a call of one message each way, as often as it takes. `call` has a context and the calls.
     template <typename Call>
@@ -73,7 +78,7 @@ public:
             grpc::ClientContext context;
             connection_.prepare(context);
             const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
-            return call(context, connection_.calls());
+            return call(context, *calls_);
         });
     }
 
@@ -126,6 +131,7 @@ public:
 
 private:
     service::Connection connection_;
+    std::unique_ptr<v1::Octopair::Stub> calls_;
 };
 
 JobClient::JobClient(std::string_view address, const ClientOptions& options)

@@ -1,6 +1,10 @@
 #include "service/client/raw_stream.hpp"
 
+#include <grpcpp/channel.h>
+
 #include <utility>
+
+#include "service/client/connection.hpp"
 
 namespace octopair::service {
 
@@ -23,7 +27,7 @@ bool RawStream::guarded(Step&& step) {
 
 grpc::Status RawStream::run(const std::stop_token& stop) {
     const std::stop_callback cancel(stop, [&] { context_.TryCancel(); });
-    call_ = connection_.raw().PrepareCall(&context_, terms_.method, &queue_);
+    call_ = grpc::GenericStub(connection_.channel()).PrepareCall(&context_, terms_.method, &queue_);
     call_->StartCall(tag(Event::started));
     pending_ = 1;
     while (pending_ > 0) {

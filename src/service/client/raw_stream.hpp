@@ -13,9 +13,9 @@
 #include <optional>
 #include <stop_token>
 
-#include "service/client/connection.hpp"
-
 namespace octopair::service {
+
+class Connection;
 
 class RawStream {
 public:

@@ -1,12 +1,19 @@
 #include "service/client/remote_job.hpp"
 
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
 #include <grpcpp/completion_queue.h>
+#include <grpcpp/generic/generic_stub.h>
 
 #include <optional>
 
 #include "base/stop.hpp"
 #include "base/timed.hpp"
+#include "service/client/connection.hpp"
 #include "service/client/raw_stream.hpp"
+#include "service/client/received.hpp"
+#include "service/client/uploader.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/status.hpp"
 
@@ -19,7 +26,26 @@ constexpr std::uint64_t most_small_bytes = piece_bytes;
 
 bool is_pairs_wanted(const Engine::Output& output) { return output.list != nullptr || output.sink != nullptr; }
 
-}  // namespace
+class RemoteJob {
+public:
+    RemoteJob(Connection& connection, const Engine::Request& request, const Engine::Output& output,
+              const Engine::Control& control);
+
+    Summary run();
+
+private:
+    bool run_small();
+    void raise_small_input();
+    grpc::Status call_small();
+    grpc::Status call_stream();
+    void begin_attempt();
+
+    Connection& connection_;
+    const std::stop_token stop_;
+    const bool pairs_wanted_;
+    Uploader upload_;
+    Received received_;
+};
 
 RemoteJob::RemoteJob(Connection& connection, const Engine::Request& request, const Engine::Output& output,
                      const Engine::Control& control)
@@ -61,8 +87,8 @@ grpc::Status RemoteJob::call_small() {
     const grpc::ByteBuffer question = upload_.next();
     {
         const std::stop_callback cancel(stop_, [&] { context.TryCancel(); });
-        const auto call =
-            connection_.raw().PrepareUnaryCall(&context, "/octopair.v1.Octopair/DetectSmall", question, &queue);
+        const auto call = grpc::GenericStub(connection_.channel())
+                              .PrepareUnaryCall(&context, "/octopair.v1.Octopair/DetectSmall", question, &queue);
         call->StartCall();
         call->Finish(&answer, &status, this);
         void* tag = nullptr;
@@ -99,6 +125,13 @@ Summary RemoteJob::run() {
     Summary summary = received_.finish();
     summary.seconds = seconds;
     return summary;
+}
+
+}  // namespace
+
+Summary find_remotely(Connection& connection, const Engine::Request& request, const Engine::Output& output,
+                      const Engine::Control& control) {
+    return RemoteJob(connection, request, output, control).run();
 }
 
 }  // namespace octopair::service

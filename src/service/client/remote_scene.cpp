@@ -18,6 +18,7 @@
 #include "service/client/frame_calls.hpp"
 #include "service/client/scene_stream.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 
 namespace octopair {
@@ -45,7 +46,7 @@ public:
         : options_{1, options.precision, options.margin},
           objects_(options_, SceneObjects::Changes::forgotten),
           connection_(address, client) {
-        (void)connection_.describe();
+        connection_.check_server();
     }
 
     SceneObjects& objects() { return objects_; }

@@ -1,12 +1,17 @@
 #include "service/client/scene_stream.hpp"
 
+#include <grpcpp/channel.h>
+#include <grpcpp/generic/generic_stub.h>
+
+#include "service/client/connection.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 
 SceneStream::SceneStream(Connection& connection) {
     connection.prepare(context_);
-    call_ = connection.raw().PrepareCall(&context_, "/octopair.v1.Octopair/Scene", &queue_);
+    call_ = grpc::GenericStub(connection.channel()).PrepareCall(&context_, "/octopair.v1.Octopair/Scene", &queue_);
     call_->StartCall(tag(Event::started));
 }
 

@@ -1,7 +1,9 @@
 // SceneStream: one call Scene to a server, in the caller's thread.
 #pragma once
 
+#include <grpcpp/client_context.h>
 #include <grpcpp/completion_queue.h>
+#include <grpcpp/support/async_stream.h>
 #include <grpcpp/support/byte_buffer.h>
 
 #include <array>
@@ -10,9 +12,10 @@
 #include <stop_token>
 
 #include "scene/recording.hpp"
-#include "service/client/connection.hpp"
 
 namespace octopair::service {
+
+class Connection;
 
 class SceneStream {
 public:
@@ -46,7 +49,7 @@ private:
     std::array<Event, 4> events_ = {Event::started, Event::read, Event::written, Event::finished};
     grpc::ClientContext context_;
     grpc::CompletionQueue queue_;
-    std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+    std::unique_ptr<grpc::ClientAsyncReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> call_;
     grpc::ByteBuffer in_;
     grpc::Status status_;
     bool started_ = false, writing_ = false, received_ = false, finished_ = false;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 
+#include "service/protocol/octopair.pb.h"
+
 namespace octopair::service {
 
 static_assert(std::endian::native == std::endian::little, "numbers are hashed as they lie in memory");

@@ -7,7 +7,9 @@
 #include <span>
 #include <string>
 
-#include "service/protocol/octopair.pb.h"
+namespace octopair::v1 {
+class JobSpec;
+}  // namespace octopair::v1
 
 namespace octopair::service {
 

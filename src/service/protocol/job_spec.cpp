@@ -9,7 +9,8 @@
 #include <string_view>
 
 #include "base/io_failure.hpp"
-#include "service/protocol/status.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 

@@ -8,7 +8,11 @@
 
 #include "engine/request.hpp"
 #include "octopair/engine.hpp"
-#include "service/protocol/octopair.pb.h"
+
+namespace octopair::v1 {
+class JobSpec;
+class Summary;
+}  // namespace octopair::v1
 
 namespace octopair::service {
 

@@ -4,13 +4,16 @@
 // bytes. So clients in any language need the .proto alone.
 #pragma once
 
-#include <google/protobuf/message_lite.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/slice.h>
 
 #include <cstddef>
 #include <functional>
 #include <span>
+
+namespace google::protobuf {
+class MessageLite;
+}  // namespace google::protobuf
 
 namespace octopair::service {
 

@@ -5,6 +5,8 @@
 #include <new>
 
 #include "base/error_codes.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 

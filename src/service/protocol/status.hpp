@@ -3,28 +3,15 @@
 
 #include <grpcpp/support/status.h>
 
-#include <cstdint>
 #include <string>
 
 #include "octopair/error.hpp"
-#include "service/protocol/octopair.pb.h"
+
+namespace octopair::v1 {
+class Failure;
+}  // namespace octopair::v1
 
 namespace octopair::service {
-
-/// An Error{resource_limit} that names the server's limit.
-class LimitError : public Error {
-public:
-    /// `name`: as in the message Limits. `message` says the limit as well.
-    LimitError(std::string name, std::uint64_t allowed, const std::string& message)
-        : Error(ErrorCode::resource_limit, message), name_(std::move(name)), allowed_(allowed) {}
-
-    const std::string& name() const { return name_; }
-    std::uint64_t allowed() const { return allowed_; }
-
-private:
-    std::string name_;
-    std::uint64_t allowed_;
-};
 
 v1::Failure failure_of(const Error& error);
 /// A LimitError if it names a limit.

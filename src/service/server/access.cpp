@@ -1,6 +1,7 @@
 #include "service/server/access.hpp"
 
 #include <grpc/grpc_security_constants.h>
+#include <grpcpp/server_context.h>
 #include <openssl/crypto.h>
 #include <openssl/sha.h>
 

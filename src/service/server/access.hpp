@@ -4,12 +4,15 @@
 // one, named "local": the address alone keeps others out (a Unix socket of its owner's, or loopback).
 #pragma once
 
-#include <grpcpp/server_context.h>
-#include <grpcpp/support/status.h>
-
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
+
+namespace grpc {
+class ServerContextBase;
+class Status;
+}  // namespace grpc
 
 namespace octopair::service {
 

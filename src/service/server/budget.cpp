@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "service/protocol/status.hpp"
+#include "service/protocol/limit_error.hpp"
 
 namespace octopair::service {
 

@@ -1,8 +1,11 @@
 #include "service/server/credentials.hpp"
 
+#include <grpcpp/security/server_credentials.h>
+
 #include "octopair/error.hpp"
 #include "service/protocol/certificate.hpp"
 #include "service/protocol/private_file.hpp"
+#include "service/server/event.hpp"
 
 namespace octopair::service {
 
@@ -21,7 +24,7 @@ std::shared_ptr<grpc::ServerCredentials> credentials_of(const ServerTls& tls, sp
     const Pem key{read_private_file(tls.key), tls.key};
     check_key(certificate, key);
     if (has_expired(certificate)) {
-        log.warn("{}: the certificate has expired: clients will refuse it", certificate.file);
+        log_text(log, LogLevel::warning, certificate.file + ": the certificate has expired: clients will refuse it");
     }
     grpc::SslServerCredentialsOptions options;
     options.pem_key_cert_pairs.push_back({key.text, certificate.text});

@@ -1,13 +1,16 @@
 // What protects a server's connections: TLS, and what must be there before others than this machine may connect.
 #pragma once
 
-#include <grpcpp/security/server_credentials.h>
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <memory>
 #include <string>
 
 #include "service/server/server_options.hpp"
+
+namespace grpc {
+class ServerCredentials;
+}  // namespace grpc
 
 namespace octopair::service {
 

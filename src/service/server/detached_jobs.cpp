@@ -8,7 +8,9 @@
 
 #include "octopair/error.hpp"
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
+#include "service/server/event.hpp"
 
 namespace octopair::service {
 
@@ -68,10 +70,13 @@ void DetachedJobs::restore() {
             restore(std::move(found));
             ++(is_ended ? ended : queued);
         } catch (const Error& error) {
-            host_.log->error("a job of the state folder is left out: {}", error.what());
+            log_text(*host_.log, LogLevel::error,
+                     std::string("a job of the state folder is left out: ") + error.what());
         }
     }
-    if (queued + ended > 0) host_.log->info("detached jobs: {} queued again, {} have ended", queued, ended);
+    if (queued + ended == 0) return;
+    log_text(*host_.log, LogLevel::info,
+             "detached jobs: " + std::to_string(queued) + " queued again, " + std::to_string(ended) + " have ended");
 }
 
 void DetachedJobs::restore(StateFolder::Found found) {
@@ -89,7 +94,8 @@ void DetachedJobs::restore(StateFolder::Found found) {
             damage = limit;  // as long as this server's limits hold
         }
     }
-    if (damage) host_.log->error("job {}: {}", found.stored.spec.id(), damage->what());
+    const std::string name = "job " + found.stored.spec.id();
+    if (damage) log_text(*host_.log, LogLevel::error, name + ": " + damage->what());
     auto pairs = found.result ? std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash), *found.result,
                                                               std::move(found.result_disk))
                               : std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash));
@@ -98,7 +104,7 @@ void DetachedJobs::restore(StateFolder::Found found) {
         try {
             place = host_.places.enter(found.stored.owner);
         } catch (const LimitError&) {
-            host_.log->warn("job {}: one more than the limits of today allow", found.stored.spec.id());
+            log_text(*host_.log, LogLevel::warning, name + ": one more than the limits of today allow");
         }
     }
     const v1::JobReport ending =

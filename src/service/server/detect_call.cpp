@@ -6,9 +6,12 @@
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/download_call.hpp"
+#include "service/server/host.hpp"
 #include "service/server/upload.hpp"
 
 namespace octopair::service {

@@ -1,15 +1,16 @@
 #include "service/server/event.hpp"
 
-#include <fmt/chrono.h>
 #include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>
 #include <spdlog/formatter.h>
+#include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "service/server/log_line.hpp"
 
 namespace octopair::service {
 
@@ -21,29 +22,18 @@ constexpr char border = '\x1f';
 /// Where events come from, by which they are known: what a line's text holds may come from outside.
 constexpr const char* origin = "event";
 
-std::string clean(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-    return text;
-}
-
-std::string json_text(const nlohmann::ordered_json& value) {
-    return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-std::string time_of(const spdlog::details::log_msg& line) {
-    const auto since = line.time.time_since_epoch();
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(since);
-    const auto rest = std::chrono::duration_cast<std::chrono::milliseconds>(since - seconds);
-    return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::time_t(seconds.count())), rest.count());
-}
-
-/// Words that have spaces are quoted.
-std::string text_field(const std::string& name, const nlohmann::ordered_json& value) {
-    if (!value.is_string()) return " " + name + "=" + json_text(value);
-    const std::string words = value.get<std::string>();
-    const bool plain = !words.empty() && words.find_first_of(" \"=") == std::string::npos;
-    return " " + name + "=" + (plain ? words : json_text(value));
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+    switch (level) {
+        case LogLevel::debug:
+            return spdlog::level::debug;
+        case LogLevel::info:
+            return spdlog::level::info;
+        case LogLevel::warning:
+            return spdlog::level::warn;
+        case LogLevel::error:
+            break;
+    }
+    return spdlog::level::err;
 }
 
 class Formatter final : public spdlog::formatter {
@@ -55,20 +45,9 @@ public:
         const auto level = spdlog::level::to_string_view(line.level);
         const bool is_event = line.source.filename == origin;
         const std::size_t end = is_event ? std::min(payload.find(border), payload.size()) : payload.size();
-        const std::string words = clean(std::string(payload.substr(0, end)));
-        nlohmann::ordered_json fields = nlohmann::ordered_json::object();
-        if (end < payload.size()) fields = nlohmann::ordered_json::parse(payload.substr(end + 1), nullptr, false);
-        std::string text;
-        if (form_ == LogForm::json) {
-            nlohmann::ordered_json all = {
-                {"time", time_of(line)}, {"level", std::string(level.data(), level.size())}, {"message", words}};
-            all.update(fields);
-            text = json_text(all);
-        } else {
-            text = time_of(line) + " " + std::string(level.data(), level.size()) + " " + words;
-            for (const auto& [name, value] : fields.items()) text += text_field(name, value);
-        }
-        text += '\n';
+        const std::string text =
+            format_line(form_, {line.time, std::string(level.data(), level.size()), payload.substr(0, end),
+                                payload.substr(std::min(end + 1, payload.size()))});
         out.append(text.data(), text.data() + text.size());
     }
     std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<Formatter>(form_); }
@@ -77,41 +56,33 @@ private:
     LogForm form_;
 };
 
-}  // namespace
-
-void log_event(spdlog::logger& log, spdlog::level::level_enum level, std::string_view what,
-               const std::vector<Field>& fields) {
-    if (!log.should_log(level)) return;
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (const Field& field : fields) {
-        const auto put = [&](const auto& value) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
-                object[std::string(field.name)] = clean(value);
-            else
-                object[std::string(field.name)] = value;
-        };
-        std::visit(put, field.value);
-    }
-    log.log(spdlog::source_loc(origin, 1, ""), level, "{}{}{}", what, border, json_text(object));
-}
-
-namespace {
-
 /// What gRPC has to say goes here; null: nowhere.
 std::atomic<spdlog::logger*> grpc_log = nullptr;
 
 void tell_of_grpc(gpr_log_func_args* line) {
     spdlog::logger* const log = grpc_log;
     if (log == nullptr) return;
-    const bool is_error = line->severity == GPR_LOG_SEVERITY_ERROR;
-    log->log(is_error ? spdlog::level::warn : spdlog::level::debug, "gRPC: {}", line->message);
+    const LogLevel level = line->severity == GPR_LOG_SEVERITY_ERROR ? LogLevel::warning : LogLevel::debug;
+    if (is_logged(*log, level)) log_text(*log, level, std::string("gRPC: ") + line->message);
 }
 
 void tell_of_protobuf(google::protobuf::LogLevel, const char*, int, const std::string& words) {
-    if (spdlog::logger* const log = grpc_log) log->log(spdlog::level::debug, "protobuf: {}", words);
+    if (spdlog::logger* const log = grpc_log) log_text(*log, LogLevel::debug, "protobuf: " + words);
 }
 
 }  // namespace
+
+bool is_logged(const spdlog::logger& log, LogLevel level) { return log.should_log(spdlog_level(level)); }
+
+void log_event(spdlog::logger& log, LogLevel level, std::string_view what, const std::vector<Field>& fields) {
+    if (!is_logged(log, level)) return;
+    const std::string payload = std::string(what) + border + json_of(fields);
+    log.log(spdlog::source_loc(origin, 1, ""), spdlog_level(level), spdlog::string_view_t(payload));
+}
+
+void log_text(spdlog::logger& log, LogLevel level, std::string_view text) {
+    log.log(spdlog_level(level), spdlog::string_view_t(text.data(), text.size()));
+}
 
 void take_grpc_log(const std::shared_ptr<spdlog::logger>& log) {
     static std::shared_ptr<spdlog::logger> kept;
@@ -121,7 +92,7 @@ void take_grpc_log(const std::shared_ptr<spdlog::logger>& log) {
     google::protobuf::SetLogHandler(&tell_of_protobuf);
 }
 
-std::shared_ptr<spdlog::logger> make_log(LogForm form, spdlog::sink_ptr sink) {
+std::shared_ptr<spdlog::logger> make_log(LogForm form, std::shared_ptr<spdlog::sinks::sink> sink) {
     if (!sink) sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
     auto log = std::make_shared<spdlog::logger>("octopair", std::move(sink));
     log->set_formatter(std::make_unique<Formatter>(form));

@@ -1,12 +1,16 @@
 #include "service/server/host.hpp"
 
+#include <grpcpp/server_context.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
 #include "service/server/detached_jobs.hpp"
+#include "service/server/state_folder.hpp"
 
 namespace octopair::service {
 

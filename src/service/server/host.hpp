@@ -1,12 +1,13 @@
 // Host: what all calls of a server share.
 #pragma once
 
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <atomic>
 #include <memory>
 #include <string>
 
+#include "service/protocol/limit_error.hpp"
 #include "service/server/access.hpp"
 #include "service/server/budget.hpp"
 #include "service/server/call_threads.hpp"
@@ -14,13 +15,14 @@
 #include "service/server/lanes.hpp"
 #include "service/server/ledger.hpp"
 #include "service/server/overseer.hpp"
+#include "service/server/server_job.hpp"
 #include "service/server/server_options.hpp"
 #include "service/server/spare_boxes.hpp"
-#include "service/server/state_folder.hpp"
 
 namespace octopair::service {
 
 class DetachedJobs;
+class StateFolder;
 
 class Host {
 public:

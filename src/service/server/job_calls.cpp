@@ -8,8 +8,11 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/detached_jobs.hpp"
+#include "service/server/host.hpp"
+#include "service/server/state_folder.hpp"
 
 namespace octopair::service {
 

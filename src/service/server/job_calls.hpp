@@ -4,10 +4,17 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
-#include "service/protocol/octopair.pb.h"
-#include "service/server/host.hpp"
+namespace octopair::v1 {
+class JobList;
+class JobName;
+class JobReport;
+class ListRequest;
+class WaitRequest;
+}  // namespace octopair::v1
 
 namespace octopair::service {
+
+class Host;
 
 grpc::ServerUnaryReactor* start_status(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
                                        v1::JobReport& response);

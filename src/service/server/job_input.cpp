@@ -7,6 +7,8 @@
 #include "octopair/error.hpp"
 #include "service/protocol/job_spec.hpp"
 
+#include "service/protocol/octopair.pb.h"
+
 namespace octopair::service {
 
 JobInput::JobInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares)

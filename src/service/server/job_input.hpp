@@ -9,9 +9,13 @@
 
 #include "octopair/engine.hpp"
 #include "service/protocol/job_hash.hpp"
-#include "service/protocol/octopair.pb.h"
 #include "service/server/input_target.hpp"
 #include "service/server/spare_boxes.hpp"
+
+namespace octopair::v1 {
+class JobSpec;
+class ObjectSet;
+}  // namespace octopair::v1
 
 namespace octopair::service {
 

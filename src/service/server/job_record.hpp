@@ -7,11 +7,19 @@
 #include <stop_token>
 #include <string>
 
-#include "service/protocol/octopair.pb.h"
 #include "service/server/budget.hpp"
-#include "service/server/job_input.hpp"
+
+namespace octopair {
+class Engine;
+}  // namespace octopair
+
+namespace octopair::v1 {
+class JobReport;
+}  // namespace octopair::v1
 
 namespace octopair::service {
+
+class JobInput;
 
 class JobRecord {
 public:

@@ -1,6 +1,6 @@
 #include "service/server/job_table.hpp"
 
-#include "service/protocol/status.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/server/server_job.hpp"
 
 namespace octopair::service {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/protocol/status.hpp"
 
 namespace octopair::service {
 

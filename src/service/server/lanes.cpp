@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "service/protocol/job_spec.hpp"
+#include "service/server/server_job.hpp"
 
 namespace octopair::service {
 

@@ -16,9 +16,10 @@
 #include <vector>
 
 #include "octopair/engine.hpp"
-#include "service/server/server_job.hpp"
 
 namespace octopair::service {
+
+class ServerJob;
 
 /// Makes an engine of so many threads or workers.
 using EngineMaker = std::function<std::unique_ptr<Engine>(unsigned width)>;

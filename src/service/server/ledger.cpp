@@ -1,7 +1,10 @@
 #include "service/server/ledger.hpp"
 
+#include <grpcpp/support/status.h>
+
 #include <vector>
 
+#include "service/protocol/limit_error.hpp"
 #include "service/server/event.hpp"
 #include "service/server/server_job.hpp"
 
@@ -24,8 +27,8 @@ void Ledger::job_moved(const ServerJob& job, std::optional<v1::JobState> from, v
     metrics_.job_ended(report, seconds);
     // Jobs of one call come by the thousand a second.
     const bool small = report.id().empty();
-    const auto level = to == v1::FAILED ? spdlog::level::warn : small ? spdlog::level::debug : spdlog::level::info;
-    if (!log_->should_log(level)) return;
+    const auto level = to == v1::FAILED ? LogLevel::warning : small ? LogLevel::debug : LogLevel::info;
+    if (!is_logged(*log_, level)) return;
     std::vector<Field> fields;
     if (!small) fields.push_back({"id", report.id()});
     fields.insert(fields.end(), {{"owner", job.owner()},
@@ -39,12 +42,12 @@ void Ledger::job_moved(const ServerJob& job, std::optional<v1::JobState> from, v
 
 void Ledger::limit_refused(const std::string& owner, const LimitError& error) {
     metrics_.refused(error.name());
-    log_event(*log_, spdlog::level::warn, "refused",
+    log_event(*log_, LogLevel::warning, "refused",
               {{"owner", owner}, {"limit", error.name()}, {"allowed", error.allowed()}, {"reason", error.what()}});
 }
 
 void Ledger::connections_refused(std::uint64_t allowed, std::uint64_t refused) {
-    log_event(*log_, spdlog::level::warn, "refused",
+    log_event(*log_, LogLevel::warning, "refused",
               {{"limit", "connections"},
                {"allowed", allowed},
                {"reason", std::to_string(refused) + " connections refused since the start"}});
@@ -53,7 +56,7 @@ void Ledger::connections_refused(std::uint64_t allowed, std::uint64_t refused) {
 void Ledger::call_refused(const std::string& peer, const grpc::Status& why) {
     const bool going = why.error_code() == grpc::StatusCode::UNAVAILABLE;
     metrics_.call_refused(going ? "going down" : "unauthenticated");
-    log_event(*log_, going ? spdlog::level::debug : spdlog::level::warn, "call refused",
+    log_event(*log_, going ? LogLevel::debug : LogLevel::warning, "call refused",
               {{"peer", peer}, {"reason", why.error_message()}});
 }
 

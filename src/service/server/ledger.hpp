@@ -1,17 +1,21 @@
 // Ledger: what a server writes down about its work, in its log and its metrics. No secrets: clients appear by name.
 #pragma once
 
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "service/protocol/status.hpp"
 #include "service/server/metrics.hpp"
+
+namespace grpc {
+class Status;
+}  // namespace grpc
 
 namespace octopair::service {
 
+class LimitError;
 class ServerJob;
 
 /// Thread-safe.

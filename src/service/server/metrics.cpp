@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 

@@ -8,7 +8,11 @@
 #include <string>
 
 #include "service/protocol/address.hpp"
-#include "service/protocol/octopair.pb.h"
+
+namespace octopair::v1 {
+class JobReport;
+enum JobState : int;
+}  // namespace octopair::v1
 
 namespace octopair::service {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "service/protocol/limit_error.hpp"
+
 namespace octopair::service {
 
 Overseer::Overseer() : thread_([this] { look_around(); }) {}

@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "service/protocol/status.hpp"
-
 namespace octopair::service {
+
+class LimitError;
 
 class Overseen {
 public:

@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/server/download_call.hpp"
+#include "service/server/host.hpp"
 
 namespace octopair::service {
 

@@ -5,9 +5,9 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
-#include "service/server/host.hpp"
-
 namespace octopair::service {
+
+class Host;
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(Host& host, grpc::CallbackServerContext& context,
                                                          const grpc::ByteBuffer& request);

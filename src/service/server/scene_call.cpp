@@ -1,5 +1,7 @@
 #include "service/server/scene_call.hpp"
 
+#include <grpcpp/server_context.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <cstring>
@@ -9,8 +11,11 @@
 #include <string>
 #include <utility>
 
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
+#include "service/server/host.hpp"
 #include "service/server/server_scene.hpp"
 #include "service/server/uploaded_calls.hpp"
 

@@ -4,9 +4,9 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
-#include "service/server/host.hpp"
-
 namespace octopair::service {
+
+class Host;
 
 grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(Host& host,
                                                                          grpc::CallbackServerContext& context);

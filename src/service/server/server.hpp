@@ -1,7 +1,7 @@
 // Server: octopair's calls at an address.
 #pragma once
 
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <chrono>
 #include <cstdint>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
 
 namespace octopair::service {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "service/protocol/status.hpp"
+#include "service/protocol/limit_error.hpp"
 
 namespace octopair::service {
 

@@ -13,6 +13,7 @@
 
 #include "base/io_failure.hpp"
 #include "octopair/error.hpp"
+#include "service/server/event.hpp"
 #include "service/server/file.hpp"
 
 namespace octopair::service {
@@ -79,7 +80,7 @@ std::vector<std::uint64_t> StateFolder::clean_up() {
         if (const auto job = number_of(name, ".job")) jobs.push_back(*job);
         if (const auto result = number_of(name, ".result")) results.push_back(*result);
         const bool part = number_of(name, ".job.part") || number_of(name, ".result.part");
-        if (part && remove_file(at->path().string())) log_->info("{}: half-written, removed", name);
+        if (part && remove_file(at->path().string())) log_text(*log_, LogLevel::info, name + ": half-written, removed");
     }
     if (error) fail_io(path_, "cannot read", error.value());
     std::sort(jobs.begin(), jobs.end());
@@ -112,7 +113,7 @@ std::optional<StateFolder::Found> StateFolder::find_job(const std::string& base)
         find_result(found);
         return found;
     } catch (const Error& error) {
-        log_->error("{}; it is left there", error.what());
+        log_text(*log_, LogLevel::error, std::string(error.what()) + "; it is left there");
         return {};
     }
 }

@@ -4,7 +4,7 @@
 // counts up, and jobs run in its order. What a crash left half-written has the ending .part, and goes at the next start.
 #pragma once
 
-#include <spdlog/logger.h>
+#include <spdlog/fwd.h>
 
 #include <atomic>
 #include <cstdint>

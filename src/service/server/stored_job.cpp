@@ -7,8 +7,10 @@
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/protocol/status.hpp"
+#include "service/server/event.hpp"
+#include "service/server/job_input.hpp"
 
 namespace octopair::service {
 
@@ -40,7 +42,8 @@ void StoredJob::end(const v1::JobReport& ending) {
     try {
         parts_.pairs->seal(ending);
     } catch (const std::exception& error) {
-        parts_.folder.log().error("job {}: how it ended cannot be kept: {}", parts_.stored.spec.id(), error.what());
+        log_text(parts_.folder.log(), LogLevel::error,
+                 "job " + parts_.stored.spec.id() + ": how it ended cannot be kept: " + error.what());
         throw;
     }
 }

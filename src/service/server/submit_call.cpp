@@ -6,8 +6,11 @@
 #include <utility>
 
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/detached_jobs.hpp"
+#include "service/server/host.hpp"
+#include "service/server/state_folder.hpp"
 #include "service/server/upload.hpp"
 
 namespace octopair::service {

@@ -1,10 +1,13 @@
 #include "service/server/upload.hpp"
 
+#include <grpcpp/support/byte_buffer.h>
+
 #include <string>
 #include <vector>
 
 #include "octopair/error.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
 

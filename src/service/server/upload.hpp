@@ -1,14 +1,19 @@
 // Upload: the messages of a client that make a job: what it asks, then its data.
 #pragma once
 
-#include <grpcpp/support/byte_buffer.h>
-
 #include <cstdint>
 #include <functional>
 #include <span>
 
-#include "service/protocol/octopair.pb.h"
 #include "service/server/input_target.hpp"
+
+namespace grpc {
+class ByteBuffer;
+}  // namespace grpc
+
+namespace octopair::v1 {
+class JobSpec;
+}  // namespace octopair::v1
 
 namespace octopair::service {
 

@@ -1,5 +1,8 @@
 // Results: from any place on, if they are the same; and what comes after them: cancel, release, and the time they are kept.
-#include <grpcpp/grpcpp.h>
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
 
 #include <cstring>
 

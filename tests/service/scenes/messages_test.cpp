@@ -4,6 +4,7 @@
 #include <random>
 
 #include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/scenes/raw_scene.hpp"
 #include "service/scenes/scene_server.hpp"
 
