@@ -29,14 +29,14 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOc
       places_(memory.places_) {
     counted_stride_ = std::max<std::size_t>(1, source.size() / tuning().ranks.counted);
     places_.resize_discard(source.size());
-    const std::size_t most_objects = tuning().ranks.block;
+    const std::size_t objects_a_block = tuning().ranks.block;
     std::size_t count = 0, end = 0;
     for (unsigned set = 0; set < 2; ++set) {
         std::size_t begin = end;
         end += std::size_t(call.sizes[set]);
-        for (; begin < end; begin += most_objects) {
+        for (; begin < end; begin += objects_a_block) {
             if (count == blocks_.size()) blocks_.emplace_back();
-            blocks_[count++].begin(set, {begin, std::min(begin + most_objects, end)});
+            blocks_[count++].begin(set, {begin, std::min(begin + objects_a_block, end)});
         }
     }
     blocks_.resize(count);
