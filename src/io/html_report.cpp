@@ -16,10 +16,10 @@ namespace {
 constexpr std::string_view data_mark = "@DATA@";
 
 /// JSON that nothing in it can end the element around it.
-std::string script_json(std::string json) {
-    for (std::size_t at = json.find('<'); at != std::string::npos; at = json.find('<', at))
-        json.replace(at, 1, "\\u003c");
-    return json;
+std::string script_json(std::string text) {
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
 }
 
 std::string json_box(const Boxes& boxes, std::uint64_t object) {
@@ -44,9 +44,9 @@ std::string label_of(const ObjectNames& names, std::uint32_t object) {
 
 /// Where a pair is to be looked at, or null.
 std::string json_place(const Finding& finding, bool features) {
-    const bool apart = finding.collision_class == CollisionClass::clearance;
-    if (!apart && (!features || finding.contacts.empty())) return "null";
-    const Point3d& at = apart ? finding.nearest[0] : finding.contacts.front().point;
+    const bool clear = finding.collision_class == CollisionClass::clearance;
+    if (!clear && (!features || finding.contacts.empty())) return "null";
+    const Point3d& at = clear ? finding.nearest[0] : finding.contacts.front().point;
     return fmt::format("[{},{},{}]", json_number(at[0]), json_number(at[1]), json_number(at[2]));
 }
 
@@ -171,8 +171,7 @@ void HtmlReport::write_others() {
 }
 
 void HtmlReport::write_summary() {
-    using nlohmann::json;
-    json facts = json::array();
+    nlohmann::json facts = nlohmann::json::array();
     facts.push_back({"collisions", std::to_string(rows_)});
     for (std::size_t i = 1; i < of_class_.size(); ++i) {
         if (of_class_[i] > 0) facts.push_back({word_of(CollisionClass(i)), std::to_string(of_class_[i])});
@@ -181,7 +180,7 @@ void HtmlReport::write_summary() {
         facts.push_back({word_of(Change(i)), std::to_string(of_change_[i])});
     }
     for (const auto& [label, value] : facts_) facts.push_back({clean_text(label), clean_text(value)});
-    json notes = json::array();
+    nlohmann::json notes = nlohmann::json::array();
     if (const std::uint64_t gone = of_change_[std::size_t(Change::gone)]; std::max(rows_, gone) > most_rows) {
         notes.push_back(fmt::format("The table has the first {} rows of {}.", most_rows, std::max(rows_, gone)));
     }
@@ -189,7 +188,7 @@ void HtmlReport::write_summary() {
         notes.push_back(
             fmt::format("Of {} objects that the table does not name, {} are drawn.", others_, others_drawn_));
     }
-    const json summary = {
+    const nlohmann::json summary = {
         {"title", clean_text(scene_.title)}, {"join", scene_.join}, {"facts", facts}, {"notes", notes}};
     out_->write("<script type=\"application/json\" id=\"summary\">" + script_json(dump_json(summary)) + "</script>\n");
 }
