@@ -17,7 +17,7 @@ struct Outcome {
     std::string err;
 };
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public ::testing::Test {
 protected:
     /// Runs a line of sh in the directory; $P is the program, and `hears PID` waits until it takes SIGINT as a request.
     Outcome shell(const std::string& line) const {

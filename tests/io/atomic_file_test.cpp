@@ -16,7 +16,7 @@ namespace {
 using io::AtomicFile;
 using Names = std::vector<std::string>;
 
-class AtomicFileTest : public testing::Test {
+class AtomicFileTest : public ::testing::Test {
 protected:
     TemporaryDirectory directory_;
     std::string path_ = directory_.file("result.csv");

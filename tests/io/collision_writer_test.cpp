@@ -14,7 +14,7 @@ namespace {
 
 using io::CollisionForm;
 
-const std::vector<std::string> names = {"left, \"l\"", "", "r\xFFight"};
+const std::vector<std::string> object_names = {"left, \"l\"", "", "r\xFFight"};
 const std::vector<Pair> pairs = {{0, 1}, {0, 2}, {1, 2}};
 
 std::vector<Finding> findings() {
@@ -46,7 +46,7 @@ std::string written(const std::string& ending, const CollisionForm& form, const 
 
 TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
     const auto found = findings();
-    EXPECT_EQ(written(".jsonl", {{{names}, {names}}, true, true}, {pairs, found}),
+    EXPECT_EQ(written(".jsonl", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
               R"({"a":0,"b":1,"a_name":"left, \"l\"","class":"clearance","time":0,"distance":0.1,)"
               R"("nearest":[[1,2,3],[1,2,3.1]]}
 {"a":0,"b":2,"a_name":"left, \"l\"","b_name":"r)"
@@ -64,7 +64,7 @@ TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
 TEST(CollisionWriter, CsvLeavesEmptyWhatIsNotKnown) {
     const auto found = findings();
     const std::string header = "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts";
-    EXPECT_EQ(written(".csv", {{{names}, {names}}, true, true}, {pairs, found}),
+    EXPECT_EQ(written(".csv", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
               header +
                   "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,\n"
                   "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,0 1e+300 -0,true\n"
@@ -180,7 +180,7 @@ TEST_F(BaselineTest, TrianglesAreKnownWithinTheirOwner) {
 
 TEST_F(BaselineTest, WhatIsWrittenIsReadAgain) {
     const auto found = findings();
-    const CollisionForm form{{{names}, {names}}, true};
+    const CollisionForm form{{{object_names}, {object_names}}, true};
     io::Baseline baseline = read(written(".jsonl", form, {pairs, found}));
     EXPECT_EQ(words(baseline, pairs, form.names), "same same same 0 gone");
 }

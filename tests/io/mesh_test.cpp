@@ -17,7 +17,7 @@ using io::MeshObjects;
 const std::string tetrahedron_off =
     "OFF\n4 4 0\n0.1 0.2 0.3\n1 0 0\n0 1.7 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 
-class Mesh : public testing::Test {
+class Mesh : public ::testing::Test {
 protected:
     LoadedScene read(const std::string& name, const std::string& content, MeshObjects objects,
                      bool shapes = false) const {

@@ -15,7 +15,7 @@ namespace {
 using io::LoadedScene;
 using io::NpyType;
 
-class Npy : public testing::Test {
+class Npy : public ::testing::Test {
 protected:
     std::string save(const std::string& content) const {
         const std::string path = directory_.file("a.npy");

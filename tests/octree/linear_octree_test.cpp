@@ -33,7 +33,7 @@ private:
 
 constexpr std::size_t scene_size = 30000;
 
-class Scene : public testing::TestWithParam<std::string> {
+class Scene : public ::testing::TestWithParam<std::string> {
 protected:
     Scene()
         : boxes_(samples::make_scene(GetParam(), scene_size, 7)),
@@ -204,7 +204,7 @@ TEST_P(Scene, MergedListsAreTheSameOctree) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Scene, testing::ValuesIn(kinds()), [](const auto& instance) {
+INSTANTIATE_TEST_SUITE_P(Kinds, Scene, ::testing::ValuesIn(kinds()), [](const auto& instance) {
     std::string name = instance.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
