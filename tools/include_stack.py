@@ -43,7 +43,7 @@ THIRD_PARTY = {
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service"}, "spdlog": {"service", "cli"},
     "ccd": {"geometry"}, "Eigen": {"geometry"}, "boost": {"geometry"},
-    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "service", "cli"},
+    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "cli"},
     "nlohmann": {"io", "machine", "paper", "cluster", "scaling", "service", "cli"},
 }
 # What a public header of a component cannot do without: its users have it.

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* right = "0123456789abcdef";
 constexpr const char* wrong = "0123456789abcdeg";
 
-class Access : public testing::Test {
+class Access : public ::testing::Test {
 protected:
     Access() { write_secret(folder_.file("tokens"), "# who\nanna 0123456789abcdef\n\nbert fedcba9876543210\n"); }
 

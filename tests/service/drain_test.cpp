@@ -11,7 +11,7 @@
 namespace octopair::test {
 namespace {
 
-class Drain : public testing::Test {
+class Drain : public ::testing::Test {
 protected:
     service::ServerOptions patient() const {
         service::ServerOptions options = options_at("unix:" + folder_.file("socket"));

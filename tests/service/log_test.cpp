@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using service::LogForm;
 
-class Log : public testing::Test {
+class Log : public ::testing::Test {
 protected:
     std::shared_ptr<spdlog::logger> log(LogForm form) {
         return service::make_log(form, std::make_shared<spdlog::sinks::ostream_sink_mt>(text_));

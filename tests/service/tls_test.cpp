@@ -4,7 +4,7 @@
 namespace octopair::test {
 namespace {
 
-class Tls : public testing::Test {
+class Tls : public ::testing::Test {
 protected:
     static const Certificates& files() {
         static const Certificates made;

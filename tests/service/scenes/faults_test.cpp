@@ -9,10 +9,9 @@
 namespace octopair {
 namespace {
 
-constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
-constexpr Box3f far_away = {{5, 5, 5}, {6, 6, 6}};
+constexpr Box3f elsewhere = {{5, 5, 5}, {6, 6, 6}};
 
-const std::vector<Box3f> twice = {unit, unit};
+const std::vector<Box3f> twice(2, Box3f{{0, 0, 0}, {1, 1, 1}});
 
 /// Of two objects that are a pair; not stepped yet.
 std::vector<ObjectId> add_pair(RemoteScene& scene) {
@@ -27,7 +26,7 @@ TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
     const std::vector<ObjectId> ids = add_pair(scene);
     (void)scene.step();
     server.go();
-    scene.move(std::span(ids).first(1), std::span(&far_away, 1));
+    scene.move(std::span(ids).first(1), std::span(&elsewhere, 1));
     try {
         (void)scene.step();
         FAIL() << "stepped";
