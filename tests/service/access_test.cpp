@@ -6,7 +6,7 @@ namespace octopair::test {
 namespace {
 
 constexpr const char* right = "0123456789abcdef";
-constexpr const char* wrong = "0123456789abcdeg";
+constexpr const char* wrong_token = "0123456789abcdeg";
 
 class Access : public ::testing::Test {
 protected:
@@ -34,7 +34,7 @@ TEST_F(Access, TokensLetIn) {
     const service::Server server(with_tokens(socket()), silent());
     EXPECT_EQ(ask(socket(), with(right)), right_answer);
     EXPECT_EQ(ask(socket(), with("fedcba9876543210")), right_answer);
-    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(wrong)); }),
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(wrong_token)); }),
               socket() + ": the token is none of the server's");
     EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with("")); }), socket() + ": the server wants a token");
 }
@@ -45,7 +45,7 @@ TEST_F(Access, EveryCallWantsATokenButHealth) {
     ASSERT_NE(calls, nullptr);
     for (int i = 0; i < calls->method_count(); ++i) {
         const std::string path = "/octopair.v1.Octopair/" + calls->method(i)->name();
-        for (const std::string& token : {std::string(), "Bearer " + std::string(wrong), std::string(right)}) {
+        for (const std::string& token : {std::string(), "Bearer " + std::string(wrong_token), std::string(right)}) {
             const grpc::StatusCode code = call_raw(socket(), path, token).error_code();
             EXPECT_EQ(code, grpc::StatusCode::UNAUTHENTICATED) << path << " with '" << token << "'";
         }
