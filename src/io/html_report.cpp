@@ -16,10 +16,10 @@ namespace {
 constexpr std::string_view data_mark = "@DATA@";
 
 /// JSON that nothing in it can end the element around it.
-std::string script_json(std::string json) {
-    for (std::size_t at = json.find('<'); at != std::string::npos; at = json.find('<', at))
-        json.replace(at, 1, "\\u003c");
-    return json;
+std::string script_json(std::string text) {
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
 }
 
 std::string json_box(const Boxes& boxes, std::uint64_t object) {
