@@ -1,6 +1,7 @@
 #include "machine/machine.hpp"
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 

@@ -1,7 +1,7 @@
 // What measured: the machine and the build, as files of results say it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace octopair::bench {
 

@@ -60,7 +60,9 @@ int run_info() {
 }  // namespace
 
 void add_info(Command& program, Action& action) {
-    program.add_subcommand("info", "version, build, engines, instruction set").callback([&action] { action = run_info; });
+    program.add_subcommand("info", "version, build, engines, instruction set").callback([&action] {
+        action = run_info;
+    });
 }
 
 }  // namespace octopair::cli

@@ -38,9 +38,9 @@ struct Answer {
 constexpr std::size_t piece_bytes = 65536;
 
 /// The child's side: it writes, and ends where nobody reads any more.
-class Sender {
+class PipeSender {
 public:
-    explicit Sender(int pipe) : pipe_(pipe) { waiting_.reserve(piece_bytes); }
+    explicit PipeSender(int pipe) : pipe_(pipe) { waiting_.reserve(piece_bytes); }
 
     void scene(const io::LoadedScene& scene) {
         send(Answer{false, {}, 0});
@@ -120,7 +120,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
         ::dup2(nowhere, STDOUT_FILENO);
         ::dup2(nowhere, STDERR_FILENO);
     }
-    Sender sender(pipe);
+    PipeSender sender(pipe);
     try {
         sender.scene(io::read_scene(path, content));
     } catch (const Error& error) {

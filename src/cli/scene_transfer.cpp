@@ -29,9 +29,9 @@ auto members(Some<io::LoadedTriangles> auto& loaded) {
 auto members(Some<shape::ConvexHull> auto& hull) { return std::tie(hull.points); }
 auto members(Some<shape::Mesh> auto& mesh) { return std::tie(mesh.vertices, mesh.triangles); }
 
-class Sender {
+class SceneSender {
 public:
-    explicit Sender(const PutBytes& put) : put_(put) {}
+    explicit SceneSender(const PutBytes& put) : put_(put) {}
 
     template <typename T>
     void pass(const T& value) {
@@ -77,9 +77,9 @@ private:
     const PutBytes& put_;
 };
 
-class Receiver {
+class SceneReceiver {
 public:
-    explicit Receiver(const GetBytes& get) : get_(get) {}
+    explicit SceneReceiver(const GetBytes& get) : get_(get) {}
 
     template <typename T>
     void pass(T& value) {
@@ -136,11 +136,11 @@ private:
 
 }  // namespace
 
-void send_scene(const io::LoadedScene& scene, const PutBytes& put) { Sender(put).pass(scene); }
+void send_scene(const io::LoadedScene& scene, const PutBytes& put) { SceneSender(put).pass(scene); }
 
 io::LoadedScene receive_scene(const GetBytes& get) {
     io::LoadedScene scene;
-    Receiver(get).pass(scene);
+    SceneReceiver(get).pass(scene);
     return scene;
 }
 

@@ -30,11 +30,11 @@ struct ObjectId {
 };
 
 // A key begins with how the two objects stand: apart, together, or that nobody asked.
-constexpr char unasked = '?', apart = '-', together = '+';
+constexpr char standing_unasked = '?', standing_apart = '-', standing_together = '+';
 
 char standing_in(const JsonFields& row) {
-    if (row.find("class") == nullptr) return unasked;
-    return row.text("class") == word_of(CollisionClass::clearance) ? apart : together;
+    if (row.find("class") == nullptr) return standing_unasked;
+    return row.text("class") == word_of(CollisionClass::clearance) ? standing_apart : standing_together;
 }
 
 /// How those may have stood that a collision of this class is like, what fits best first.
@@ -46,7 +46,7 @@ std::string_view standings_like(CollisionClass collision_class) {
 std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
     std::string first = a.text(join ? "a" : ""), second = b.text(join ? "b" : "");
     if (second < first) std::swap(first, second);
-    return fmt::format("{}{}:{}{}", unasked, first.size(), first, second);
+    return fmt::format("{}{}:{}{}", standing_unasked, first.size(), first, second);
 }
 
 ObjectId id_in(const JsonFields& row, const std::string& side) {

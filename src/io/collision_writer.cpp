@@ -27,7 +27,8 @@ std::string contact_json(const Contact& contact) {
 
 class CollisionJsonlWriter final : public CollisionWriter {
 public:
-    CollisionJsonlWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {}
+    CollisionJsonlWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form)
+        : out_(std::move(out)), form_(form) {}
 
     void write(const CollisionRows& rows) override {
         for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
@@ -51,9 +52,7 @@ public:
     void finish() override { out_->commit(); }
 
 private:
-    void append(std::string_view key, std::string_view value) {
-        line_ += fmt::format(",\"{}\":{}", key, value);
-    }
+    void append(std::string_view key, std::string_view value) { line_ += fmt::format(",\"{}\":{}", key, value); }
 
     void append_object(std::string_view side, const ObjectNames& names, std::uint32_t object) {
         const std::string_view name = names.of(object);
@@ -92,7 +91,8 @@ private:
 
 class CollisionCsvWriter final : public CollisionWriter {
 public:
-    CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form) : out_(std::move(out)), form_(form) {
+    CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form)
+        : out_(std::move(out)), form_(form) {
         out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts");
         out_->write(form_.changes ? std::string_view(",change\n") : std::string_view("\n"));
     }
