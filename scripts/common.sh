@@ -33,3 +33,10 @@ update_package_lists() {
     as_root apt-get update -qq >&2
     export OCTOPAIR_LISTS_UPDATED=1
 }
+
+# Has CMake compile through ccache, where it is installed. What was compiled in one checkout serves another: paths below the
+# root do not count.
+compile_through_ccache() {
+    command -v ccache > /dev/null || return 0
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1
+}
