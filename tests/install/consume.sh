@@ -76,16 +76,23 @@ else
     options=(-DOCTOPAIR_SOURCE="$root")
 fi
 
-if [ "$with_processes" = ON ] && [ "$how" = subdirectory ]; then
-    build_consumer both all "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
-    "$work/both/consumer"
-    "$work/both/process_consumer"
+if [ "$how" = subdirectory ]; then
+    # That each source compiles by itself, as it does for a user's build, is a check of its own.
+    build_consumer tree all "${options[@]}" -DCONSUMER_WITH_PROCESSES="$with_processes" -DCONSUMER_WITH_MPI="$with_mpi" \
+        -DCMAKE_UNITY_BUILD=ON
+    "$work/tree/consumer"
+    [ "$with_processes" != ON ] || "$work/tree/process_consumer"
+    [ "$with_mpi" != ON ] || mpirun -n 2 "$work/tree/mpi_consumer"
 else
     build_consumer plain consumer "${options[@]}"
     "$work/plain/consumer"
     if [ "$with_processes" = ON ]; then
         build_consumer processes process_consumer "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
         starts_worker "$work/processes/process_consumer"
+    fi
+    if [ "$with_mpi" = ON ]; then
+        build_consumer mpi mpi_consumer "${options[@]}" -DCONSUMER_WITH_MPI=ON
+        mpirun -n 2 "$work/mpi/mpi_consumer"
     fi
 fi
 if [ "$with_service" = ON ] && [ "$how" = installed ]; then
@@ -95,10 +102,6 @@ if [ "$with_service" = ON ] && [ "$how" = installed ]; then
         check_unit
         with_server "$work/client/client_consumer"
     fi
-fi
-if [ "$with_mpi" = ON ]; then
-    build_consumer mpi mpi_consumer "${options[@]}" -DCONSUMER_WITH_MPI=ON
-    mpirun -n 2 "$work/mpi/mpi_consumer"
 fi
 if [ "$with_pipeline" = ON ] && [ "$how" = installed ]; then
     build_consumer pipeline pipeline_consumer "${options[@]}" -DCONSUMER_WITH_PIPELINE=ON
