@@ -7,8 +7,10 @@ namespace octopair::service {
 
 namespace {
 
-constexpr std::uint64_t least_bytes = std::uint64_t(1) << 20;   // of an array; smaller ones are the allocator's to keep
-constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;  // of all
+/// Smaller arrays are the allocator's to keep.
+constexpr std::uint64_t least_spare_bytes = std::uint64_t(1) << 20;
+/// Of all spare arrays together.
+constexpr std::uint64_t most_spare_bytes = std::uint64_t(128) << 20;
 
 std::uint64_t size_of(const AnyBoxes& boxes) {
     return std::visit([](const auto& array) { return array.size(); }, boxes);
@@ -36,9 +38,9 @@ AnyBoxes SpareBoxes::find(const Engine& engine, std::size_t kind, std::uint64_t 
 
 void SpareBoxes::give(const Engine& engine, AnyBoxes boxes) noexcept {
     const std::uint64_t bytes = bytes_of(boxes);
-    if (bytes < least_bytes || bytes > most_bytes) return;
+    if (bytes < least_spare_bytes || bytes > most_spare_bytes) return;
     const std::lock_guard lock(mutex_);
-    while (bytes_ + bytes > most_bytes) {
+    while (bytes_ + bytes > most_spare_bytes) {
         bytes_ -= bytes_of(spares_.front().boxes);
         spares_.erase(spares_.begin());
     }
