@@ -26,13 +26,14 @@ protected:
 };
 
 TEST_F(ServerChoice, TokensComeFromAFileOrTheEnvironment) {
-    const std::string expected_csv = "a,b\n0,2\n";
-    EXPECT_EQ(with_server("\"$P\" $D --quiet --token-file token").out, expected_csv);
-    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=0123456789abcdef \"$P\" $D --quiet").out, expected_csv);
-    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=other \"$P\" $D --quiet --token-file token").out, expected_csv);
-    const Outcome wrong = with_server("\"$P\" $D --quiet --token-file wrong"), none = with_server("\"$P\" $D --quiet");
-    EXPECT_EQ(wrong.status, 2);
-    EXPECT_EQ(wrong.err, "octopair: unix:socket: the token is none of the server's\n");
+    const std::string answer = "a,b\n0,2\n";
+    EXPECT_EQ(with_server("\"$P\" $D --quiet --token-file token").out, answer);
+    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=0123456789abcdef \"$P\" $D --quiet").out, answer);
+    EXPECT_EQ(with_server("OCTOPAIR_TOKEN=other \"$P\" $D --quiet --token-file token").out, answer);
+    const Outcome refused = with_server("\"$P\" $D --quiet --token-file wrong"),
+                  none = with_server("\"$P\" $D --quiet");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "octopair: unix:socket: the token is none of the server's\n");
     EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err, "octopair: unix:socket: the server wants a token\n");
 }

@@ -29,10 +29,11 @@ AnyBoxes SpareBoxes::find(const Engine& engine, std::size_t kind, std::uint64_t 
         return spare.engine == &engine && spare.boxes.index() == kind && size >= count && size - count <= count / 8;
     };
     const auto found = std::find_if(spares_.rbegin(), spares_.rend(), fits);
-    if (found == spares_.rend()) return kind == 0 ? AnyBoxes(BoxArray<Box3f>()) : AnyBoxes(BoxArray<Box3d>());
-    bytes_ -= bytes_of(found->boxes);
-    AnyBoxes boxes = std::move(found->boxes);
+    AnyBoxes boxes = kind == 0 ? AnyBoxes(BoxArray<Box3f>()) : AnyBoxes(BoxArray<Box3d>());
+    if (found == spares_.rend()) return boxes;
+    boxes = std::move(found->boxes);
     spares_.erase(std::next(found).base());
+    bytes_ -= bytes_of(boxes);
     return boxes;
 }
 
