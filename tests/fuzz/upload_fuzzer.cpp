@@ -7,8 +7,9 @@
 
 #include "octopair/error.hpp"
 #include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/protocol/status.hpp"
+#include "service/protocol/octopair.pb.h"
 #include "service/server/download.hpp"
 #include "service/server/upload.hpp"
 

@@ -30,9 +30,10 @@ TEST_F(ServerChoice, TokensComeFromAFileOrTheEnvironment) {
     EXPECT_EQ(with_server("\"$P\" $D --quiet --token-file token").out, answer);
     EXPECT_EQ(with_server("OCTOPAIR_TOKEN=0123456789abcdef \"$P\" $D --quiet").out, answer);
     EXPECT_EQ(with_server("OCTOPAIR_TOKEN=other \"$P\" $D --quiet --token-file token").out, answer);
-    const Outcome wrong = with_server("\"$P\" $D --quiet --token-file wrong"), none = with_server("\"$P\" $D --quiet");
-    EXPECT_EQ(wrong.status, 2);
-    EXPECT_EQ(wrong.err, "octopair: unix:socket: the token is none of the server's\n");
+    const Outcome refused = with_server("\"$P\" $D --quiet --token-file wrong"),
+                  none = with_server("\"$P\" $D --quiet");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "octopair: unix:socket: the token is none of the server's\n");
     EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err, "octopair: unix:socket: the server wants a token\n");
 }

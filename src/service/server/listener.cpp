@@ -28,10 +28,10 @@ namespace octopair::service {
 namespace {
 
 constexpr int backlog = 1024;
-constexpr std::chrono::seconds apart(1);         // looks for what was closed, and words about refusals
-constexpr std::chrono::milliseconds leave(250);  // until a refused connection is told why, and until it is closed
-constexpr std::size_t most_leaving = 64;         // refused connections at once
-constexpr std::size_t most_spares = 8;           // descriptors kept to refuse with
+constexpr std::chrono::seconds check_interval(1);  // looks for what was closed, and words about refusals
+constexpr std::chrono::milliseconds leave(250);    // until a refused connection is told why, and until it is closed
+constexpr std::size_t most_leaving = 64;           // refused connections at once
+constexpr std::size_t most_spares = 8;             // descriptors kept to refuse with
 
 ino_t socket_of(int descriptor) {
     struct stat found {};
@@ -143,7 +143,7 @@ void Listener::stop() {
 void Listener::take_connections() {
     const auto look = [&] {
         if (!leaving_.empty()) return int(leave.count());
-        return known_.empty() ? -1 : int(std::chrono::milliseconds(apart).count());
+        return known_.empty() ? -1 : int(std::chrono::milliseconds(check_interval).count());
     };
     std::array<pollfd, 2> watched = {{{socket_.number(), POLLIN, 0}, {wake_.number(), POLLIN, 0}}};
     for (int ready = 0; ready >= 0 || errno == EINTR;) {
@@ -222,7 +222,7 @@ void Listener::forget_closed() {
 void Listener::refuse(Descriptor connection, std::string why) {
     ++refused_;
     const auto now = std::chrono::steady_clock::now();
-    if (terms_.refused && now - told_ >= apart) {
+    if (terms_.refused && now - told_ >= check_interval) {
         told_ = now;
         terms_.refused();
     }

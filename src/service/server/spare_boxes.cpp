@@ -7,8 +7,10 @@ namespace octopair::service {
 
 namespace {
 
-constexpr std::uint64_t least_bytes = std::uint64_t(1) << 20;   // of an array; smaller ones are the allocator's to keep
-constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;  // of all
+/// Smaller arrays are the allocator's to keep.
+constexpr std::uint64_t least_spare_bytes = std::uint64_t(1) << 20;
+/// Of all spare arrays together.
+constexpr std::uint64_t most_spare_bytes = std::uint64_t(128) << 20;
 
 std::uint64_t size_of(const AnyBoxes& boxes) {
     return std::visit([](const auto& array) { return array.size(); }, boxes);
@@ -27,18 +29,19 @@ AnyBoxes SpareBoxes::find(const Engine& engine, std::size_t kind, std::uint64_t 
         return spare.engine == &engine && spare.boxes.index() == kind && size >= count && size - count <= count / 8;
     };
     const auto found = std::find_if(spares_.rbegin(), spares_.rend(), fits);
-    if (found == spares_.rend()) return kind == 0 ? AnyBoxes(BoxArray<Box3f>()) : AnyBoxes(BoxArray<Box3d>());
-    bytes_ -= bytes_of(found->boxes);
-    AnyBoxes boxes = std::move(found->boxes);
+    AnyBoxes boxes = kind == 0 ? AnyBoxes(BoxArray<Box3f>()) : AnyBoxes(BoxArray<Box3d>());
+    if (found == spares_.rend()) return boxes;
+    boxes = std::move(found->boxes);
     spares_.erase(std::next(found).base());
+    bytes_ -= bytes_of(boxes);
     return boxes;
 }
 
 void SpareBoxes::give(const Engine& engine, AnyBoxes boxes) noexcept {
     const std::uint64_t bytes = bytes_of(boxes);
-    if (bytes < least_bytes || bytes > most_bytes) return;
+    if (bytes < least_spare_bytes || bytes > most_spare_bytes) return;
     const std::lock_guard lock(mutex_);
-    while (bytes_ + bytes > most_bytes) {
+    while (bytes_ + bytes > most_spare_bytes) {
         bytes_ -= bytes_of(spares_.front().boxes);
         spares_.erase(spares_.begin());
     }
