@@ -17,7 +17,7 @@ function(octopair_target target)
         # g++ 12 sees overlapping copies in "text" + std::string (GCC bug 105651).
         target_compile_options(${target} PRIVATE -Wno-restrict)
         if(CMAKE_UNITY_BUILD)
-            # Sources look like headers to it then.
+            # g++ takes the sources that a unity file includes for headers.
             target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
         endif()
     endif()
@@ -34,7 +34,7 @@ function(octopair_target target)
     endif()
 endfunction()
 
-# Sources that are compiled by themselves: those that Highway includes once for each instruction set.
+# Has CMake compile these sources alone: Highway includes each of them again for each instruction set.
 function(octopair_kernels)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

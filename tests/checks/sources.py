@@ -70,7 +70,7 @@ class Check:
         whole = hashlib.sha256((self.rules + command.replace(str(self.root), "")).encode())
         for file in sorted(seen):
             content = file.read_bytes().replace(str(self.root).encode(), b"")
-            whole.update(str(file.relative_to(self.root)).encode() + b"\0" + content)
+            whole.update(os.path.relpath(file, self.root).encode() + b"\0" + content)
         return whole.hexdigest()[:32]
 
     def passes(self, path, command, arguments):

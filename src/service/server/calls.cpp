@@ -21,7 +21,7 @@ using Service = v1::Octopair;
 using Stated = Service::WithCallbackMethod_Describe<Service::Service>;
 using OfJobs = Service::WithCallbackMethod_Status<Service::WithCallbackMethod_Wait<
     Service::WithCallbackMethod_Cancel<Service::WithCallbackMethod_Release<Service::WithCallbackMethod_List<Stated>>>>>;
-/// What has a large field comes as bytes.
+/// The calls whose messages have large fields take the messages as bytes, not parsed.
 using Detached = Service::WithRawCallbackMethod_Submit<Service::WithRawCallbackMethod_Result<OfJobs>>;
 using Methods = Service::WithRawCallbackMethod_Detect<
     Service::WithRawCallbackMethod_DetectSmall<Service::WithRawCallbackMethod_Scene<Detached>>>;

@@ -9,7 +9,7 @@ namespace {
 
 /// Smaller arrays are the allocator's to keep.
 constexpr std::uint64_t least_spare_bytes = std::uint64_t(1) << 20;
-/// Of all spare arrays together.
+/// The bytes that all spare arrays may have together.
 constexpr std::uint64_t most_spare_bytes = std::uint64_t(128) << 20;
 
 std::uint64_t size_of(const AnyBoxes& boxes) {
