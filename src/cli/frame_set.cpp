@@ -35,8 +35,7 @@ FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent
     }
     open_moving(paths);
     if (!moving_.empty()) return;
-    constexpr unsigned threads = 1;  // for shapes, and there are none
-    still_ = read_input_set(paths, content, threads, stop);
+    still_ = read_input_set(paths, content, stop);
     objects_ = still_.scene.objects;
     wide_ = std::holds_alternative<Buffer<Box3d>>(still_.scene.boxes);
 }

@@ -6,9 +6,6 @@
 
 #include "cli/isolated_read.hpp"
 #include "io/npy.hpp"
-#ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/shaped_set.hpp"
-#endif
 
 namespace octopair::cli {
 
@@ -92,7 +89,7 @@ private:
 }  // namespace
 
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
-                        [[maybe_unused]] unsigned threads, const std::stop_token& stop) {
+                        const std::stop_token& stop) {
     InputSet set;
     std::vector<io::LoadedScene> scenes;
     io::SceneContent wanted = content;
@@ -103,9 +100,6 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
     }
     set.scene = io::join_scenes(scenes, paths);
     set.total = set.scene.objects;
-#ifdef OCTOPAIR_WITH_PIPELINE
-    make_shaped(set, threads, stop);
-#endif
     return set;
 }
 

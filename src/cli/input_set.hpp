@@ -53,10 +53,10 @@ struct InputSet {
     std::optional<std::uint64_t> fault_position() const;
 };
 
-/// Boxes are there, but of triangles that were asked for with what the exact stages need (SceneContent::shapes); where there
-/// is a JSON scene, all are read with shapes, made ready on so many threads (0: one a core). Throws what io::read_scene,
-/// io::join_scenes and make_shaped throw.
-InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content, unsigned threads,
+/// Reads files. Sets of JSON scenes, and of triangles with what the exact stages need (SceneContent::shapes), lack boxes until
+/// make_shaped() makes them (shaped_set.hpp). Throws what io::read_scene and io::join_scenes throw.
+/// Requires: no other thread of this process is at work (isolated_read.hpp). Read all sets before the shapes of one are made.
+InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 
 /// The objects of a slice of the set, of any files but JSON scenes; of .npy files no others are read. `names`: whether the

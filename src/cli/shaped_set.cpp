@@ -104,7 +104,9 @@ void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop) {
     });
 }
 
-void make_join_boxes(InputSet& first, InputSet& second) {
+void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop) {
+    make_shaped(first, threads, stop);
+    make_shaped(second, threads, stop);
     if (!has_planes(first) && !has_planes(second)) return;
     const ShapedSet around_first(bounds_of(first), 1, {}), around_second(bounds_of(second), 1, {});
     const ShapedSet& first_shapes = first.shaped != nullptr ? *first.shaped : around_first;

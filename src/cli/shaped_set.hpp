@@ -39,7 +39,8 @@ private:
 /// is but one.
 void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop);
 
-/// Both sets of a join anew, where they have shapes that boxes are made of: a plane has to reach as far as the other set.
-void make_join_boxes(InputSet& first, InputSet& second);
+/// Takes the shapes of both sets of a join; the second may be empty. A plane gets a box that reaches as far as the other set.
+/// Throws as for one set.
+void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop);
 
 }  // namespace octopair::cli

@@ -27,7 +27,7 @@ struct SubmitRequest {
 };
 
 InputSet read_still_set(const std::vector<std::string>& paths, const DetectRequest& what, const std::stop_token& stop) {
-    InputSet set = read_input_set(paths, {what.mesh_objects}, 0, stop);
+    InputSet set = read_input_set(paths, {what.mesh_objects}, stop);
     if (set.scene.moving) throw Error(ErrorCode::usage, paths.front() + ": a job is of one frame; this scene moves");
     return set;
 }
@@ -39,7 +39,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     InputSet inputs = read_still_set(what.inputs, what, stop), against;
     if (!what.against.empty()) against = read_still_set({what.against}, what, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_join_boxes(inputs, against);
+    make_shaped(inputs, against, 0, stop);
 #endif
     const Paddings padding(what, {inputs.scene.objects, against.scene.objects}, stop);
     if (!what.padding.empty()) {

@@ -9,11 +9,10 @@ namespace octopair::cli {
 
 void WholeInputs::read(const DetectRequest& request, const std::stop_token& stop) {
     const io::SceneContent content{request.mesh_objects, has_filters(request)};
-    const unsigned threads = threads_beside(request.engine);
-    first = read_input_set(request.inputs, content, threads, stop);
-    if (!request.against.empty()) second = read_input_set({request.against}, content, threads, stop);
+    first = read_input_set(request.inputs, content, stop);
+    if (!request.against.empty()) second = read_input_set({request.against}, content, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_join_boxes(first, second);
+    make_shaped(first, second, threads_beside(request.engine), stop);
 #endif
     const io::LoadedScene &a = first.scene, &b = second.scene;
     frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request);
