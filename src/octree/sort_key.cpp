@@ -1,7 +1,6 @@
 #include "octree/sort_key.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -13,33 +12,29 @@ namespace octopair {
 
 namespace {
 
-constexpr unsigned digit_bits = 11;
-constexpr std::size_t digits = std::size_t(1) << digit_bits;
-
-/// Of a block of keys: first how many there are of each digit, then where the next one goes.
-using Places = std::array<std::size_t, digits>;
-
-/// One digit, from keys to sorted; false, with nothing done, if it is the same in all.
+/// Sorts by one digit, from keys to sorted. Returns false, with nothing done, if all keys have the same digit.
 bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shift, Executor& executor) {
-    std::vector<Places> blocks(std::clamp<std::size_t>(keys.size() / tuning().sweep.radix_block, 1, executor.width()));
-    if (blocks.size() > 1) count_path(Path::radix_blocks);
+    const std::size_t digits = std::size_t(1) << tuning().sweep.radix_digit_bits;
+    const std::size_t blocks = std::clamp<std::size_t>(keys.size() / tuning().sweep.radix_block, 1, executor.width());
+    if (blocks > 1) count_path(Path::radix_blocks);
+    // For each block and digit: first the number of keys, then where the next key goes.
+    std::vector<std::size_t> places(blocks * digits);
     const auto digit_of = [&](SortKey key) { return std::size_t(key >> shift) & (digits - 1); };
     const auto block = [&](std::size_t i) {
-        const std::size_t begin = keys.size() * i / blocks.size();
-        return keys.subspan(begin, keys.size() * (i + 1) / blocks.size() - begin);
+        const std::size_t begin = keys.size() * i / blocks;
+        return keys.subspan(begin, keys.size() * (i + 1) / blocks - begin);
     };
-    executor.for_each(blocks.size(), [&](std::size_t i) {
-        blocks[i].fill(0);
-        for (const SortKey key : block(i)) ++blocks[i][digit_of(key)];
+    executor.for_each(blocks, [&](std::size_t i) {
+        for (const SortKey key : block(i)) ++places[i * digits + digit_of(key)];
     });
     std::size_t at = 0;
     for (std::size_t digit = 0; digit < digits; ++digit) {
         const std::size_t before = at;
-        for (Places& places : blocks) at += std::exchange(places[digit], at);
+        for (std::size_t i = 0; i < blocks; ++i) at += std::exchange(places[i * digits + digit], at);
         if (at - before == keys.size()) return false;
     }
-    executor.for_each(blocks.size(), [&](std::size_t i) {
-        for (const SortKey key : block(i)) sorted[blocks[i][digit_of(key)]++] = key;
+    executor.for_each(blocks, [&](std::size_t i) {
+        for (const SortKey key : block(i)) sorted[places[i * digits + digit_of(key)]++] = key;
     });
     return true;
 }
@@ -48,7 +43,7 @@ bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shi
 
 void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token& stop) {
     Buffer<SortKey> scratch(keys.size());
-    for (unsigned shift = 32; shift < 64; shift += digit_bits) {
+    for (unsigned shift = 32; shift < 64; shift += tuning().sweep.radix_digit_bits) {
         throw_if_stopped(stop);
         if (pass(keys.span(), scratch.span(), shift, executor)) std::swap(keys, scratch);
     }

@@ -74,6 +74,7 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.few, {1, 2, 5});
     to.one_of<std::size_t>(sweep.in_cache, {1, 4, 20});
     to.one_of<std::size_t>(sweep.radix_block, {1, 5});
+    to.one_of<unsigned>(sweep.radix_digit_bits, {3, 5});
     to.one_of<std::size_t>(sweep.measured_least, {1, 4, 16});
     to.one_of<std::size_t>(sweep.measured_most, {16, 40});
     to.one_of<std::size_t>(sweep.tried_rows, {1, 5});
