@@ -78,7 +78,7 @@ struct Tuning {
         std::size_t few = 24;                  ///< boxes: so many at most are sorted by comparison
         std::size_t in_cache = 1 << 13;        ///< boxes: so many at most are sorted by buckets
         std::size_t radix_block = 1 << 16;     ///< keys of a share of a radix sort, at least
-        unsigned radix_digit_bits = 11;        ///< of a radix sort: the counts of a digit stay in the first cache
+        unsigned radix_digit_bits = 11;        ///< of a digit of a radix sort: its counts stay in the first cache
         std::size_t measured_least = 256;      ///< boxes of a set that are looked at to measure it, at least, and
         std::size_t measured_most = 4096;      ///< at most
         std::size_t tried_rows = 16;           ///< rows that are tested against the measured columns to estimate hits
