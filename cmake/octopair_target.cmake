@@ -34,6 +34,16 @@ function(octopair_target target)
     endif()
 endfunction()
 
+# Compiles these targets with -O1 in sanitized builds, because their code runs long in tests. The presets for sanitizers compile
+# everything else with -O0, for which clang takes a quarter of the time.
+function(octopair_optimise_sanitized)
+    if(OCTOPAIR_SANITIZE)
+        foreach(target IN LISTS ARGN)
+            target_compile_options(${target} PRIVATE -O1)
+        endforeach()
+    endif()
+endfunction()
+
 # Has CMake compile these sources alone: Highway includes each of them again for each instruction set.
 function(octopair_kernels)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
