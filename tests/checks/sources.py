@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 
@@ -24,6 +25,21 @@ def compiled(root, build):
     if not found:
         sys.exit(f"no file of src/ in {build}/compile_commands.json")
     return found
+
+
+def flags_of(command):
+    """Returns the compiler and its options, without the file to compile and the outputs."""
+    words = shlex.split(command)
+    if words[0].endswith("ccache"):
+        words = words[1:]
+    leave_out = {"-c": 2, "-o": 2, "-MD": 1, "-MT": 2, "-MF": 2}
+    flags = []
+    while words:
+        skip = leave_out.get(words[0], 0)
+        if not skip:
+            flags.append(words.pop(0))
+        words = words[skip:]
+    return flags
 
 
 def included(file):
@@ -59,14 +75,20 @@ class Check:
             found += [place for place in [*places, path.parent / source] if place.is_file()]
         return found
 
-    def digest(self, path, command):
-        """Of all that the outcome depends on."""
+    @functools.lru_cache(maxsize=None)
+    def closure(self, path):
+        """A file and the project's files that it includes, directly or not."""
         seen, to_see = set(), [path]
         while to_see:
             file = to_see.pop()
             if file not in seen:
                 seen.add(file)
                 to_see += self.includes(file)
+        return seen
+
+    def digest(self, path, command):
+        """Of all that the outcome depends on."""
+        seen = self.closure(path)
         whole = hashlib.sha256((self.rules + command.replace(str(self.root), "")).encode())
         for file in sorted(seen):
             content = file.read_bytes().replace(str(self.root).encode(), b"")
@@ -74,11 +96,11 @@ class Check:
         return whole.hexdigest()[:32]
 
     def passes(self, path, command, arguments):
-        """Whether a program, run with `arguments`, ends well; prints what it says."""
+        """Whether a program, run with the words that `arguments()` returns, ends well; prints what it says."""
         mark = self.passed / self.digest(path, command)
         if mark.exists():
             return True
-        run = subprocess.run(arguments, cwd=self.build, capture_output=True, text=True, check=False)
+        run = subprocess.run(arguments(), cwd=self.build, capture_output=True, text=True, check=False)
         if run.returncode == 0:
             mark.touch()
         else:
