@@ -178,7 +178,7 @@ TEST(Verified, ABadBoxIsRefusedAsEver) {
 }
 
 TEST(Verified, StopsWhenAsked) {
-    const std::vector<Box3f> boxes(20'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    const std::vector<Box3f> boxes(testing::scaled(20'000, 3), Box3f{{0, 0, 0}, {1, 1, 1}});
     std::stop_source stop;
     Options options;
     options.verify = true;

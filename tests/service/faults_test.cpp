@@ -77,7 +77,7 @@ protected:
 
 TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
     ServerProgram server;
-    const std::vector<Box3f> heap(testing::scaled(80'000, 3));  // long to count
+    const std::vector<Box3f> heap(testing::scaled(80'000, 8));  // long to count
     const std::uint64_t heap_pairs = heap.size() * (heap.size() - 1) / 2;
     const auto uploader = client_of(server), runner = client_of(server), other = client_of(server);
     for (int round = 0; round < 3; ++round) {
