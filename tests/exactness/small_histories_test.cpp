@@ -15,6 +15,9 @@ namespace octopair {
 namespace {
 
 constexpr std::uint64_t usual_histories = testing::scaled(1500, 20);
+constexpr std::uint64_t history_parts = 4;  // of the histories, so that several processes can share them
+
+class SmallHistories : public ::testing::TestWithParam<std::uint64_t> {};
 
 /// Three of four names are of families.
 std::string history_name(samples::RandomStream& random) {
@@ -29,11 +32,12 @@ testing::HistorySize history_size(samples::RandomStream& random) {
     return {size < 50 ? 20u : size < 95 ? 70u : 300u, 12};
 }
 
-TEST(SmallHistories, AreWhatBruteForceFinds) {
+TEST_P(SmallHistories, AreWhatBruteForceFinds) {
     // As many more than usual as there are small scenes, unless the environment asks for a number of cases.
     const std::uint64_t scenes = testing::scene_range(testing::SceneSize::small, 10'000).size();
     const std::uint64_t count = testing::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
-    for (std::uint64_t i = 0; i < count; ++i) {
+    const testing::SceneRange part = testing::SceneRange{0, count}.part(GetParam(), history_parts);
+    for (std::uint64_t i = part.begin; i < part.end; ++i) {
         const std::uint64_t seed = testing::case_seed("small histories", i);
         samples::RandomStream random(seed, 2);
         const std::string name = history_name(random);
@@ -48,7 +52,7 @@ TEST(SmallHistories, AreWhatBruteForceFinds) {
         }
         if (HasFatalFailure()) return;
     }
-    if (count < usual_histories) return;
+    if (part.size() < usual_histories / history_parts) return;
     using enum Path;
     EXPECT_EQ(
         testing::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,
@@ -56,6 +60,8 @@ TEST(SmallHistories, AreWhatBruteForceFinds) {
                                   octree_planted, octree_for_queries, pairs_waited, pairs_merged, refilled}),
         "");
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, SmallHistories, ::testing::Range(std::uint64_t(0), history_parts));
 
 }  // namespace
 }  // namespace octopair
