@@ -178,8 +178,9 @@ TEST(Verified, ABadBoxIsRefusedAsEver) {
 }
 
 TEST(Verified, StopsWhenAsked) {
-    // More than the 8,192 objects that one thread checks between two reports of progress.
-    const std::vector<Box3f> boxes(testing::scaled(20'000, 2), Box3f{{0, 0, 0}, {1, 1, 1}});
+    // One thread checks 16,384 objects between two reports of progress.
+    std::vector<Box3f> boxes(20'000);
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = {{2 * float(i), 0, 0}, {2 * float(i) + 1, 1, 1}};
     std::stop_source stop;
     Options options;
     options.verify = true;
