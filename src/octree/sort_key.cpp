@@ -19,13 +19,16 @@ bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shi
     if (blocks > 1) count_path(Path::radix_blocks);
     // For each block and digit: first the number of keys, then where the next key goes.
     std::vector<std::size_t> places(blocks * digits);
-    const auto digit_of = [&](SortKey key) { return std::size_t(key >> shift) & (digits - 1); };
+    const auto digit_of = [shift, mask = digits - 1](SortKey key) { return std::size_t(key >> shift) & mask; };
     const auto block = [&](std::size_t i) {
         const std::size_t begin = keys.size() * i / blocks;
         return keys.subspan(begin, keys.size() * (i + 1) / blocks - begin);
     };
+    // Copies in each body: what it reads through a reference is read again after each write to `places`.
     executor.for_each(blocks, [&](std::size_t i) {
-        for (const SortKey key : block(i)) ++places[i * digits + digit_of(key)];
+        const auto digit = digit_of;
+        const std::span<std::size_t> counts = std::span(places).subspan(i * digits, digits);
+        for (const SortKey key : block(i)) ++counts[digit(key)];
     });
     std::size_t at = 0;
     for (std::size_t digit = 0; digit < digits; ++digit) {
@@ -34,7 +37,10 @@ bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shi
         if (at - before == keys.size()) return false;
     }
     executor.for_each(blocks, [&](std::size_t i) {
-        for (const SortKey key : block(i)) sorted[places[i * digits + digit_of(key)]++] = key;
+        const auto digit = digit_of;
+        const std::span<SortKey> to = sorted;
+        const std::span<std::size_t> next = std::span(places).subspan(i * digits, digits);
+        for (const SortKey key : block(i)) to[next[digit(key)]++] = key;
     });
     return true;
 }
