@@ -36,7 +36,8 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
         scenes.back().add(Objects{std::span<const Box3f>(boxes)}, ids);
     }
     std::mt19937 random(33);
-    // Scenes choose by measured times which steps are partial. Steps go on until one was; few objects move in the later ones.
+    // A scene decides by measured times whether a step is partial. A large scene takes more steps than usual until one step was
+    // partial. Few objects move in these additional steps.
     constexpr int usual_steps = 6, most_steps = 100;
     int partial = 0;
     for (int step = 0; step < usual_steps || (objects > 1000 && partial == 0 && step < most_steps); ++step) {
