@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 #include "peers/comparison.hpp"
 

@@ -18,7 +18,7 @@
 #include "engines/contenders.hpp"
 #include "engines/contest.hpp"
 #include "engines/memory.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 
 namespace {

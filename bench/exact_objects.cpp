@@ -15,7 +15,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/pipeline.hpp"

@@ -18,7 +18,7 @@
 
 #include "frames/memory.hpp"
 #include "frames/tracking.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 
 namespace {

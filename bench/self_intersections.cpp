@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"

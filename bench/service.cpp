@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
 #include "service/measurements.hpp"
 #include "service/server_process.hpp"

@@ -1,55 +1,107 @@
 #!/usr/bin/env python3
-"""Checks that includes run one way: each folder of src/ uses only those below it in the stack, and so do the folders of
-bench/ that the program is built with.
+"""Checks that includes run one way: each layer uses only itself and the layers that the table below lists for it.
 
     include_stack.py [--print] [ROOT]     ROOT: the project's directory, default the one this file lies in
 
-The stack, from the bottom up, and where third-party headers may be used, stand in the two tables below. Public headers
-(include/octopair) may be used by all and use only each other and the standard library. Prints what breaks the rule, one
-line each, and exits 1; with --print it prints the stack as it is, for docs/design.md.
+A layer is a folder of src/ with the public headers (include/octopair) that it implements. Including a public header is
+using its layer. The folders of bench/ are checked in the same way; nothing in src/ may use them. Public headers use only
+public headers and the standard library. Prints one line for each include that breaks a rule, and exits 1; with --print it
+prints the stack as it is, for docs/design.md.
 """
 import pathlib
 import re
 import sys
 
-# What each folder may use, beside itself and the public headers. Part of an engine: its own folder and engine/ alone.
-CORE = ["base", "parallel", "geometry", "octree", "pipeline", "verification", "engine", "scene", "service"]
-USES = {folder: set(CORE[:i]) for i, folder in enumerate(CORE)}
-USES["verification"] = {"base", "parallel"}  # a check that shares code with what it checks would share its errors
-USES["samples"] = {"base", "geometry"}
-USES["io"] = {"base", "geometry"}
-BENCH = ["baselines", "machine", "paper", "cluster", "scaling"]
-USES["baselines"] = {"base", "octree"}
-USES["machine"] = set()
-USES["paper"] = {"base", "baselines", "machine", "samples"}
-USES["cluster"] = {"base", "engine", "machine", "paper", "samples"}
-USES["scaling"] = {"machine", "samples", "cluster"}
-USES["cli"] = set(CORE) | {"samples", "io", "paper", "cluster", "scaling"}
+# Layers from the bottom up: what they are for, and their public headers.
+LAYERS = {
+    "base": ("errors, buffers, checked casts", ["error"]),
+    "parallel": ("threads; the one place that knows oneTBB", []),
+    "geometry": ("points, vectors, poses", ["pose"]),
+    "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "objects", "options", "summary"]),
+    "octree": ("octal codes; encode, sort, merge, scan", ["octal_code"]),
+    "verification": ("a second algorithm that checks results", []),
+    "engine": ("what all engines share", ["arrangement", "engine", "job", "pair_list"]),
+    "engine/threads": ("the engine of threads", []),
+    "engine/processes": ("the engine of worker processes", ["processes"]),
+    "engine/mpi": ("the engine of MPI ranks", ["mpi"]),
+    "scene": ("objects that persist and move", ["queries", "scene"]),
+    "narrow_phase": ("exact tests of shapes", ["collision", "shapes"]),
+    "pipeline": ("filters behind any engine", ["filters", "pipeline"]),
+    "samples": ("seeded scenes", []),
+    "io": ("scene and result files", []),
+    "service/protocol": ("messages between client and server", []),
+    "service/client": ("an engine behind a socket", ["client", "job_client", "remote_scene"]),
+    "service/server": ("jobs of many clients", []),
+    "cli": ("the program octopair", []),
+    "bench/machine": ("what measured", []),
+    "bench/baselines": ("the known algorithms", []),
+    "bench/paper": ("the paper's section 5 again", []),
+    "bench/cluster": ("what ranks cost", []),
+    "bench/scaling": ("time by threads and ranks", []),
+    "bench/program": ("the program octopair-bench", []),
+}
+# Headers that include a whole library: octopair.hpp brings what octopair::octopair holds, version.hpp uses nothing.
+WHOLE = {"octopair": "scene", "version": "base"}
 
-PURPOSE = {
-    "base": "errors, buffers, checked casts", "parallel": "the one place that knows oneTBB",
-    "geometry": "boxes, shapes, and how they are judged", "octree": "octal codes, encode, sort, merge, scan",
-    "pipeline": "filters and their composition", "verification": "a second algorithm that checks results",
-    "engine": "where and how pairs are found",
-    "scene": "objects that persist and move", "service": "jobs over a socket", "samples": "seeded scenes",
-    "io": "scene and result files", "baselines": "the known algorithms", "machine": "what measured",
-    "paper": "the paper's section 5 again", "cluster": "what ranks cost", "scaling": "time by threads and ranks",
-    "cli": "the program",
+ENGINE = ["base", "parallel", "geometry", "boxes", "octree", "engine"]
+# What each layer may use, beside itself. PUBLIC marks layers of which it may use the public headers only.
+USES = {
+    "base": [], "parallel": ["base"], "geometry": ["base"],
+    "boxes": ["base", "geometry"],
+    "octree": ["base", "geometry", "boxes"],
+    "verification": ["base", "parallel"],
+    "engine": ENGINE + ["verification"],
+    "engine/threads": ENGINE,
+    "engine/processes": ENGINE + ["engine/threads"],
+    "engine/mpi": ENGINE + ["engine/threads"],
+    "scene": ENGINE + ["engine/threads"],
+    "narrow_phase": ["base", "geometry"],
+    "pipeline": ["base", "parallel", "geometry", "boxes", "narrow_phase"],
+    "samples": ["base"],
+    "io": ["base", "geometry", "boxes"],
+    "service/protocol": ["base", "engine"],
+    "service/client": ["base", "engine", "scene", "service/protocol"],
+    "service/server": ["base", "engine", "scene", "service/protocol", "service/client"],
+    "cli": ["base", "parallel", "boxes", "octree", "engine", "engine/mpi", "verification", "scene", "samples", "io",
+            "service/protocol", "service/client", "service/server"],
+    "bench/machine": [],
+    "bench/baselines": ["base", "octree"],
+    "bench/paper": ["base", "samples", "bench/machine", "bench/baselines"],
+    "bench/cluster": ["base", "engine", "engine/mpi", "samples", "bench/machine", "bench/paper"],
+    "bench/scaling": ["samples", "bench/machine", "bench/cluster"],
+    "bench/program": ["base", "samples", "io", "cli", "bench/machine", "bench/paper", "bench/cluster", "bench/scaling"],
+}
+PUBLIC = {
+    "verification": ["boxes"],  # a check that shares code with what it checks would share its errors
+    "narrow_phase": ["boxes"],
+    "pipeline": ["engine"],
+    "samples": ["geometry", "boxes", "narrow_phase"],
+    "io": ["narrow_phase", "pipeline"],
+    "service/protocol": ["boxes"],
+    "service/client": ["boxes"],
+    "service/server": ["boxes"],
+    "cli": ["geometry", "narrow_phase", "pipeline", "engine/processes"],
+    "bench/paper": ["boxes", "engine"],
+    "bench/cluster": ["boxes"],
+    "bench/scaling": ["boxes", "engine", "engine/mpi"],
+    "bench/program": ["boxes", "engine", "engine/mpi", "engine/processes"],
 }
 
-# First part of a third-party include: the folders that may use it.
+# First part of a third-party include: the layers that may use it.
 THIRD_PARTY = {
-    "tbb": {"parallel", "baselines"}, "oneapi": {"parallel"}, "hwy": {"geometry", "octree", "engine", "scene"}, "assimp": {"io"},
+    "tbb": {"parallel", "bench/baselines"}, "oneapi": {"parallel"},
+    "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
+    "assimp": {"io"}, "ccd": {"narrow_phase"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
-    "prometheus": {"service"}, "spdlog": {"service", "cli"},
-    "ccd": {"geometry"}, "Eigen": {"geometry"}, "boost": {"geometry"},
-    "CLI": {"cli"}, "fmt": {"io", "paper", "cluster", "scaling", "cli"},
-    "nlohmann": {"io", "machine", "paper", "cluster", "scaling", "service", "cli"},
+    "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"},
+    "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},
 }
 # What a public header of a component cannot do without: its users have it.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}
 SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
+
+LAYER_OF_HEADER = {header: layer for layer, (_, headers) in LAYERS.items() for header in headers} | WHOLE
 
 
 def includes_of(path):
@@ -58,68 +110,87 @@ def includes_of(path):
     return [(text.count("\n", 0, m.start(2)) + 1, m[1] == '"', m[2]) for m in INCLUDE.finditer(text)]
 
 
-def complaint_quoted(folder, part, name):
-    """What is wrong with a file of `folder` (and engine part) including the project's `name`, or None."""
-    target, _, rest = name.partition("/")
-    if not rest:
-        return "includes are written from src/, bench/ or include/"
-    if target == "octopair":
-        return None
-    if folder == "public":
+def layer_of(folder):
+    """The layer of a folder, named from src/ or from the root for bench/; None if it has no layer."""
+    parts = folder.split("/")
+    return next((layer for n in (2, 1) if (layer := "/".join(parts[:n])) in LAYERS), None)
+
+
+def layer_included(name):
+    """(the layer of a quoted include, whether it is a public header)."""
+    folder, _, file = name.rpartition("/")
+    if folder == "octopair":
+        return LAYER_OF_HEADER.get(file.removesuffix(".hpp")), True
+    return layer_of(folder) or layer_of("bench/" + folder), False
+
+
+def complaint_quoted(layer, is_public_header, name):
+    """What is wrong with a file of `layer` including the project's `name`, or None."""
+    used, from_public = layer_included(name)
+    if used is None:
+        return "no layer holds it; includes are written from src/, bench/ or include/"
+    if is_public_header and not from_public:
         return "a public header uses only public headers and the standard library"
-    if target == folder:
-        other = rest.split("/")[0] if "/" in rest else ""
-        if folder == "engine" and other and other != part:
-            return f"engine/{part or ''} may not use engine/{other}"
+    if used == layer or used in USES[layer] or (from_public and used in PUBLIC.get(layer, ())):
         return None
-    return None if target in USES.get(folder, ()) else f"{folder} may not use {target}"
+    return f"{layer} may not use {used}"
 
 
-def complaint_angled(folder, path, name):
+def complaint_angled(layer, is_public_header, path, name):
     """The same for an include in angle brackets."""
-    if folder == "public" and name in IN_PUBLIC.get(path.name, ()):
+    if is_public_header and name in IN_PUBLIC.get(path.name, ()):
         return None
     library, _, rest = name.partition("/")
     standard = not rest and "." not in name
-    system = name.endswith(".h") and (not rest or library in SYSTEM)
-    if standard or (system and folder != "public"):
+    system = name.endswith(".h") and (not rest or library in SYSTEM) and library not in THIRD_PARTY
+    if standard or (system and not is_public_header):
         return None
-    if folder == "public":
+    if is_public_header:
         return "a public header uses only public headers and the standard library"
-    return None if folder in THIRD_PARTY.get(library, ()) else f"{folder} may not use <{library}>"
+    allowed = THIRD_PARTY.get(library, ())
+    return None if {layer, layer.partition("/")[0]} & set(allowed) else f"{layer} may not use <{library}>"
+
+
+def files_of(root):
+    """(path, layer or None, whether it is a public header) of each file that is checked."""
+    for path in sorted((root / "include").rglob("*.hpp")):
+        yield path, LAYER_OF_HEADER.get(path.stem), True
+    for path in sorted((root / "src").rglob("*.[ch]pp")):
+        yield path, layer_of(path.parent.relative_to(root / "src").as_posix()), False
+    for layer in LAYERS:
+        if layer.startswith("bench/"):
+            for path in sorted((root / layer).rglob("*.[ch]pp")):
+                yield path, layer, False
 
 
 def check(root):
-    """Complaints as text, and for each folder the folders and libraries it uses."""
-    complaints, used = [], {}
-    files = [(p, "public", "") for p in sorted((root / "include").rglob("*.hpp"))]
-    for top in [root / "src", *(root / "bench" / folder for folder in BENCH)]:
-        for path in sorted(top.rglob("*.[ch]pp")):
-            parts = path.relative_to(root).parts[1:]
-            files.append((path, parts[0], parts[1] if len(parts) > 2 else ""))
-    for path, folder, part in files:
+    """Complaints as text, for each layer the layers and libraries it uses, and the number of files."""
+    complaints, used, count = [], {}, 0
+    for path, layer, is_public_header in files_of(root):
         where = path.relative_to(root)
-        if folder != "public" and folder not in USES:
-            complaints.append(f"{where}: folder {folder} has no place in the stack")
+        count += 1
+        if layer is None:
+            complaints.append(f"{where}: it has no layer in the stack")
             continue
+        names = used.setdefault(layer, set())
         for line, quoted, name in includes_of(path):
-            wrong = complaint_quoted(folder, part, name) if quoted else complaint_angled(folder, path, name)
+            wrong = (complaint_quoted(layer, is_public_header, name) if quoted
+                     else complaint_angled(layer, is_public_header, path, name))
             if wrong:
                 complaints.append(f"{where}:{line}: {name}: {wrong}")
-            target = name.split("/")[0]
-            if quoted and target != folder or target in THIRD_PARTY:
-                used.setdefault(folder, set()).add(target if quoted else f"<{target}>")
-        used.setdefault(folder, set())
-    return complaints, used, len(files)
+            library = name.partition("/")[0]
+            if quoted and (other := layer_included(name)[0]) not in (None, layer):
+                names.add(other)
+            elif not quoted and library in THIRD_PARTY:
+                names.add(f"<{library}>")
+    return complaints, used, count
 
 
 def print_stack(used):
-    order = [f for f in ["base", "parallel", "geometry", "samples", "io", "octree", "pipeline", "verification", "engine",
-                         "scene", "service", *BENCH, "cli"] if f in used]
-    for folder in reversed(order):
-        names = sorted(used[folder] - {"octopair"}, key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
-        print(f"    {folder:<12} {PURPOSE[folder]:<40} uses {' '.join(names) or '-'}")
-    print(f"    {'octopair':<12} {'the public headers':<40} uses std alone")
+    order = list(LAYERS)
+    for layer in reversed([layer for layer in order if layer in used]):
+        names = sorted(used[layer], key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
+        print(f"    {layer:<16} {LAYERS[layer][0]:<42} uses {' '.join(names) or '-'}")
 
 
 def main():

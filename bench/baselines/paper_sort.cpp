@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "octree/sort_key.hpp"
+#include "octree/sweep/sort_key.hpp"
 
 namespace octopair::baselines {
 

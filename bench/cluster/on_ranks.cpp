@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "engine/mpi/message_tape.hpp"
+#include "engine/mpi/comm/message_tape.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::cluster {

@@ -23,6 +23,7 @@
 #include "octopair/box_array.hpp"
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
+#include "octopair/pair_list.hpp"
 
 namespace octopair {
 

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "octopair/pipeline.hpp"
+#include "octopair/pose.hpp"
+#include "octopair/shapes.hpp"
 
 namespace octopair {
 
@@ -60,9 +62,6 @@ std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, con
 /// "exact feature", behind "exact object": learns the class, the depth and the contacts.
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options = {},
                                                   const ShapedObjects* second = nullptr);
-
-/// A triangle in the world: its corners.
-using Triangle3d = std::array<Point3d, 3>;
 
 /// Triangles as objects. `owners`: empty (one mesh), or of each triangle the mesh that it is of.
 struct TriangleSet {

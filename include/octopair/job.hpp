@@ -21,6 +21,7 @@
 
 #include "octopair/box_array.hpp"
 #include "octopair/objects.hpp"
+#include "octopair/pair_list.hpp"
 
 namespace octopair {
 

@@ -1,19 +1,17 @@
-// Objects in, pairs out: the plain data of every call.
+// Objects and pairs: the plain data of every call.
 //
 // Units     lengths are the caller's own; `margin` and `padding` are in the same unit. Objects are positions in a span.
 // Rule      a pair counts when on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b), each
 //           operation in float64; without margin and padding: when the closed boxes overlap, touching included.
 // State     the caller's floating-point state (rounding, subnormal numbers taken for 0, traps) changes no result. Calls set
 //           the default state and restore the caller's at the end; sinks, progress and filters are called in the default.
-// Ownership boxes and padding are borrowed and never modified; a PairList owns its pairs.
+// Ownership boxes and padding are borrowed and never modified.
 #pragma once
 
 #include <compare>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <variant>
-#include <vector>
 
 namespace octopair {
 
@@ -44,26 +42,6 @@ struct Objects {
 struct Pair {
     std::uint32_t a, b;
     auto operator<=>(const Pair&) const = default;
-};
-
-/// Pairs in order, owned, in one or more chunks. Reuse it from call to call: it keeps its memory.
-/// Not thread-safe; chunks() is valid until the list is next written to or destroyed.
-class PairList {
-public:
-    PairList();
-    PairList(PairList&&) noexcept;
-    PairList& operator=(PairList&&) noexcept;
-    ~PairList();
-
-    std::uint64_t size() const;
-    std::span<const std::span<const Pair>> chunks() const;
-    std::vector<Pair> to_vector() const;  ///< a copy
-
-    struct Storage;  ///< what engines write to; its type is internal
-    Storage& storage() { return *storage_; }
-
-private:
-    std::unique_ptr<Storage> storage_;
 };
 
 }  // namespace octopair

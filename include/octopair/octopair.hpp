@@ -7,5 +7,7 @@
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
+#include "octopair/pair_list.hpp"
+#include "octopair/pose.hpp"
 #include "octopair/scene.hpp"
 #include "octopair/version.hpp"

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "octopair/objects.hpp"
+#include "octopair/pair_list.hpp"
 #include "octopair/queries.hpp"
 
 namespace octopair {

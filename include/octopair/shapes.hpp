@@ -18,19 +18,9 @@
 #include <vector>
 
 #include "octopair/objects.hpp"
+#include "octopair/pose.hpp"
 
 namespace octopair {
-
-using Point3d = std::array<double, 3>;
-
-/// x -> (the first three columns) * x + the last column; all finite. Meshes and convex hulls may be scaled, sheared and
-/// mirrored by it; other shapes are turned and moved only: columns of length 1, perpendicular to 1e-6, not mirrored.
-struct Pose {
-    std::array<std::array<double, 4>, 3> rows = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-};
-
-/// `turn`: a quaternion w, x, y, z of any length but 0.
-Pose make_pose(const Point3d& place, const std::array<double, 4>& turn = {1, 0, 0, 0});
 
 namespace shape {
 

@@ -18,10 +18,10 @@ namespace octopair {
 /// The choices between paths, by the file that makes them. A test of tiny scenes takes each of them.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
-    /* octree/octant_growth.cpp, octree/directory.cpp */ \
+    /* octree/build/octant_growth.cpp, octree/directory.cpp */ \
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
-    /* octree/linear_octree.cpp, octree/build_steps.cpp */ \
+    /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
     path(build_one_block) path(build_blocks) path(merge_ranges) path(kept_above_leaf) path(ghost_entries) \
     path(refilled) path(crowded_octree) path(class_bits_brought) \
     /* octree/scan.cpp */ \
@@ -30,14 +30,14 @@ namespace octopair {
     path(join_swept) path(join_crowded) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
     path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) path(nested_join) \
     path(not_nested_largest) path(not_nested_growth) path(not_nested_depth) \
-    /* octree/recursive_sweep.cpp */ \
+    /* octree/sweep/recursive_sweep.cpp */ \
     path(one_tile) path(tiles) path(tile_skipped) path(recursion_settled) path(recursion_swept) \
     path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
-    /* octree/sweep_order.cpp, octree/sort_key.cpp */ \
+    /* octree/sweep/sweep_order.cpp, octree/sweep/sort_key.cpp */ \
     path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
-    /* octree/sweep_kernel.cpp, octree/pair_maker.cpp */ \
+    /* octree/sweep/sweep_kernel.cpp, octree/sweep/pair_maker.cpp */ \
     path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed) path(pairs_counted) \
-    /* octree/mutable_octree.cpp */ \
+    /* octree/dynamic/mutable_octree.cpp */ \
     path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
     path(unit_of_leaf) path(unit_of_inner) \
     /* engine/ */ \

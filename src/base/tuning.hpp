@@ -12,7 +12,7 @@
 //   formats of files and memory (recordings, what workers share, codes, keys, blocks of two cache lines): layout, not choice
 //   widths of registers, the arithmetic of rounding, 8 entries a box: proofs depend on them
 //   how far ahead memory is prefetched, how much is committed at once: no path depends on them
-//   weights that share out work among ranks (engine/mpi/octant_owners.cpp): any weights give the same result
+//   weights that share out work among ranks (engine/mpi/partition/octant_owners.cpp): any weights give the same result
 //   timeouts, polls, retries of worker processes: tests of faults have plans of their own
 //   what measured seconds decide (scene/scene_step.cpp): Scene::step switches it off
 #pragma once
@@ -34,7 +34,7 @@ struct Tuning {
         std::size_t frame = 4096;        ///< of the sample: enough for the quantiles of a frame
     } sampling;
 
-    /// When an octant is divided (octree/octant_growth.cpp). In objects, unless a comment says otherwise.
+    /// When an octant is divided (octree/build/octant_growth.cpp). In objects, unless a comment says otherwise.
     struct Split {
         double always = 2048;           ///< more would not stay in the cache while they are swept
         double never = 512;             ///< fewer are not divided, whatever their sweep costs; at most `always`
@@ -44,7 +44,7 @@ struct Tuning {
         std::uint64_t table_cells = 4;  ///< of the table from cells to leaves, for each octant
     } split;
 
-    /// How the steps of a build are shared out (octree/linear_octree.cpp, octree/build_steps.cpp).
+    /// How the steps of a build are shared out (octree/linear_octree.cpp, octree/build/build_steps.cpp).
     struct Build {
         std::size_t blocks_per_thread = 2;       ///< each counts the entries of every octant
         std::size_t least_block = 2048;          ///< objects
@@ -64,7 +64,7 @@ struct Tuning {
         unsigned most_nesting = 8;        ///< octrees within octants of octrees
     } scan;
 
-    /// How sets of boxes are sorted and swept (octree/recursive_sweep.cpp, octree/sweep_order.cpp, sweep kernels).
+    /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/sweep_order.cpp, sweep kernels).
     struct Sweep {
         std::size_t tile = 4096;               ///< boxes: their arrays stay in the second cache
         std::size_t small_set = 512;           ///< boxes: a sweep is good whatever its windows
@@ -86,7 +86,7 @@ struct Tuning {
         std::size_t windows = 24;              ///< measured at most
     } sweep;
 
-    /// Octrees that change (octree/mutable_octree.cpp, octree/plot.cpp).
+    /// Octrees that change (octree/dynamic/mutable_octree.cpp, octree/dynamic/plot.cpp).
     struct Dynamic {
         std::size_t listed_visits = 128;  ///< units that a change may visit; with more it is made on its own
         std::size_t hits = 1 << 16;       ///< of a run of visits

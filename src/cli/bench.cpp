@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
-#include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/numbers.hpp"
 #include "cli/study_output.hpp"
 #include "cli/subcommands.hpp"
 #include "octopair/error.hpp"

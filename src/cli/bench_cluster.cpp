@@ -5,14 +5,14 @@
 
 #include "cli/bench_options.hpp"
 #include "cli/cluster.hpp"
-#include "cli/failure.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/command/failure.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/words.hpp"
 #include "cli/study_output.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/words.hpp"
 #include "cluster/on_ranks.hpp"
 #include "cluster/study.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "cli/command.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
+#include "cli/command/command.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/numbers.hpp"
 #include "cli/study_output.hpp"
 #include "cluster/machines.hpp"
 #include "cluster/study.hpp"

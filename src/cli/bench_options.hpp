@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
-#include "cli/numbers.hpp"
+#include "cli/command/command.hpp"
+#include "cli/command/numbers.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 

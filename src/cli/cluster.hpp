@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/mpi/agreement.hpp"
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::cli {

@@ -6,9 +6,9 @@
 #include <string>
 #include <thread>
 
-#include "cli/command.hpp"
-#include "cli/numbers.hpp"
-#include "cli/words.hpp"
+#include "cli/command/command.hpp"
+#include "cli/command/numbers.hpp"
+#include "cli/command/words.hpp"
 #include "octopair/client.hpp"
 #include "octopair/error.hpp"
 #include "octopair/processes.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/server_choice.hpp"
+#include "cli/server/server_choice.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::cli {

@@ -7,12 +7,12 @@
 #include <memory>
 #include <optional>
 
-#include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/numbers.hpp"
+#include "cli/command/progress_line.hpp"
 #include "cli/subcommands.hpp"
-#include "io/atomic_file.hpp"
-#include "io/npy_header.hpp"
+#include "io/boxes/npy_header.hpp"
+#include "io/files/atomic_file.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 

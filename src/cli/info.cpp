@@ -3,12 +3,12 @@
 
 #include <thread>
 
+#include "cli/detect/stage.hpp"
 #include "cli/engine_choice.hpp"
-#include "cli/stage.hpp"
 #include "cli/subcommands.hpp"
-#include "io/output_stream.hpp"
+#include "io/files/output_stream.hpp"
 #include "octopair/version.hpp"
-#include "octree/sweep.hpp"
+#include "octree/sweep/sweep.hpp"
 
 namespace octopair::cli {
 

@@ -3,8 +3,8 @@
 #include <new>
 #include <system_error>
 
-#include "cli/command.hpp"
-#include "cli/failure.hpp"
+#include "cli/command/command.hpp"
+#include "cli/command/failure.hpp"
 #include "cli/subcommands.hpp"
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"

@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <memory>
 
-#include "cli/interrupt.hpp"
-#include "cli/numbers.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/numbers.hpp"
+#include "cli/command/progress_line.hpp"
 #include "cli/subcommands.hpp"
-#include "io/input_file.hpp"
-#include "scene/replay.hpp"
+#include "io/files/input_file.hpp"
+#include "scene/recording/replay.hpp"
 
 namespace octopair::cli {
 

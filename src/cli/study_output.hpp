@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "cli/progress_line.hpp"
-#include "io/atomic_file.hpp"
+#include "cli/command/progress_line.hpp"
+#include "io/files/atomic_file.hpp"
 
 namespace octopair::cli {
 

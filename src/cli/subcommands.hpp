@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "cli/command.hpp"
+#include "cli/command/command.hpp"
 
 namespace octopair::cli {
 

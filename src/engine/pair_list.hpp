@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "octopair/objects.hpp"
+#include "octopair/pair_list.hpp"
 
 namespace octopair {
 

@@ -12,11 +12,11 @@
 #include <span>
 #include <stop_token>
 
+#include "boxes/box_source.hpp"
 #include "engine/ascending_bounds.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/progress.hpp"
 #include "engine/request.hpp"
-#include "geometry/box_source.hpp"
 
 namespace octopair {
 

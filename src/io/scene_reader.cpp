@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "io/csv.hpp"
-#include "io/failure.hpp"
-#include "io/json_scene_file.hpp"
-#include "io/mesh.hpp"
-#include "io/npy.hpp"
+#include "io/boxes/csv.hpp"
+#include "io/boxes/npy.hpp"
+#include "io/files/failure.hpp"
+#include "io/json/json_scene_file.hpp"
+#include "io/meshes/mesh.hpp"
 
 namespace octopair::io {
 

@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <string>
 
+#include "io/boxes/npy.hpp"
 #include "io/loaded_scene.hpp"
-#include "io/npy.hpp"
 
 namespace octopair::io {
 

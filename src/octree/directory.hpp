@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/test_hooks.hpp"
+#include "octree/build/octant_growth.hpp"
 #include "octree/frame.hpp"
-#include "octree/octant_growth.hpp"
 
 namespace octopair {
 

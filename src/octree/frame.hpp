@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <span>
 
-#include "geometry/entry.hpp"
+#include "boxes/entry.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
 

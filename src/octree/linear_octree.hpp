@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "geometry/box_source.hpp"
-#include "octree/build_steps.hpp"
+#include "boxes/box_source.hpp"
+#include "octree/build/build_steps.hpp"
+#include "octree/build/sorted_list.hpp"
 #include "octree/directory.hpp"
 #include "octree/executor.hpp"
 #include "octree/frame.hpp"
 #include "octree/sample.hpp"
-#include "octree/sorted_list.hpp"
 
 namespace octopair {
 

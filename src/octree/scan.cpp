@@ -8,7 +8,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/recursive_sweep.hpp"
+#include "octree/sweep/recursive_sweep.hpp"
 
 namespace octopair {
 

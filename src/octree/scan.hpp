@@ -12,7 +12,7 @@
 #include <functional>
 
 #include "octree/linear_octree.hpp"
-#include "octree/pair_maker.hpp"
+#include "octree/sweep/pair_maker.hpp"
 
 namespace octopair {
 

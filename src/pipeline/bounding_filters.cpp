@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "base/floating_point.hpp"
-#include "geometry/shape/motion.hpp"
-#include "geometry/shape/posed_plane.hpp"
-#include "geometry/shape/prepared.hpp"
+#include "narrow_phase/convex/posed_plane.hpp"
+#include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 

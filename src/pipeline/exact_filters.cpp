@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/floating_point.hpp"
-#include "geometry/shape/object_impact.hpp"
-#include "geometry/shape/object_pair.hpp"
+#include "narrow_phase/motion/object_impact.hpp"
+#include "narrow_phase/object_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 

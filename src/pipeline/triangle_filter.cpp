@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "base/floating_point.hpp"
-#include "geometry/box_kernel.hpp"
-#include "geometry/exact/contact_of_triangles.hpp"
-#include "geometry/exact/pair_look.hpp"
-#include "geometry/exact/triangle_gap.hpp"
-#include "geometry/exact/triangle_pair.hpp"
+#include "boxes/box_kernel.hpp"
+#include "narrow_phase/exact/contact_of_triangles.hpp"
+#include "narrow_phase/exact/pair_look.hpp"
+#include "narrow_phase/exact/triangle_gap.hpp"
+#include "narrow_phase/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "parallel/team.hpp"

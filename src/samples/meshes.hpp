@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "octopair/pose.hpp"
 #include "octopair/shapes.hpp"
 #include "samples/random.hpp"
 

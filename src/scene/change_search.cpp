@@ -6,7 +6,7 @@
 
 #include "base/stop.hpp"
 #include "base/tuning.hpp"
-#include "geometry/pair_rule.hpp"
+#include "boxes/pair_rule.hpp"
 #include "scene/scene_source.hpp"
 
 namespace octopair {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/radix_sort.hpp"
-#include "geometry/box_kernel.hpp"
-#include "octree/mutable_octree.hpp"
+#include "boxes/box_kernel.hpp"
+#include "octree/dynamic/mutable_octree.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_log.hpp"
 #include "scene/pair_history.hpp"

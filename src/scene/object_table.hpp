@@ -13,7 +13,7 @@
 
 #include "base/growing_array.hpp"
 #include "base/reserve.hpp"
-#include "geometry/box_kernel.hpp"
+#include "boxes/box_kernel.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/scene.hpp"
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/floating_point.hpp"
-#include "geometry/query_rules.hpp"
 #include "octopair/error.hpp"
+#include "scene/queries/query_rules.hpp"
 #include "scene/scene_state.hpp"
 
 namespace octopair {

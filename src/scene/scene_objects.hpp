@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "octopair/scene.hpp"
-#include "scene/call_encoder.hpp"
 #include "scene/change_log.hpp"
 #include "scene/object_table.hpp"
+#include "scene/recording/call_encoder.hpp"
 
 namespace octopair {
 

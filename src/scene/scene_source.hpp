@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/box_source.hpp"
+#include "boxes/box_source.hpp"
 #include "scene/object_table.hpp"
 
 namespace octopair {

@@ -15,14 +15,14 @@
 
 #include "base/tuning.hpp"
 #include "octopair/scene.hpp"
+#include "octree/dynamic/mutable_octree.hpp"
 #include "octree/linear_octree.hpp"
-#include "octree/mutable_octree.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_search.hpp"
 #include "scene/pair_history.hpp"
-#include "scene/recorder.hpp"
+#include "scene/queries/scene_queries.hpp"
+#include "scene/recording/recorder.hpp"
 #include "scene/scene_objects.hpp"
-#include "scene/scene_queries.hpp"
 #include "scene/scene_source.hpp"
 
 namespace octopair {

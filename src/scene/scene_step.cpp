@@ -6,7 +6,7 @@
 
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "engine/ascending.hpp"
+#include "engine/threads/ascending.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan.hpp"
 #include "scene/scene_state.hpp"

@@ -1,5 +1,5 @@
 // Scenes as bytes: all that a scene holds arrives.
-#include "cli/scene_transfer.hpp"
+#include "cli/input/scene_transfer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pairs into ascending order, whoever found them and however few pages there are.
-#include "engine/ascending.hpp"
+#include "engine/threads/ascending.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/writers.hpp"
+#include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

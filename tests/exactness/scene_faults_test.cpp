@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "boxes/box_kernel.hpp"
 #include "exactness/small_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
-#include "geometry/box_kernel.hpp"
 #include "samples/random.hpp"
 #include "scene/model.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/baseline.hpp"
+#include "io/results/baseline.hpp"
 #include "octopair/error.hpp"
 
 namespace {

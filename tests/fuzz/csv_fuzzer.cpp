@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "io/csv.hpp"
+#include "io/boxes/csv.hpp"
 #include "octopair/error.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "io/exclusion_rules.hpp"
+#include "io/json/exclusion_rules.hpp"
 #include "octopair/error.hpp"
 
 namespace {

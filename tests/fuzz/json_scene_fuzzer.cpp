@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/json_scene.hpp"
+#include "io/json/json_scene.hpp"
 #include "octopair/error.hpp"
 
 namespace {

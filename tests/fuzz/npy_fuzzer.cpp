@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/npy.hpp"
-#include "io/spheres.hpp"
+#include "io/boxes/npy.hpp"
+#include "io/boxes/spheres.hpp"
 #include "octopair/error.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 
 #include "fuzz/right_checksums.hpp"
 #include "octopair/error.hpp"
-#include "scene/replay.hpp"
+#include "scene/recording/replay.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "scene/recording.hpp"
+#include "scene/recording/recording.hpp"
 
 namespace octopair::fuzz {
 

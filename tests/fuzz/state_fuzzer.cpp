@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "octopair/error.hpp"
-#include "service/server/state_format.hpp"
+#include "service/server/store/state_format.hpp"
 
 namespace {
 

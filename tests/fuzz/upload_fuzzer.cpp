@@ -10,8 +10,8 @@
 #include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
-#include "service/server/download.hpp"
-#include "service/server/upload.hpp"
+#include "service/server/calls/download.hpp"
+#include "service/server/calls/upload.hpp"
 
 namespace {
 

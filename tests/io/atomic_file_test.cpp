@@ -1,5 +1,5 @@
 // Result files appear whole or not at all, and nothing else is left in their directory.
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

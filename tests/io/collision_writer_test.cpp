@@ -1,12 +1,12 @@
 // Result files of collisions, and how they stand to older ones.
-#include "io/collision_writer.hpp"
+#include "io/results/collision_writer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
-#include "io/baseline.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/results/baseline.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

@@ -1,5 +1,5 @@
 // Boxes of .csv files.
-#include "io/csv.hpp"
+#include "io/boxes/csv.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // Result files of events.
-#include "io/event_writer.hpp"
+#include "io/results/event_writer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

@@ -1,5 +1,5 @@
 // Rules of .json files.
-#include "io/exclusion_rules.hpp"
+#include "io/json/exclusion_rules.hpp"
 
 #include <gtest/gtest.h>
 

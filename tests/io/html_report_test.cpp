@@ -1,11 +1,11 @@
 // The report: one page, whose data is what was written, and whose names are text.
-#include "io/html_report.hpp"
+#include "io/results/html_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

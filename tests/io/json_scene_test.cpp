@@ -1,5 +1,5 @@
 // JSON scenes: every shape, what objects say of themselves, and what is refused in which words.
-#include "io/json_scene.hpp"
+#include "io/json/json_scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Mesh scenes: names, poses, boxes, triangles.
-#include "io/mesh.hpp"
+#include "io/meshes/mesh.hpp"
 
 #include <gtest/gtest.h>
 

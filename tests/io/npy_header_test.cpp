@@ -1,12 +1,12 @@
 // The header of .npy files: what is accepted, what is refused and how, and that no damage passes.
-#include "io/npy_header.hpp"
+#include "io/boxes/npy_header.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <numeric>
 
-#include "io/npy.hpp"
+#include "io/boxes/npy.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

@@ -1,5 +1,5 @@
 // Arrays as scenes and paddings.
-#include "io/npy.hpp"
+#include "io/boxes/npy.hpp"
 
 #include <gtest/gtest.h>
 

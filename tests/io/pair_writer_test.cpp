@@ -1,12 +1,12 @@
 // Result files of pairs in each format.
-#include "io/pair_writer.hpp"
+#include "io/results/pair_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

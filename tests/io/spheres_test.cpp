@@ -1,5 +1,5 @@
 // Boxes of spheres: outward, and no further than needed, judged by exact integers.
-#include "io/spheres.hpp"
+#include "io/boxes/spheres.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

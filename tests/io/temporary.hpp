@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/npy_header.hpp"
+#include "io/boxes/npy_header.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::test {

@@ -3,9 +3,9 @@
 
 #include <numeric>
 
-#include "engine/mpi/agreement.hpp"
-#include "engine/mpi/communicator.hpp"
-#include "engine/mpi/even_cuts.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/comm/communicator.hpp"
+#include "engine/mpi/partition/even_cuts.hpp"
 #include "mpi/ranks.hpp"
 
 namespace octopair {

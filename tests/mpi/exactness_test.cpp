@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/mpi/leading.hpp"
+#include "engine/mpi/leading/leading.hpp"
 #include "exactness/large_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "mpi/ranks.hpp"

@@ -1,5 +1,5 @@
 // The engine of rank 0 that other ranks follow: to its caller an engine like any other.
-#include "engine/mpi/leading.hpp"
+#include "engine/mpi/leading/leading.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/mpi/pulse.hpp"
+#include "engine/mpi/comm/pulse.hpp"
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "geometry/entry.hpp"
+#include "boxes/entry.hpp"
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"

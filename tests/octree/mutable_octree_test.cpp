@@ -7,10 +7,10 @@
 #include <stop_token>
 #include <thread>
 
-#include "geometry/box_source.hpp"
+#include "boxes/box_source.hpp"
 #include "octopair/error.hpp"
+#include "octree/dynamic/mutable_octree.hpp"
 #include "octree/linear_octree.hpp"
-#include "octree/mutable_octree.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair {

@@ -1,12 +1,12 @@
 // The kernel that searches a block against its specification; and boxes in the numbers of a unit.
-#include "octree/small_block.hpp"
+#include "octree/dynamic/small_block.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "octree/plot.hpp"
+#include "octree/dynamic/plot.hpp"
 
 namespace octopair {
 namespace {

@@ -1,6 +1,6 @@
 // The sweep's SIMD kernel against its scalar specification, and both against testing all boxes.
 
-#include "octree/sweep.hpp"
+#include "octree/sweep/sweep.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "octree/sweep_order.hpp"
+#include "octree/sweep/sweep_order.hpp"
 
 namespace octopair {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "geometry/shape/convex_pair.hpp"
-#include "geometry/shape/motion.hpp"
-#include "geometry/shape/prepared.hpp"
+#include "narrow_phase/convex/convex_pair.hpp"
+#include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/prepared.hpp"
 #include "octopair/filters.hpp"
 #include "pipeline/flow.hpp"
 #include "samples/meshes.hpp"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/shape/motion.hpp"
-#include "geometry/shape/object_pair.hpp"
+#include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/object_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/pipeline.hpp"

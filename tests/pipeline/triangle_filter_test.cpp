@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/box_kernel.hpp"
-#include "geometry/exact/triangle_contact.hpp"
-#include "geometry/exact/triangle_gap.hpp"
-#include "geometry/exact/triangle_pair.hpp"
+#include "boxes/box_kernel.hpp"
+#include "narrow_phase/exact/triangle_contact.hpp"
+#include "narrow_phase/exact/triangle_gap.hpp"
+#include "narrow_phase/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "engine/processes/layout.hpp"
+#include "engine/processes/shared_memory/layout.hpp"
 #include "samples/random.hpp"
 
 namespace octopair::testing {

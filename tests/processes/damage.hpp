@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "engine/processes/share_out.hpp"
+#include "engine/processes/worker/share_out.hpp"
 
 namespace octopair::testing {
 

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "base/descriptor.hpp"
-#include "engine/processes/layout.hpp"
+#include "engine/processes/shared_memory/layout.hpp"
 
 namespace octopair::testing {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/processes/worker.hpp"
+#include "engine/processes/worker/worker.hpp"
 #include "processes/damage.hpp"
 #include "processes/fault_plan.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/distance_oracle.hpp"
+#include "scene/distance_oracle.hpp"
 #include "scene/model.hpp"
 
 namespace octopair::testing {

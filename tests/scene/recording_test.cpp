@@ -8,8 +8,8 @@
 
 #include "io/temporary.hpp"
 #include "octopair/octopair.hpp"
-#include "scene/recorder.hpp"
-#include "scene/replay.hpp"
+#include "scene/recording/recorder.hpp"
+#include "scene/recording/replay.hpp"
 #include "support/scale.hpp"
 
 namespace octopair {

@@ -9,7 +9,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/raw_call.hpp"
 #include "service/served.hpp"
-#include "service/server/upload.hpp"
+#include "service/server/calls/upload.hpp"
 
 namespace octopair {
 namespace {

@@ -1,7 +1,7 @@
 // Arrays that are kept for the next job: given to whom they fit, and never many.
 #include <gtest/gtest.h>
 
-#include "service/server/spare_boxes.hpp"
+#include "service/server/jobs/spare_boxes.hpp"
 
 namespace octopair::service {
 namespace {

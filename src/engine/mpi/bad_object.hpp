@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/mpi/agreement.hpp"
-#include "geometry/box_source.hpp"
+#include "boxes/box_source.hpp"
+#include "engine/mpi/comm/agreement.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/mpi/agreement.hpp"
 #include "engine/mpi/bad_object.hpp"
+#include "engine/mpi/comm/agreement.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/mpi/communicator.hpp"
+#include "boxes/box_source.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "engine/request.hpp"
-#include "geometry/box_source.hpp"
 
 namespace octopair {
 

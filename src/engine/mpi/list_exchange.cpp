@@ -1,7 +1,7 @@
 #include "engine/mpi/list_exchange.hpp"
 
-#include "engine/mpi/agreement.hpp"
-#include "engine/mpi/cost_meter.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/comm/cost_meter.hpp"
 
 namespace octopair {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "octopair/mpi.hpp"
-#include "octree/sorted_list.hpp"
+#include "octree/build/sorted_list.hpp"
 
 namespace octopair {
 

@@ -1,6 +1,6 @@
 #include "engine/mpi/master_passes.hpp"
 
-#include "engine/mpi/cost_meter.hpp"
+#include "engine/mpi/comm/cost_meter.hpp"
 
 namespace octopair {
 

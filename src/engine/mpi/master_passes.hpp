@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/rank_executor.hpp"
-#include "engine/thread_passes.hpp"
+#include "engine/threads/thread_passes.hpp"
 #include "octopair/mpi.hpp"
 
 namespace octopair {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "base/timed.hpp"
-#include "engine/mpi/agreement.hpp"
 #include "engine/mpi/bad_object.hpp"
-#include "engine/mpi/cost_meter.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/comm/cost_meter.hpp"
 
 namespace octopair {
 

@@ -17,12 +17,12 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/list_exchange.hpp"
 #include "engine/mpi/list_maker.hpp"
 #include "engine/mpi/master_passes.hpp"
-#include "engine/mpi/object_arrays.hpp"
+#include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/search.hpp"
 
 namespace octopair {

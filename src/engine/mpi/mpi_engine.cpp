@@ -8,7 +8,7 @@
 
 #include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/rank_search.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"

@@ -7,8 +7,8 @@
 #include <span>
 #include <thread>
 
-#include "engine/mpi/agreement.hpp"
-#include "engine/mpi/row_bins.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/order/row_bins.hpp"
 #include "octree/executor.hpp"
 
 namespace octopair {

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "engine/writers.hpp"
+#include "engine/threads/writers.hpp"
 
 namespace octopair {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/mpi/rank_executor.hpp"
-#include "engine/thread_passes.hpp"
+#include "engine/threads/thread_passes.hpp"
 #include "octree/linear_octree.hpp"
 
 namespace octopair {

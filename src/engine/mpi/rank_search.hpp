@@ -18,11 +18,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/mpi/communicator.hpp"
+#include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/master_search.hpp"
-#include "engine/mpi/object_arrays.hpp"
+#include "engine/mpi/partition/object_arrays.hpp"
+#include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_passes.hpp"
-#include "engine/mpi/routing.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "octopair/mpi.hpp"

@@ -5,11 +5,11 @@
 #include <optional>
 #include <stop_token>
 
-#include "engine/mpi/agreement.hpp"
-#include "engine/mpi/index_order.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/comm/relay.hpp"
 #include "engine/mpi/joint_call.hpp"
+#include "engine/mpi/order/index_order.hpp"
 #include "engine/mpi/rank_search.hpp"
-#include "engine/mpi/relay.hpp"
 #include "engine/progress.hpp"
 
 namespace octopair {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "engine/processes/crew.hpp"
-#include "engine/processes/shared_inputs.hpp"
+#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/shared_inputs.hpp"
 #include "engine/processes/sorted_lists.hpp"
-#include "engine/thread_passes.hpp"
+#include "engine/threads/thread_passes.hpp"
 
 namespace octopair {
 

@@ -6,10 +6,10 @@
 
 #include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
-#include "engine/processes/crew.hpp"
+#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/process_passes.hpp"
+#include "engine/processes/client/worker_program.hpp"
 #include "engine/processes/paper_passes.hpp"
-#include "engine/processes/process_passes.hpp"
-#include "engine/processes/worker_program.hpp"
 #include "engine/search.hpp"
 #include "engine/turns.hpp"
 #include "octopair/error.hpp"

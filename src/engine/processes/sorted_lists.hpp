@@ -9,7 +9,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/processes/arena.hpp"
+#include "engine/processes/shared_memory/arena.hpp"
 #include "octree/linear_octree.hpp"
 
 namespace octopair {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/call_encoder.hpp"
+#include "scene/recording/call_encoder.hpp"
 #include "scene/scene_objects.hpp"
 
 namespace octopair::service {

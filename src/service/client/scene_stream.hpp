@@ -11,7 +11,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "scene/recording.hpp"
+#include "scene/recording/recording.hpp"
 
 namespace octopair::service {
 

@@ -9,8 +9,8 @@
 #include "service/protocol/job_spec.hpp"
 #include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
-#include "service/server/detached_jobs.hpp"
-#include "service/server/state_folder.hpp"
+#include "service/server/store/detached_jobs.hpp"
+#include "service/server/store/state_folder.hpp"
 
 namespace octopair::service {
 

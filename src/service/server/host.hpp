@@ -8,16 +8,16 @@
 #include <string>
 
 #include "service/protocol/limit_error.hpp"
-#include "service/server/access.hpp"
-#include "service/server/budget.hpp"
-#include "service/server/call_threads.hpp"
-#include "service/server/job_table.hpp"
-#include "service/server/lanes.hpp"
-#include "service/server/ledger.hpp"
-#include "service/server/overseer.hpp"
-#include "service/server/server_job.hpp"
+#include "service/server/calls/call_threads.hpp"
+#include "service/server/jobs/budget.hpp"
+#include "service/server/jobs/job_table.hpp"
+#include "service/server/jobs/lanes.hpp"
+#include "service/server/jobs/overseer.hpp"
+#include "service/server/jobs/server_job.hpp"
+#include "service/server/jobs/spare_boxes.hpp"
+#include "service/server/log/ledger.hpp"
+#include "service/server/net/access.hpp"
 #include "service/server/server_options.hpp"
-#include "service/server/spare_boxes.hpp"
 
 namespace octopair::service {
 

@@ -18,11 +18,11 @@
 #include "octopair/error.hpp"
 #include "service/protocol/library.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/server/calls.hpp"
-#include "service/server/credentials.hpp"
-#include "service/server/event.hpp"
+#include "service/server/calls/calls.hpp"
 #include "service/server/host.hpp"
-#include "service/server/listener.hpp"
+#include "service/server/log/event.hpp"
+#include "service/server/net/credentials.hpp"
+#include "service/server/net/listener.hpp"
 
 namespace octopair::service {
 

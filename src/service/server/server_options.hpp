@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "service/protocol/address.hpp"
-#include "service/server/lanes.hpp"
+#include "service/server/jobs/lanes.hpp"
 
 namespace octopair::service {
 

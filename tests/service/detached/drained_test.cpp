@@ -2,9 +2,9 @@
 #include <thread>
 
 #include "service/detached/host.hpp"
-#include "service/server/job_input.hpp"
-#include "service/server/lanes.hpp"
-#include "service/server/server_job.hpp"
+#include "service/server/jobs/job_input.hpp"
+#include "service/server/jobs/lanes.hpp"
+#include "service/server/jobs/server_job.hpp"
 
 namespace octopair::testing {
 namespace {

@@ -1,0 +1,178 @@
+#include "boxes/box_source.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "boxes/box_kernel.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr const char* axis_names = "xyz";
+
+std::string number_text(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+}
+
+bool holds_float32(const Objects& set) { return std::holds_alternative<std::span<const Box3f>>(set.boxes); }
+
+Box3d wide_box(const Objects& set, std::size_t index) {
+    return std::visit([&](auto boxes) { return wide(boxes[index]); }, set.boxes);
+}
+
+}  // namespace
+
+bool is_plain(const Objects& set) { return holds_float32(set) && set.padding.empty(); }
+
+std::array<double, 4> OriginSample::median(std::span<const Corner> corners) {
+    std::array<double, 4> origin = {0, 0, 0, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<double> lows;
+        for (const Corner& corner : corners) {
+            if (std::abs(corner[axis]) <= DBL_MAX) lows.push_back(corner[axis]);
+        }
+        if (lows.empty()) continue;
+        const auto middle = lows.begin() + std::ptrdiff_t(lows.size() / 2);
+        std::nth_element(lows.begin(), middle, lows.end());
+        origin[axis] = *middle;
+    }
+    return origin;
+}
+
+BoxSource::BoxSource(const Objects& first, const Objects* second, const EntryForm& form)
+    : first_(&first),
+      second_(second),
+      first_size_(first.size()),
+      second_size_(second != nullptr ? second->size() : 0),
+      form_(form) {}
+
+BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
+    : BoxSource(first, second,
+                EntryForm{margin == 0 && is_plain(first) && (second == nullptr || is_plain(*second)),
+                          {.origin = {}, .margin = margin}}) {
+    if (exact()) return;
+    const OriginSample sample{size()};
+    std::vector<OriginSample::Corner> corners(sample.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = low_corner(sample[i]);
+    form_.rounding.origin = OriginSample::median(corners);
+}
+
+OriginSample::Corner BoxSource::low_corner(std::size_t position) const {
+    double padding = 0;
+    const Box3d low = box(std::uint32_t(position), padding);
+    return {low.min[0], low.min[1], low.min[2]};
+}
+
+Box3d BoxSource::box(std::uint32_t object, double& padding) const {
+    const bool in_first = object < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t index = in_first ? object : object - first_size_;
+    padding = set.padding.empty() ? 0 : set.padding[index];
+    return wide_box(set, index);
+}
+
+bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
+    double padding_a = 0;
+    double padding_b = 0;
+    const Box3d box_a = box(a, padding_a);
+    const Box3d box_b = box(b, padding_b);
+    return within_reach(box_a, box_b, form_.rounding.margin + (padding_a + padding_b));
+}
+
+RoundingSlack BoxSource::slack() const {
+    // A bound of an entry is off by at most 2^-23 of itself (rounding to float32) plus 2^-47 of the numbers it was made
+    // from (OutwardRounding::error_part); more than four times that separates real overlaps from made
+    // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
+    RoundingSlack slack;
+    for (unsigned axis = 0; axis < 3; ++axis)
+        slack.base[axis] = round_up(std::abs(form_.rounding.origin[axis]) * 0x1p-44 + FLT_MIN);
+    return slack;
+}
+
+template <typename Real>
+bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
+                         std::span<Entry> out) const {
+    const auto some = boxes.subspan(begin, out.size());
+    if constexpr (std::is_same_v<Real, float>) {
+        if (form_.exact) return copy_boxes(some, out);
+    }
+    return round_boxes(some, padding.empty() ? padding : padding.subspan(begin, out.size()), form_.rounding, out);
+}
+
+bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
+    if (join() && begin < first_size_ && begin + out.size() > first_size_) {
+        const std::size_t of_first = first_size_ - begin;
+        const bool good = load(begin, out.first(of_first));
+        return load(first_size_, out.subspan(of_first)) && good;
+    }
+    const bool in_first = begin < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t offset = in_first ? 0 : first_size_;
+    const bool good =
+        std::visit([&](auto boxes) { return load_set(boxes, set.padding, begin - offset, out); }, set.boxes);
+    const std::uint32_t mask = !join() ? 0 : in_first ? first_set : second_set;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i].object = std::uint32_t(begin + i);
+        out[i].mask = mask;
+    }
+    return good;
+}
+
+std::span<const Box3f> BoxSource::plain(std::size_t begin, std::size_t count) const {
+    if (!form_.exact || join()) return {};
+    return std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count);
+}
+
+void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
+    if (const auto boxes = plain(0, size()); !boxes.empty()) {
+        for (std::size_t i = 0; i < out.size(); ++i) std::memcpy(&out[i], &boxes[positions[i]], sizeof(Box3f));
+        return;
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        double padding = 0;
+        const Box3d wide = box(std::uint32_t(positions[i]), padding);
+        out[i] = form_.rounding.entry(wide, padding);
+    }
+}
+
+std::optional<std::string> BoxSource::fault(std::size_t position, const SetBegins& begins) const {
+    const bool in_first = position < first_size_;
+    const Objects& set = in_first ? *first_ : *second_;
+    const std::size_t index = in_first ? position : position - first_size_;
+    const std::string which = in_first ? "object " + std::to_string(begins.first + index)
+                                       : "of the second set object " + std::to_string(begins.second + index);
+    const Box3d box = wide_box(set, index);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, axis_names[axis]);
+        for (const auto& [value, end] : {std::pair{box.min[axis], "min "}, std::pair{box.max[axis], "max "}}) {
+            if (!std::isfinite(value))
+                return which + ": " + end + name + " is " + number_text(value) + ", not a finite number";
+        }
+        if (box.min[axis] > box.max[axis]) {
+            return which + ": min " + name + " " + number_text(box.min[axis]) + " is above max " + name + " " +
+                   number_text(box.max[axis]);
+        }
+    }
+    if (!set.padding.empty() && !is_padding(set.padding[index])) {
+        return which + ": padding is " + number_text(set.padding[index]) + ", not a finite number >= 0";
+    }
+    return std::nullopt;
+}
+
+void BoxSource::refuse(std::size_t begin, const SetBegins& begins) const {
+    for (std::size_t i = begin; i < size(); ++i) {
+        if (const auto found = fault(i, begins)) throw Error(ErrorCode::bad_input, *found);
+    }
+    throw Error(ErrorCode::bad_input, "an object changed while it was read");
+}
+
+}  // namespace octopair

@@ -1,0 +1,102 @@
+#include "cli/command/command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+Option Option::required() { return Option(*option_->required()); }
+
+Option Option::type_name(const std::string& word) { return Option(*option_->type_name(word)); }
+
+Option Option::description(const std::string& text) { return Option(*option_->description(text)); }
+
+Option Option::hide() { return Option(*option_->group("")); }
+
+Option Option::environment(const std::string& variable) { return Option(*option_->envname(variable)); }
+
+Option Option::needs(Option other) { return Option(*option_->needs(other.option_)); }
+
+Option Option::excludes(Option other) { return Option(*option_->excludes(other.option_)); }
+
+Option Option::check(std::function<std::string(const std::string&)> fault) {
+    return Option(*option_->check(std::move(fault)));
+}
+
+bool Option::is_given() const { return option_->count() > 0; }
+
+void Option::set_text(const std::string& text) {
+    const bool is_flag = option_->get_expected_min() == 0;
+    try {
+        option_->add_result(is_flag ? option_->get_flag_value(option_->get_lnames().front(), text) : text);
+        option_->run_callback();
+    } catch (const CLI::ParseError& error) {
+        throw Error(ErrorCode::usage, error.what());
+    }
+}
+
+std::string Command::name() const { return app_->get_name(); }
+
+Command Command::add_subcommand(const std::string& name, const std::string& description) {
+    return Command(*app_->add_subcommand(name, description));
+}
+
+void Command::require_subcommand() { app_->require_subcommand(1); }
+
+void Command::footer(const std::string& text) { app_->footer(text); }
+
+void Command::callback(std::function<void()> done) { app_->callback(std::move(done)); }
+
+Option Command::add_option(const std::string& name, std::string& value, const std::string& description) {
+    return Option(*app_->add_option(name, value, description));
+}
+
+Option Command::add_option(const std::string& name, std::vector<std::string>& values, const std::string& description) {
+    return Option(*app_->add_option(name, values, description));
+}
+
+Option Command::add_option(const std::string& name, const ReadText& read, const std::string& description) {
+    return Option(*app_->add_option_function<std::string>(name, read, description));
+}
+
+Option Command::add_option(const std::string& name, const ReadTexts& read, const std::string& description) {
+    return Option(*app_->add_option_function<std::vector<std::string>>(name, read, description));
+}
+
+Option Command::add_flag(const std::string& name, bool& value, const std::string& description) {
+    return Option(*app_->add_flag(name, value, description));
+}
+
+std::optional<Option> Command::find_option(const std::string& name) const {
+    CLI::Option* const option = app_->get_option_no_throw(name);
+    return option == nullptr ? std::nullopt : std::optional(Option(*option));
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& version)
+    : app_(std::make_unique<CLI::App>(description, name)) {
+    app_->set_version_flag("--version", version);
+}
+
+CommandLine::~CommandLine() = default;
+
+std::optional<int> CommandLine::parse(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return app_->exit(success);
+    } catch (const CLI::ParseError& error) {
+        throw Error(ErrorCode::usage, std::string(error.what()) + " (octopair --help tells more)");
+    }
+    return std::nullopt;
+}
+
+std::vector<ConfigEntry> parse_config(std::istream& file) {
+    std::vector<ConfigEntry> entries;
+    for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_config(file)) {
+        entries.push_back({item.fullname(), item.inputs});
+    }
+    return entries;
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,57 @@
+#include "cli/command/numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+template <typename Number>
+bool parse_whole_text(const std::string& text, Number& number) {
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+std::uint64_t parse_count(std::string_view option, const std::string& text, std::uint64_t most) {
+    std::uint64_t number = 0;
+    if (parse_whole_text(text, number) && number <= most) return number;
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a whole number from 0 to {}", option, text, most));
+}
+
+std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
+    constexpr std::string_view suffixes = "KMGT";
+    const std::size_t suffix = text.empty() ? std::string_view::npos : suffixes.find(text.back());
+    const unsigned shift = suffix == std::string_view::npos ? 0 : 10 * (unsigned(suffix) + 1);
+    std::uint64_t number = 0;
+    const std::string digits = text.substr(0, text.size() - (shift > 0 ? 1 : 0));
+    if (parse_whole_text(digits, number) && number <= std::numeric_limits<std::uint64_t>::max() >> shift) {
+        return number << shift;
+    }
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is no number of bytes, as 65536, 64K, 4G", option, text));
+}
+
+double parse_length(std::string_view option, const std::string& text) {
+    double number = 0;
+    if (parse_whole_text(text, number) && std::isfinite(number) && number >= 0) return number;
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a finite number >= 0", option, text));
+}
+
+std::string grouped(std::uint64_t number) {
+    const std::string digits = std::to_string(number);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+        text += digits[i];
+    }
+    return text;
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,187 @@
+// octopair detect: the options, and what is made of the result.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "cli/command/failure.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/words.hpp"
+#include "cli/detect/detect_options.hpp"
+#include "cli/detect/detection.hpp"
+#include "cli/detect/event_detection.hpp"
+#include "cli/engine_choice.hpp"
+#include "cli/output/report.hpp"
+#include "cli/subcommands.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/results/pair_writer.hpp"
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/cluster.hpp"
+#include "cli/detect/rank_detection.hpp"
+#endif
+
+namespace octopair::cli {
+
+namespace {
+
+/// What is said of a run beside its pairs.
+class Outcome {
+public:
+    /// The file is opened at once, so that a place that cannot be written is known before the work.
+    Outcome(const DetectRequest& request, std::stop_token stop) : request_(request), stop_(std::move(stop)) {
+        if (!request.stats.empty()) stats_.emplace(request.stats);
+    }
+
+    void tell(const DetectReport& report) {
+        if (request_.count_only) {
+            io::StandardOutput out(stop_);
+            out.write(std::to_string(report.pairs) + '\n');
+            out.commit();
+        }
+        if (stats_) {
+            stats_->write(stats_json(report));
+            stats_->commit();
+        }
+        if (!request_.quiet) fmt::print(stderr, "{}", summary_text(report));
+    }
+
+private:
+    const DetectRequest& request_;
+    std::stop_token stop_;
+    std::optional<io::AtomicFile> stats_;
+};
+
+int exit_status_of(const DetectRequest& request, const DetectReport& report) {
+    return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
+}
+
+#ifdef OCTOPAIR_WITH_MPI
+/// The first rank speaks for all.
+int run_on_ranks(const DetectRequest& request) {
+    const Interrupt interrupt;
+    Cluster cluster;
+    try {
+        std::optional<Outcome> outcome;
+        cluster.together([&] {
+            if (cluster.first()) outcome.emplace(request, interrupt.token());
+        });
+        const DetectReport report = detect_on_ranks(request, cluster, interrupt.token());
+        cluster.together([&] {
+            if (cluster.first()) outcome->tell(report);
+        });
+        return exit_status_of(request, report);
+    } catch (const Error& error) {
+        if (!cluster.ends_alike()) throw;
+        if (cluster.first()) (void)fail(error);
+        // Once one has ended with a failure, mpirun may kill the others in the middle of a word.
+        cluster.together([] {});
+        return exit_status(error.code());
+    }
+}
+#endif
+
+int run_detect(const DetectRequest& request) {
+#ifdef OCTOPAIR_WITH_MPI
+    if (request.engine.kind == EngineKind::mpi) return run_on_ranks(request);
+#endif
+    const Interrupt interrupt;
+    Outcome outcome(request, interrupt.token());
+    const DetectReport report =
+        request.events ? detect_events(request, interrupt.token()) : detect(request, interrupt.token());
+    outcome.tell(report);
+    return exit_status_of(request, report);
+}
+
+void add_what(Command& command, DetectRequest& request) {
+    add_scene_options(command, request);
+    add_pipeline_options(command, request.pipeline);
+    command.add_flag("--events", request.events,
+                     "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
+}
+
+void add_outcome(Command& command, DetectRequest& request) {
+    const Option output =
+        command
+            .add_option("--output", request.output,
+                        "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)")
+            .type_name("FILE");
+    command
+        .add_option(
+            "--index-type",
+            [&request](const std::string& word) {
+                check_word({"--index-type", {"uint32", "uint64"}, {}}, word);
+                request.wide_indices = word == "uint64";
+            },
+            "of indices in .npy (default uint32; with --engine mpi uint64 where there are more objects)")
+        .type_name("TYPE");
+    add_order_options(command, request, "the first N pairs (with --events: rows)");
+    command.add_flag("--count-only", request.count_only, "print the number of pairs alone").excludes(output);
+    command.add_flag("--verify", request.verify,
+                     "check the pairs of boxes by a second algorithm; exit status 6 if they differ");
+    command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
+    command.add_option("--stats", request.stats, "write numbers about the run as JSON").type_name("FILE");
+    command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
+}
+
+void check_index_type(const DetectRequest& request) {
+    if (!request.wide_indices) return;
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--index-type uint64: " + why); };
+    if (request.engine.kind != EngineKind::mpi) refuse("only with --engine mpi");
+    const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
+    if (!npy && !request.count_only) refuse("only in an .npy file");
+}
+
+/// Refuses what the second algorithm could not check.
+void check_verify_options(const DetectRequest& request) {
+    const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--verify: " + why); };
+    if (request.events) refuse("not with --events; without it, the pairs of each frame are verified");
+    if (request.limit && has_filters(request)) refuse("not with --limit and filters, which end the search early");
+    if (request.wide_indices) refuse("not with --index-type uint64");
+}
+
+/// What the one has written is not lost to another. Devices and pipes take all.
+void check_outputs(const DetectRequest& request) {
+    namespace fs = std::filesystem;
+    const std::pair<std::string_view, fs::path> outputs[] = {
+        {"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}};
+    std::error_code no_path;  // then the writer says why
+    const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, no_path), no_path); };
+    for (const auto& [option, path] : outputs) {
+        for (const auto& [earlier_option, earlier] : outputs) {
+            if (option == earlier_option) break;
+            if (path.empty() || earlier.empty() || place(path) != place(earlier)) continue;
+            if (fs::exists(path, no_path) && !fs::is_regular_file(path, no_path)) continue;
+            throw Error(ErrorCode::usage,
+                        fmt::format("{}: {} is the file of {} as well", option, path.native(), earlier_option));
+        }
+    }
+}
+
+}  // namespace
+
+void add_detect(Command& program, Action& action) {
+    Command command = program.add_subcommand("detect", "find the colliding pairs of a scene");
+    const auto request = std::make_shared<DetectRequest>();
+    add_what(command, *request);
+    add_outcome(command, *request);
+    add_engine_options(command, request->engine);
+#ifdef OCTOPAIR_WITH_SERVICE
+    add_server_options(command, request->engine.server);
+#endif
+    command.callback([request, &action] {
+        check_engine_choice(request->engine);
+        if (!request->output.empty()) (void)io::pair_format(request->output);
+        if (request->events) check_event_options(*request);
+        check_index_type(*request);
+        if (request->verify) check_verify_options(*request);
+        check_pipeline_options(*request);
+        check_outputs(*request);
+        action = [request] { return run_detect(*request); };
+    });
+}
+
+}  // namespace octopair::cli

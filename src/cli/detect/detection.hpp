@@ -1,0 +1,87 @@
+// `octopair detect`, from files to files: what was asked, what came of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "cli/detect/stage.hpp"
+#include "cli/engine_choice.hpp"
+#include "io/results/baseline.hpp"
+#include "io/scene_reader.hpp"
+#include "octopair/engine.hpp"
+#include "octopair/pipeline.hpp"
+
+namespace octopair::cli {
+
+struct DetectRequest {
+    std::vector<std::string> inputs;
+    std::string against;  ///< empty: pairs within the inputs
+    io::MeshObjects mesh_objects = io::MeshObjects::node;
+    std::string padding;  ///< a file, or empty
+    std::string output;   ///< a file, or empty for standard output
+    double margin = 0;
+    Order order = Order::ascending;
+    std::optional<std::uint64_t> limit;
+    bool count_only = false;
+    bool fail_on_collision = false;
+    bool events = false;
+    bool verify = false;  ///< the pairs of boxes, by a second algorithm
+    PipelineRequest pipeline;
+    bool wide_indices = false;  ///< uint64 in .npy files
+    EngineChoice engine;
+    std::string stats;  ///< a file, or empty
+    bool quiet = false;
+};
+
+/// Wall-clock seconds; `detect` and `filter` leave out the time that each other and writing took meanwhile.
+struct DetectSeconds {
+    double total = 0, read = 0;
+    double prepare = 0;  ///< of shapes and filters, before the first search
+    double detect = 0, filter = 0, write = 0;
+    double verify = 0;  ///< if it was asked for
+};
+
+/// Rows written.
+struct EventCounts {
+    std::uint64_t began = 0, ended = 0;
+};
+
+struct DetectReport {
+    std::uint64_t objects = 0;  ///< of both sets, in each frame
+    std::uint64_t frames = 1;
+    bool moving = false;
+    std::uint64_t pairs = 0;  ///< what came out, of all frames
+    bool truncated = false;
+    bool verified = false;                    ///< the pairs of boxes in each frame so far
+    std::string_view not_checked;             ///< in one of the frames at least (Verification)
+    std::uint64_t candidates = 0;             ///< pairs of boxes, as far as they were looked for
+    std::vector<FilterCounts> filters;        ///< of all frames
+    std::optional<io::ChangeCounts> changes;  ///< where there is a baseline
+    std::optional<EventCounts> events;        ///< if they were asked for; then `entries` and `steps` are not known
+    std::uint64_t entries = 0;
+    StepSeconds steps;
+    DetectSeconds seconds;
+    EngineCrew crew;
+
+    /// What a frame's call did, beside `written` seconds that went by in writing.
+    void add(const Summary& summary, double written);
+    void add(const PipelineSummary& summary, double written);
+
+private:
+    void add_search(const Summary& search);
+    void add(const Verification& verification);
+};
+
+class ProgressLine;
+
+/// Of the call about a frame, after those that the report tells of. Borrows the progress.
+Options call_options(const DetectRequest& request, const DetectReport& report, std::uint64_t frame,
+                     ProgressLine& progress);
+
+/// Does it all but the stats. Throws Error.
+DetectReport detect(const DetectRequest& request, const std::stop_token& stop);
+
+}  // namespace octopair::cli

@@ -1,0 +1,121 @@
+#include "cli/detect/exclusions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "cli/input/shaped_set.hpp"
+#include "io/files/failure.hpp"
+#include "io/json/exclusion_rules.hpp"
+#include "octopair/error.hpp"
+#include "octopair/filters.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+using Names = std::span<const std::string>;
+
+/// Which objects have a name; several may have the same, and those that have none are not here.
+class NameTable {
+public:
+    explicit NameTable(Names names) {
+        for (std::uint32_t i = 0; i < names.size(); ++i) {
+            if (!names[i].empty()) objects_[names[i]].push_back(i);
+        }
+    }
+    std::span<const std::uint32_t> of(std::string_view name) const {
+        const auto found = objects_.find(name);
+        return found == objects_.end() ? std::span<const std::uint32_t>() : found->second;
+    }
+
+private:
+    std::unordered_map<std::string_view, std::vector<std::uint32_t>> objects_;
+};
+
+class Exclusions {
+public:
+    Exclusions(Pipeline& pipeline, const DetectRequest& request, const SetPair& sets)
+        : pipeline_(pipeline), request_(request), sets_(sets) {}
+
+    void add() const {
+        const std::string& file = request_.pipeline.exclude;
+        io::ExclusionRules rules;
+        if (!file.empty()) rules = io::read_exclusion_rules(file);
+        if (stage_of(request_) != Stage::pairs) add_groups();
+        if (request_.pipeline.same_parent.value_or(rules.same_parent)) add_parents();
+        if (!rules.ignored_pairs.empty()) add_ignored(rules);
+        if (!rules.exclude.empty()) {
+            check_names();
+            pipeline_.add(make_name_filter(names(sets_.first), std::move(rules.exclude), second_names()));
+        }
+    }
+
+private:
+    bool join() const { return sets_.second != nullptr; }
+    static Names names(const InputSet& set) { return set.scene.names; }
+    std::optional<Names> second_names() const { return join() ? std::optional(names(*sets_.second)) : std::nullopt; }
+
+    /// Of objects with shapes, which all have beyond the pairs.
+    void add_groups() const {
+        ShapedSet& first = *sets_.first.shaped;
+        ShapedSet* const second = join() ? sets_.second->shaped.get() : nullptr;
+        if (!first.has_groups() && (second == nullptr || !second->has_groups())) return;
+        pipeline_.add(make_group_filter(first.group_masks(),
+                                        second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
+    }
+
+    /// Objects of two files have no parent in common.
+    void add_parents() const {
+        if (!join() && sets_.first.shaped != nullptr) {
+            pipeline_.add(make_parent_filter(sets_.first.shaped->parents()));
+        }
+    }
+
+    void add_ignored(const io::ExclusionRules& rules) const {
+        check_names();
+        const NameTable first(names(sets_.first));
+        const NameTable second(join() ? names(*sets_.second) : Names());
+        std::vector<Pair> ignored;
+        const auto ignore = [&](std::span<const std::uint32_t> all_a, std::span<const std::uint32_t> all_b) {
+            for (const std::uint32_t a : all_a) {
+                for (const std::uint32_t b : all_b) ignored.push_back({a, b});
+            }
+        };
+        for (std::size_t i = 0; i < rules.ignored_pairs.size(); ++i) {
+            const auto& [x, y] = rules.ignored_pairs[i];
+            for (const std::string& name : {x, y}) {
+                if (!first.of(name).empty() || !second.of(name).empty()) continue;
+                io::refuse(request_.pipeline.exclude,
+                           fmt::format("ignored_pairs[{}]: no object has the name '{}'", i, name));
+            }
+            ignore(first.of(x), join() ? second.of(y) : first.of(y));
+            if (join()) ignore(first.of(y), second.of(x));
+        }
+        pipeline_.add(make_ignored_pairs_filter(std::move(ignored), join()));
+    }
+
+    /// Sets of files without names have no names at all.
+    void check_names() const {
+        for (const InputSet* set : {&sets_.first, sets_.second}) {
+            if (set == nullptr || set->scene.names.size() == set->scene.objects) continue;
+            throw Error(ErrorCode::usage, fmt::format("--exclude: {} has objects without names", set->parts[0].path));
+        }
+    }
+
+    Pipeline& pipeline_;
+    const DetectRequest& request_;
+    const SetPair& sets_;
+};
+
+}  // namespace
+
+void add_exclusions(Pipeline& pipeline, const DetectRequest& request, const SetPair& sets) {
+    Exclusions(pipeline, request, sets).add();
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,76 @@
+#include "cli/detect/filter_row.hpp"
+
+#include <optional>
+
+#include "cli/detect/exclusions.hpp"
+#include "cli/input/shaped_set.hpp"
+#include "octopair/filters.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+class Row final : public FilterRow {
+public:
+    Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
+        : sets_(sets), stop_(stop), pipeline_(threads_beside(request.engine)) {
+        if (sets.first.scene.triangles) {
+            add_triangles(request);
+            return;
+        }
+        add_exclusions(pipeline_, request, sets);
+        if (stage_of(request) != Stage::pairs) add_exact(request);
+    }
+
+    PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
+                        const Options& options) override {
+        const Objects first = sets_.first.frame(frame);
+        return sets_.second != nullptr
+                   ? pipeline_.run_between(engine, first, sets_.second->frame(frame), sink, options, stop_)
+                   : pipeline_.run(engine, first, sink, options, stop_);
+    }
+
+    PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) override {
+        return pipeline_.filter(pairs, sink, options, stop_);
+    }
+
+private:
+    void add_exact(const DetectRequest& request) {
+        ExactOptions options{.margin = request.margin};
+        options.max_contacts = request.pipeline.max_contacts.value_or(options.max_contacts);
+        const ShapedObjects first = shaped(sets_.first);
+        const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
+        const ShapedObjects* const other = second ? &*second : nullptr;
+        pipeline_.add(make_sphere_filter(first, request.margin, other));
+        pipeline_.add(make_oriented_box_filter(first, request.margin, other));
+        pipeline_.add(make_exact_object_filter(first, options, other));
+        if (stage_of(request) == Stage::features) pipeline_.add(make_exact_feature_filter(first, options, other));
+    }
+
+    void add_triangles(const DetectRequest& request) {
+        TriangleOptions options{.margin = request.margin, .features = stage_of(request) == Stage::features};
+        options.adjacent = request.pipeline.adjacent.value_or(options.adjacent);
+        options.threads = threads_beside(request.engine);
+        const TriangleSet first = triangles(sets_.first);
+        const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
+        pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));
+    }
+
+    static ShapedObjects shaped(const InputSet& set) { return set.shaped->objects(set.padding); }
+    static TriangleSet triangles(const InputSet& set) {
+        return {set.scene.triangles->triangles, set.scene.triangles->owners};
+    }
+
+    SetPair sets_;
+    std::stop_token stop_;
+    Pipeline pipeline_;
+};
+
+}  // namespace
+
+std::unique_ptr<FilterRow> make_filter_row(const DetectRequest& request, const SetPair& sets,
+                                           const std::stop_token& stop) {
+    return std::make_unique<Row>(request, sets, stop);
+}
+
+}  // namespace octopair::cli

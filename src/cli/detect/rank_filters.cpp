@@ -1,0 +1,72 @@
+#include "cli/detect/rank_filters.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "base/timed.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// What one rank tells the others.
+struct Share {
+    std::uint64_t collisions = 0;
+    bool truncated = false;
+};
+struct Work {
+    std::uint64_t in = 0, out = 0;
+    double seconds = 0;
+};
+
+}  // namespace
+
+RankFilters::RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets,
+                         const std::stop_token& stop)
+    : cluster_(cluster) {
+    cluster_.together([&] { row_ = make_filter_row(request, sets, stop); });
+}
+
+PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, CollisionPiece* kept) {
+    PipelineSummary summary;
+    double seconds = 0;
+    {
+        const Timed timed(seconds);  // waiting for the slowest rank included
+        const CollisionSink keep = [&](const Batch& batch) { kept->add(batch.pairs(), batch.findings()); };
+        // No rank's share of the result is longer than all of it, so each may end at the limit by itself.
+        cluster_.together([&] { summary = row_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
+        const std::uint64_t own = join(summary, options);
+        if (kept != nullptr) kept->cut(own);
+    }
+    summary.seconds = seconds;
+    return summary;
+}
+
+std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options) {
+    const std::uint64_t limit = options.limit.value_or(std::numeric_limits<std::uint64_t>::max());
+    const std::vector<Share> shares = cluster_.comm().all_gather(Share{summary.collisions, summary.truncated});
+    std::uint64_t before = 0, all = 0;
+    for (unsigned rank = 0; rank < cluster_.ranks(); ++rank) {
+        if (rank == cluster_.rank()) before = all;
+        all += shares[rank].collisions;
+        summary.truncated |= shares[rank].truncated;
+    }
+    summary.truncated |= all > limit;
+    summary.collisions = std::min(all, limit);
+
+    std::vector<Work> own;
+    own.reserve(summary.filters.size());
+    for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.seconds});
+    const std::vector<Work> works = cluster_.comm().all_gather(std::span<const Work>(own)).values;
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        if (i / own.size() == cluster_.rank()) continue;
+        FilterCounts& counts = summary.filters[i % own.size()];
+        counts.in += works[i].in;
+        counts.out += works[i].out;
+        counts.seconds += works[i].seconds;
+    }
+    return limit - std::min(limit, before);
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,177 @@
+#include "cli/detect/stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/command/command.hpp"
+#include "cli/command/numbers.hpp"
+#include "cli/command/words.hpp"
+#include "cli/detect/detection.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+constexpr bool with_pipeline = true;
+#else
+constexpr bool with_pipeline = false;
+#endif
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::usage, what); }
+
+Stage parse_stage(const std::string& word) {
+    if (!with_pipeline && (word == "objects" || word == "features")) {
+        refuse("--stage: this octopair was built without '" + word + "'; it has: pairs");
+    }
+    check_word({"--stage", stage_names(), {}}, word);
+    return word == "pairs" ? Stage::pairs : word == "objects" ? Stage::objects : Stage::features;
+}
+
+AdjacentTriangles parse_adjacent(const std::string& word) {
+    check_word({"--adjacent", {"beyond-shared", "exclude", "include"}, {}}, word);
+    return word == "exclude"   ? AdjacentTriangles::exclude
+           : word == "include" ? AdjacentTriangles::include
+                               : AdjacentTriangles::beyond_shared;
+}
+
+std::uint32_t parse_max_contacts(const std::string& text) {
+    const std::uint64_t number = parse_count("--max-contacts", text);
+    if (number > 0xFFFFFFFF) refuse("--max-contacts: " + text + " is more than 4294967295");
+    return std::uint32_t(number);
+}
+
+std::vector<std::string> all_inputs(const DetectRequest& request) {
+    std::vector<std::string> inputs = request.inputs;
+    if (!request.against.empty()) inputs.push_back(request.against);
+    return inputs;
+}
+
+/// An input without shapes, or none.
+std::optional<std::string> input_of_boxes(const DetectRequest& request) {
+    for (const std::string& input : all_inputs(request)) {
+        if (!io::is_mesh_file(input) && !io::is_json_file(input)) return input;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string_view> stage_names() {
+    return with_pipeline ? std::vector<std::string_view>{"pairs", "objects", "features"}
+                         : std::vector<std::string_view>{"pairs"};
+}
+
+void add_pipeline_options(Command& command, PipelineRequest& request) {
+    command
+        .add_option(
+            "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); },
+            "how far down the pipeline: pairs of boxes, objects that meet (default for meshes), or features: where and "
+            "how")
+        .type_name("STAGE");
+    command
+        .add_option(
+            "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
+            "triangles that share corners: beyond-shared (default: if they meet elsewhere), exclude or include")
+        .type_name("WHICH");
+    command
+        .add_option(
+            "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
+            "with --stage features: contacts of each pair, the deepest first (default 16)")
+        .type_name("N");
+    command.add_option("--exclude", request.exclude, "leave out pairs by rules of names, see docs/formats.md")
+        .type_name("RULES.json");
+    command
+        .add_option(
+            "--same-parent",
+            [&request](const std::string& word) {
+                check_word({"--same-parent", {"include", "exclude"}, {}}, word);
+                request.same_parent = word == "exclude";
+            },
+            "pairs of objects of one parent: include (default) or exclude")
+        .type_name("WHAT");
+    command
+        .add_option("--baseline", request.baseline, "an older result: say which collisions are new, gone or the same")
+        .type_name("OLD.jsonl");
+    command.add_option("--report", request.report, "write a page about the collisions for people")
+        .type_name("FILE.html");
+}
+
+Stage stage_of(const DetectRequest& request) {
+    if (request.pipeline.stage) return *request.pipeline.stage;
+    return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
+}
+
+bool has_filters(const DetectRequest& request) {
+    return stage_of(request) != Stage::pairs || !request.pipeline.exclude.empty() ||
+           request.pipeline.same_parent.value_or(false);
+}
+
+namespace {
+
+/// The option that has pairs filtered.
+std::string asked_of(const DetectRequest& request) {
+    switch (stage_of(request)) {
+        case Stage::objects:
+            return "--stage objects";
+        case Stage::features:
+            return "--stage features";
+        case Stage::pairs:
+            break;
+    }
+    return request.pipeline.exclude.empty() ? "--same-parent exclude" : "--exclude";
+}
+
+void check_triangle_options(const DetectRequest& request) {
+    const bool exact = stage_of(request) != Stage::pairs;
+    const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
+    if (request.pipeline.adjacent && !(triangles && exact)) {
+        refuse("--adjacent: only with --objects triangle, beyond --stage pairs");
+    }
+    if (request.pipeline.max_contacts && (triangles || stage_of(request) != Stage::features)) {
+        refuse("--max-contacts: only with --stage features, of nodes");
+    }
+    if (!triangles || !has_filters(request)) return;
+    if (!request.pipeline.exclude.empty()) refuse("--exclude: not with --objects triangle");
+    if (request.pipeline.same_parent) refuse("--same-parent: not with --objects triangle");
+    if (!request.padding.empty()) refuse("--padding: triangles have it in --stage pairs alone");
+}
+
+/// Of what is said of collisions, beside their rows.
+void check_outcome_options(const DetectRequest& request) {
+    const PipelineRequest& asked = request.pipeline;
+    for (const auto& [option, value] :
+         {std::pair("--baseline", &asked.baseline), std::pair("--report", &asked.report)}) {
+        if (value->empty()) continue;
+        if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
+        if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
+    }
+    if (!asked.report.empty() && !asked.report.ends_with(".html") && !asked.report.ends_with(".htm")) {
+        refuse(fmt::format("--report: {}: a page ends in .html", asked.report));
+    }
+    if (asked.baseline.ends_with(".csv") || asked.baseline.ends_with(".npy")) {
+        refuse(fmt::format("--baseline: {}: an older result is a .jsonl file", asked.baseline));
+    }
+    if (!asked.baseline.empty() && request.limit)
+        refuse("--baseline: not with --limit, which leaves out what may be new");
+}
+
+}  // namespace
+
+void check_pipeline_options(const DetectRequest& request) {
+    check_triangle_options(request);
+    check_outcome_options(request);
+    if (!has_filters(request)) return;
+    const std::string asked = asked_of(request);
+    if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");
+    if (request.wide_indices) refuse("--index-type uint64: not with " + asked);
+    if (request.events) refuse(asked + ": not with --events");
+    if (stage_of(request) == Stage::pairs) return;
+    if (const auto input = input_of_boxes(request)) {
+        refuse(fmt::format("{}: {} has boxes, not shapes; --stage pairs is for these", asked, *input));
+    }
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,138 @@
+#include "cli/input/input_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/input/isolated_read.hpp"
+#include "io/boxes/npy.hpp"
+
+namespace octopair::cli {
+
+Objects InputSet::frame(std::uint64_t f) const {
+    Objects objects = scene.frame(scene.moving ? f : 0);
+    objects.padding = padding;
+    return objects;
+}
+
+Objects InputSet::frame_slice(std::uint64_t f, const SliceNumber& number) const {
+    Objects objects = frame(f);
+    const auto first = std::size_t(number.begin(total)), count = std::size_t(number.end(total)) - first;
+    std::visit([&](auto& boxes) { boxes = boxes.subspan(first, count); }, objects.boxes);
+    if (!objects.padding.empty()) objects.padding = objects.padding.subspan(first, count);
+    return objects;
+}
+
+std::optional<std::string> InputSet::find_fault() const {
+    const auto fault = io::find_fault(scene);
+    if (!fault) return std::nullopt;
+    const std::string frame = scene.moving ? fmt::format("frame {}: ", fault->frame) : "";
+    std::uint64_t object = begin + fault->object;
+    for (const Part& part : parts) {
+        if (object < part.objects) return fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what);
+        object -= part.objects;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::uint64_t> InputSet::fault_position() const {
+    const auto fault = io::find_fault(scene);
+    if (!fault) return std::nullopt;
+    return fault->frame * total + begin + fault->object;
+}
+
+namespace {
+
+io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
+    // What is a mesh file, or may name one, goes through importers.
+    const bool isolated = io::is_mesh_file(path) || io::is_json_file(path);
+    return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
+}
+
+/// A file whose objects can be had in parts.
+class PartFile {
+public:
+    PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
+        if (io::is_npy_file(path)) {
+            npy_.emplace(path);
+        } else {
+            whole_ = read_part(path, content, stop);
+        }
+    }
+
+    std::uint64_t objects() const { return npy_ ? npy_->shape().objects : whole_.objects; }
+    bool wide() const { return npy_ ? npy_->wide() : std::holds_alternative<Buffer<Box3d>>(whole_.boxes); }
+    std::vector<std::string> take_names() { return std::move(whole_.names); }
+
+    io::LoadedScene read(const io::ObjectRows& rows, const std::stop_token& stop) {
+        if (npy_) return npy_->read(rows, stop);
+        io::LoadedScene part = std::move(whole_);
+        const std::uint64_t objects = std::exchange(part.objects, rows.end - rows.begin);
+        std::visit(
+            [&](auto& boxes) {
+                std::remove_reference_t<decltype(boxes)> some(std::size_t(part.frames * part.objects));
+                for (std::uint64_t frame = 0; frame < part.frames; ++frame) {
+                    std::copy_n(boxes.data() + frame * objects + rows.begin, part.objects,
+                                some.data() + frame * part.objects);
+                }
+                boxes = std::move(some);
+            },
+            part.boxes);
+        return part;
+    }
+
+private:
+    std::optional<io::NpyScene> npy_;
+    io::LoadedScene whole_;
+};
+
+}  // namespace
+
+InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
+                        const std::stop_token& stop) {
+    InputSet set;
+    std::vector<io::LoadedScene> scenes;
+    io::SceneContent wanted = content;
+    wanted.shapes |= std::any_of(paths.begin(), paths.end(), io::is_json_file);
+    for (const std::string& path : paths) {
+        scenes.push_back(read_part(path, wanted, stop));
+        set.parts.push_back({path, scenes.back().objects});
+    }
+    set.scene = io::join_scenes(scenes, paths);
+    set.total = set.scene.objects;
+    return set;
+}
+
+InputSet read_input_slice(const std::vector<std::string>& paths, const io::SceneContent& content,
+                          const SliceRequest& wanted, const std::stop_token& stop) {
+    InputSet set;
+    std::vector<PartFile> files;
+    bool wide = false;
+    std::vector<std::string> names;
+    for (const std::string& path : paths) {
+        files.emplace_back(path, content, stop);
+        set.parts.push_back({path, files.back().objects()});
+        wide |= files.back().wide();
+        const std::vector<std::string> part_names = files.back().take_names();
+        if (!part_names.empty()) names.resize(std::size_t(set.total));
+        names.insert(names.end(), part_names.begin(), part_names.end());
+        set.total += files.back().objects();
+    }
+    set.begin = wanted.number.begin(set.total);
+    const std::uint64_t end = wanted.number.end(set.total);
+    std::vector<io::LoadedScene> scenes;
+    std::uint64_t before = 0;
+    for (PartFile& file : files) {
+        const std::uint64_t objects = file.objects();
+        const auto row = [&](std::uint64_t object) { return std::clamp(object, before, before + objects) - before; };
+        const io::ObjectRows rows{row(set.begin), row(end)};
+        scenes.push_back(file.read(rows, stop));
+        before += objects;
+    }
+    set.scene = io::join_scenes(scenes, paths, wide);
+    if (wanted.names && !names.empty()) names.resize(std::size_t(set.total));
+    set.scene.names = wanted.names ? std::move(names) : std::vector<std::string>();
+    return set;
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,147 @@
+#include "cli/input/scene_transfer.hpp"
+
+#include <concepts>
+#include <tuple>
+#include <type_traits>
+
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// T or const T.
+template <typename Any, typename T>
+concept Some = std::same_as<std::remove_const_t<Any>, T>;
+
+// The members of what is passed member by member: the one list that both sides go by.
+
+auto members(Some<io::LoadedScene> auto& scene) {
+    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.names, scene.shapes, scene.triangles);
+}
+auto members(Some<io::LoadedShapes> auto& loaded) {
+    return std::tie(loaded.shapes, loaded.geometry, loaded.poses, loaded.parents, loaded.end_poses, loaded.padding,
+                    loaded.groups, loaded.masks);
+}
+auto members(Some<io::LoadedTriangles> auto& loaded) {
+    return std::tie(loaded.triangles, loaded.owners, loaded.owner_names);
+}
+auto members(Some<shape::ConvexHull> auto& hull) { return std::tie(hull.points); }
+auto members(Some<shape::Mesh> auto& mesh) { return std::tie(mesh.vertices, mesh.triangles); }
+
+class SceneSender {
+public:
+    explicit SceneSender(const PutBytes& put) : put_(put) {}
+
+    template <typename T>
+    void pass(const T& value) {
+        if constexpr (std::is_trivially_copyable_v<T>) {
+            put_(std::as_bytes(std::span(&value, 1)));
+        } else if constexpr (requires { members(value); }) {
+            std::apply([&](const auto&... parts) { (pass(parts), ...); }, members(value));
+        } else {
+            pass_container(value);
+        }
+    }
+
+private:
+    template <typename T>
+    void pass_container(const Buffer<T>& buffer) {
+        pass(std::uint64_t(buffer.size()));
+        put_(std::as_bytes(buffer.span()));
+    }
+    void pass_container(const std::string& text) {
+        pass(std::uint64_t(text.size()));
+        put_(std::as_bytes(std::span(text)));
+    }
+    template <typename T>
+    void pass_container(const std::vector<T>& values) {
+        pass(std::uint64_t(values.size()));
+        if constexpr (std::is_trivially_copyable_v<T>) {
+            put_(std::as_bytes(std::span(values)));
+        } else {
+            for (const T& value : values) pass(value);
+        }
+    }
+    template <typename T>
+    void pass_container(const std::optional<T>& value) {
+        pass(value.has_value());
+        if (value) pass(*value);
+    }
+    template <typename... T>
+    void pass_container(const std::variant<T...>& value) {
+        pass(std::uint64_t(value.index()));
+        std::visit([&](const auto& held) { pass(held); }, value);
+    }
+
+    const PutBytes& put_;
+};
+
+class SceneReceiver {
+public:
+    explicit SceneReceiver(const GetBytes& get) : get_(get) {}
+
+    template <typename T>
+    void pass(T& value) {
+        if constexpr (std::is_trivially_copyable_v<T>) {
+            get_(std::as_writable_bytes(std::span(&value, 1)));
+        } else if constexpr (requires { members(value); }) {
+            std::apply([&](auto&... parts) { (pass(parts), ...); }, members(value));
+        } else {
+            pass_container(value);
+        }
+    }
+
+private:
+    std::size_t size() {
+        std::uint64_t size = 0;
+        pass(size);
+        return std::size_t(size);
+    }
+
+    template <typename T>
+    void pass_container(Buffer<T>& buffer) {
+        buffer.resize_discard(size());
+        get_(std::as_writable_bytes(buffer.span()));
+    }
+    void pass_container(std::string& text) {
+        text.resize(size());
+        get_(std::as_writable_bytes(std::span(text)));
+    }
+    template <typename T>
+    void pass_container(std::vector<T>& values) {
+        values.resize(size());
+        if constexpr (std::is_trivially_copyable_v<T>) {
+            get_(std::as_writable_bytes(std::span(values)));
+        } else {
+            for (T& value : values) pass(value);
+        }
+    }
+    template <typename T>
+    void pass_container(std::optional<T>& value) {
+        bool there = false;
+        pass(there);
+        if (there) pass(value.emplace());
+    }
+    template <typename... T>
+    void pass_container(std::variant<T...>& value) {
+        const std::size_t index = size();
+        std::size_t i = 0;
+        ((i++ == index ? pass(value.template emplace<T>()) : void()), ...);
+        if (index >= i) throw Error(ErrorCode::engine_failed, "a scene from another process is garbled");
+    }
+
+    const GetBytes& get_;
+};
+
+}  // namespace
+
+void send_scene(const io::LoadedScene& scene, const PutBytes& put) { SceneSender(put).pass(scene); }
+
+io::LoadedScene receive_scene(const GetBytes& get) {
+    io::LoadedScene scene;
+    SceneReceiver(get).pass(scene);
+    return scene;
+}
+
+}  // namespace octopair::cli

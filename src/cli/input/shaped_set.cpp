@@ -1,0 +1,119 @@
+#include "cli/input/shaped_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "octopair/error.hpp"
+#include "parallel/team.hpp"
+
+namespace octopair::cli {
+
+ShapedSet::ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop)
+    : loaded_(std::move(loaded)) {
+    prepare(std::exchange(loaded_.shapes, {}), threads, stop);
+}
+
+void ShapedSet::prepare(std::vector<shape::Any> shapes, unsigned threads, const std::stop_token& stop) {
+    std::vector<std::optional<Geometry>> ready(shapes.size());
+    Team(threads).for_each(shapes.size(), [&](std::size_t i, unsigned) {
+        if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        ready[i].emplace(std::move(shapes[i]));
+    });
+    geometries_.reserve(ready.size());
+    for (auto& geometry : ready) geometries_.push_back(std::move(*geometry));
+}
+
+ShapedObjects ShapedSet::objects(std::span<const double> padding) const {
+    return {geometries_, loaded_.geometry, loaded_.poses, loaded_.end_poses, padding};
+}
+
+bool ShapedSet::has_planes() const {
+    return std::any_of(geometries_.begin(), geometries_.end(),
+                       [](const Geometry& geometry) { return std::holds_alternative<shape::Plane>(geometry.shape()); });
+}
+
+GroupMasks ShapedSet::group_masks() {
+    loaded_.groups.resize(loaded_.poses.size(), io::LoadedShapes::default_groups);
+    loaded_.masks.resize(loaded_.poses.size(), io::LoadedShapes::default_mask);
+    return {loaded_.groups, loaded_.masks};
+}
+
+namespace {
+
+/// Says the file as well, where it is known.
+template <typename Call>
+void with_file(const InputSet& set, const Call& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::bad_input || set.parts.size() != 1) throw;
+        throw Error(error.code(), fmt::format("{}: {}", set.parts.front().path, error.what()));
+    }
+}
+
+template <typename AnyBox>
+Buffer<AnyBox> copy_of(const std::vector<AnyBox>& boxes) {
+    Buffer<AnyBox> copy{boxes.size()};
+    std::copy(boxes.begin(), boxes.end(), copy.data());
+    return copy;
+}
+
+/// What is around all boxes of a set, as a shape; none where there are no boxes, or some that the engine refuses.
+io::LoadedShapes bounds_of(const InputSet& set) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Point3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+    std::visit(
+        [&](const auto& boxes) {
+            for (const auto& box : boxes.span()) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    low[axis] = std::min(low[axis], double(box.min[axis]));
+                    high[axis] = std::max(high[axis], double(box.max[axis]));
+                }
+            }
+        },
+        set.scene.boxes);
+    io::LoadedShapes bounds;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!(std::isfinite(low[axis]) && std::isfinite(high[axis]))) return bounds;
+    }
+    bounds.shapes = {shape::ConvexHull{{low, high}}};
+    bounds.geometry = {0};
+    bounds.poses.resize(1);
+    return bounds;
+}
+
+bool has_planes(const InputSet& set) { return set.shaped != nullptr && set.shaped->has_planes(); }
+
+}  // namespace
+
+void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop) {
+    if (set.scene.triangles && set.scene.lacks_boxes())
+        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles, threads));
+    if (!set.scene.shapes) return;
+    set.moves_meanwhile = !set.scene.shapes->end_poses.empty();
+    with_file(set, [&] {
+        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), threads, stop);
+        set.padding = set.shaped->padding();
+        if (set.scene.lacks_boxes()) set.scene.boxes = copy_of(boxes_of(set.shaped->objects()));
+    });
+}
+
+void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop) {
+    make_shaped(first, threads, stop);
+    make_shaped(second, threads, stop);
+    if (!has_planes(first) && !has_planes(second)) return;
+    const ShapedSet around_first(bounds_of(first), 1, {}), around_second(bounds_of(second), 1, {});
+    const ShapedSet& first_shapes = first.shaped != nullptr ? *first.shaped : around_first;
+    const ShapedSet& second_shapes = second.shaped != nullptr ? *second.shaped : around_second;
+    const JoinBoxes boxes = boxes_of(first_shapes.objects(), second_shapes.objects());
+    if (has_planes(first)) first.scene.boxes = copy_of(boxes.first);
+    if (has_planes(second)) second.scene.boxes = copy_of(boxes.second);
+}
+
+}  // namespace octopair::cli

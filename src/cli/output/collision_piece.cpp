@@ -1,0 +1,119 @@
+#include "cli/output/collision_piece.hpp"
+
+#include <algorithm>
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr std::size_t block_pairs = 1 << 14;
+
+using Block = CollisionPiece::Block;
+
+void append_finding(Block& block, const Finding& finding) {
+    block.contacts.insert(block.contacts.end(), finding.contacts.begin(), finding.contacts.end());
+    block.findings.push_back({finding.collision_class, finding.more_contacts, std::uint32_t(finding.contacts.size()),
+                              finding.distance, finding.depth, finding.time, finding.nearest, finding.note});
+}
+
+/// How long a block's arrays are.
+struct Lengths {
+    std::uint64_t pairs = 0, findings = 0, contacts = 0;
+};
+
+/// Blocks from any rank to the first one.
+class Carrier {
+public:
+    Carrier(Cluster& cluster, unsigned from) : cluster_(cluster), from_(from) {}
+
+    /// Collective: `block` of rank `from`; the others have none to give. On the first rank, what has come.
+    const Block& bring(const Block& block) {
+        const auto lengths = cluster_.comm().all_gather(
+            Lengths{block.pairs.size(), block.findings.size(), block.contacts.size()})[from_];
+        cluster_.together([&] {
+            if (!cluster_.first()) return;
+            come_.pairs.resize(std::size_t(lengths.pairs));
+            come_.findings.resize(std::size_t(lengths.findings));
+            come_.contacts.resize(std::size_t(lengths.contacts));
+        });
+        carry(block.pairs, come_.pairs);
+        carry(block.findings, come_.findings);
+        carry(block.contacts, come_.contacts);
+        return come_;
+    }
+
+private:
+    template <typename Value>
+    void carry(const std::vector<Value>& own, std::vector<Value>& come) {
+        Exchange counts{RankCounts(cluster_.ranks(), 0), RankCounts(cluster_.ranks(), 0)};
+        if (cluster_.rank() == from_) counts.sent[0] = own.size();
+        if (cluster_.first()) counts.received[from_] = come.size();
+        cluster_.comm().exchange(own.data(), come.data(), counts);
+    }
+
+    Cluster& cluster_;
+    unsigned from_;
+    Block come_;
+};
+
+}  // namespace
+
+std::vector<Finding> CollisionPiece::Block::full_findings() const {
+    std::vector<Finding> full(findings.size());
+    auto contact = contacts.begin();
+    for (std::size_t i = 0; i < full.size(); ++i) {
+        const FlatFinding& flat = findings[i];
+        const auto end = contact + std::ptrdiff_t(flat.contacts);
+        full[i] = {.collision_class = flat.collision_class,
+                   .distance = flat.distance,
+                   .nearest = flat.nearest,
+                   .depth = flat.depth,
+                   .time = flat.time,
+                   .contacts = {contact, end},
+                   .more_contacts = flat.more_contacts,
+                   .note = flat.note};
+        contact = end;
+    }
+    return full;
+}
+
+void CollisionPiece::add(std::span<const Pair> pairs, std::span<const Finding> findings) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (blocks_.empty() || blocks_.back().pairs.size() == block_pairs) blocks_.emplace_back();
+        Block& block = blocks_.back();
+        block.pairs.push_back(pairs[i]);
+        if (!findings.empty()) append_finding(block, findings[i]);
+        ++size_;
+    }
+}
+
+void CollisionPiece::cut(std::uint64_t most) {
+    if (most >= size_) return;
+    size_ = most;
+    blocks_.resize(std::size_t((most + block_pairs - 1) / block_pairs));
+    if (blocks_.empty()) return;
+    Block& last = blocks_.back();
+    last.pairs.resize(std::size_t(most - (blocks_.size() - 1) * block_pairs));
+    if (last.findings.empty()) return;
+    last.findings.resize(last.pairs.size());
+    std::size_t contacts = 0;
+    for (const FlatFinding& finding : last.findings) contacts += finding.contacts;
+    last.contacts.resize(contacts);
+}
+
+void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer) {
+    const std::vector<std::uint64_t> blocks = cluster.comm().all_gather(std::uint64_t(piece.blocks().size()));
+    for (unsigned from = 0; from < cluster.ranks(); ++from) {
+        Carrier carrier(cluster, from);
+        const Block none;
+        for (std::size_t i = 0; i < blocks[from]; ++i) {
+            const Block& own = cluster.rank() == from ? piece.blocks()[i] : none;
+            const Block& come = from == 0 ? own : carrier.bring(own);
+            cluster.together([&] {
+                if (writer != nullptr) writer->write(come.pairs, come.full_findings());
+            });
+        }
+    }
+}
+
+}  // namespace octopair::cli

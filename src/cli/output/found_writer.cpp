@@ -1,0 +1,146 @@
+#include "cli/output/found_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "io/files/atomic_file.hpp"
+#include "io/results/collision_writer.hpp"
+#include "io/results/html_report.hpp"
+#include "io/results/pair_writer.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+class Pairs final : public FoundWriter {
+public:
+    explicit Pairs(std::unique_ptr<io::PairWriter> writer) : writer_(std::move(writer)) {}
+
+    void begin_frame(std::uint64_t frame) override { writer_->begin_frame(frame); }
+    void write(std::span<const Pair> pairs, std::span<const Finding>) override { writer_->write(pairs); }
+    void end_frame() override { writer_->end_frame(); }
+    void finish() override { writer_->finish(); }
+
+private:
+    std::unique_ptr<io::PairWriter> writer_;
+};
+
+/// Collisions, into any number of files at once. Sets with shapes have no frames.
+class Collisions final : public FoundWriter {
+public:
+    Collisions(const io::CollisionNames& names, std::optional<io::Baseline> baseline)
+        : names_(names), baseline_(std::move(baseline)) {}
+
+    void add(std::unique_ptr<io::CollisionWriter> writer) { writers_.push_back(std::move(writer)); }
+    /// .npy holds pairs alone.
+    void add(std::unique_ptr<io::PairWriter> pairs) { pairs_ = std::move(pairs); }
+
+    void begin_frame(std::uint64_t frame) override {
+        if (pairs_) pairs_->begin_frame(frame);
+    }
+    void write(std::span<const Pair> pairs, std::span<const Finding> findings) override {
+        std::vector<io::Change> changes;
+        if (baseline_) changes = baseline_->compare(pairs, findings, names_);
+        for (const auto& writer : writers_) writer->write({pairs, findings, changes});
+        if (pairs_) pairs_->write(pairs);
+    }
+    void end_frame() override {
+        if (pairs_) pairs_->end_frame();
+    }
+    void finish() override {
+        if (baseline_) {
+            const std::vector<std::string_view> gone = baseline_->gone();
+            for (const auto& writer : writers_) writer->write_gone(gone);
+        }
+        for (const auto& writer : writers_) writer->finish();
+        if (pairs_) pairs_->finish();
+    }
+    std::optional<io::ChangeCounts> changes() const override {
+        return baseline_ ? std::optional(baseline_->counts()) : std::nullopt;
+    }
+
+private:
+    io::CollisionNames names_;
+    std::optional<io::Baseline> baseline_;
+    std::vector<std::unique_ptr<io::CollisionWriter>> writers_;
+    std::unique_ptr<io::PairWriter> pairs_;
+};
+
+io::ObjectNames names_of(const InputSet& set) {
+    if (set.scene.triangles) return {set.scene.triangles->owner_names, set.scene.triangles->owners};
+    return {set.scene.names};
+}
+
+bool is_npy(const DetectRequest& request) {
+    return !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
+}
+
+std::unique_ptr<io::PairWriter> make_pairs(const DetectRequest& request, const FoundIn& sets,
+                                           const std::stop_token& stop) {
+    const io::PairNames names{&sets.first.scene.names, &sets.second.scene.names};
+    if (!request.output.empty()) return io::make_file_writer(request.output, sets.moving, names);
+    return io::make_csv_writer(std::make_unique<io::StandardOutput>(stop), sets.moving);
+}
+
+std::unique_ptr<io::CollisionWriter> make_rows(const DetectRequest& request, const io::CollisionForm& form,
+                                               const std::stop_token& stop) {
+    if (!request.output.empty()) return io::make_collision_file_writer(request.output, form);
+    return io::make_collision_csv_writer(std::make_unique<io::StandardOutput>(stop), form);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string all;
+    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+    return all;
+}
+
+/// No times: the same result has the same page.
+std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
+                                                 const io::CollisionForm& form) {
+    io::ReportScene scene;
+    scene.title = joined(request.inputs) + (request.against.empty() ? "" : " against " + request.against);
+    scene.form = form;
+    scene.a = sets.first.frame(0).boxes;
+    scene.b = sets.second.frame(0).boxes;
+    scene.join = !request.against.empty();
+    auto report = std::make_unique<io::HtmlReport>(std::make_unique<io::AtomicFile>(request.pipeline.report), scene);
+    const std::uint64_t objects = sets.first.scene.objects + (scene.join ? sets.second.scene.objects : 0);
+    report->add_fact("objects", fmt::format("{}", objects));
+    if (request.margin > 0) report->add_fact("margin", fmt::format("{}", request.margin));
+    if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
+    if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
+    if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);
+    return report;
+}
+
+std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const FoundIn& sets,
+                                             const std::stop_token& stop) {
+    const PipelineRequest& asked = request.pipeline;
+    io::CollisionForm form;
+    form.names = {names_of(sets.first), names_of(sets.second)};
+    form.features = stage_of(request) == Stage::features;
+    form.times = sets.first.moves_meanwhile || sets.second.moves_meanwhile;
+    form.changes = !asked.baseline.empty();
+    std::optional<io::Baseline> baseline;
+    if (form.changes) baseline.emplace(asked.baseline, !request.against.empty(), stop);
+    auto collisions = std::make_unique<Collisions>(form.names, std::move(baseline));
+    if (is_npy(request)) {
+        collisions->add(make_pairs(request, sets, stop));
+    } else {
+        collisions->add(make_rows(request, form, stop));
+    }
+    if (!asked.report.empty()) collisions->add(make_report(request, sets, form));
+    return collisions;
+}
+
+}  // namespace
+
+std::unique_ptr<FoundWriter> make_found_writer(const DetectRequest& request, const FoundIn& sets,
+                                               const std::stop_token& stop) {
+    if (stage_of(request) == Stage::pairs) return std::make_unique<Pairs>(make_pairs(request, sets, stop));
+    return make_collisions(request, sets, stop);
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,124 @@
+#include "cli/output/piece_output.hpp"
+
+#include <array>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/boxes/npy_header.hpp"
+#include "io/files/atomic_file.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// Every rank writes its piece to where it belongs in a file of the first rank's, which the ranks' hosts must share.
+class SharedNpy final : public PieceOutput {
+public:
+    SharedNpy(Cluster& cluster, std::string path, bool moving)
+        : cluster_(cluster), path_(std::move(path)), moving_(moving) {
+        if (!moving_) open(path_);  // at once: what cannot be written is known before the work
+    }
+
+    void write(std::uint64_t frame, const PairList& piece) override {
+        write_piece(frame, io::NpyType::uint32, piece.size(), piece.chunks());
+    }
+    void write(std::uint64_t frame, std::span<const Pair64> piece) override {
+        write_piece(frame, io::NpyType::uint64, piece.size(), std::span<const std::span<const Pair64>>(&piece, 1));
+    }
+    void finish() override {}
+
+private:
+    // NOLINTNEXTLINE(readability-function-size): of which frame, what, how many, where.
+    template <typename AnyPair>
+    void write_piece(std::uint64_t frame, io::NpyType type, std::uint64_t pairs,
+                     std::span<const std::span<const AnyPair>> chunks) {
+        if (moving_) open(io::frame_path(path_, frame));
+        const std::vector<std::uint64_t> sizes = cluster_.comm().all_gather(pairs);
+        const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t(0));
+        const std::uint64_t before = std::accumulate(sizes.begin(), sizes.begin() + cluster_.rank(), std::uint64_t(0));
+        const std::string header = io::make_npy_header(type, std::array<std::uint64_t, 2>{all, 2});
+        cluster_.together([&] {
+            if (file_) file_->write(header);
+            std::uint64_t at = header.size() + before * sizeof(AnyPair);
+            for (const auto chunk : chunks) {
+                if (file_) file_->write(std::as_bytes(chunk));
+                if (part_) part_->write_at(std::exchange(at, at + chunk.size_bytes()), std::as_bytes(chunk));
+            }
+            if (part_) part_->sync();
+        });
+        cluster_.together([&] {
+            if (file_) file_->commit();
+            part_.reset();
+            file_.reset();
+        });
+    }
+    void open(const std::string& path) {
+        std::string temporary;
+        cluster_.together([&] {
+            if (!cluster_.first()) return;
+            file_.emplace(path, io::AtomicFile::Shared{});
+            temporary = file_->temporary();
+        });
+        temporary = cluster_.told_by_first(temporary);
+        cluster_.together([&] {
+            if (!cluster_.first()) part_.emplace(temporary, path);
+        });
+    }
+
+    Cluster& cluster_;
+    std::string path_;
+    bool moving_;
+    std::optional<io::AtomicFile> file_;  // the first rank's
+    std::optional<io::FilePart> part_;    // the others'
+};
+
+/// The first rank writes all.
+class RelayedOutput final : public PieceOutput {
+public:
+    RelayedOutput(Cluster& cluster, std::unique_ptr<io::PairWriter> writer)
+        : cluster_(cluster), writer_(std::move(writer)) {}
+
+    void write(std::uint64_t frame, const PairList& piece) override {
+        cluster_.together([&] {
+            if (writer_) writer_->begin_frame(frame);
+        });
+        cluster_.relay(piece, [&](std::span<const Pair> pairs) { writer_->write(pairs); });
+        cluster_.together([&] {
+            if (writer_) writer_->end_frame();
+        });
+    }
+    void write(std::uint64_t, std::span<const Pair64>) override {
+        throw Error(ErrorCode::usage, "indices of 64 bits go to .npy files alone");
+    }
+    void finish() override {
+        cluster_.together([&] {
+            if (writer_) writer_->finish();
+        });
+    }
+
+private:
+    Cluster& cluster_;
+    std::unique_ptr<io::PairWriter> writer_;  // the first rank's
+};
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): all of it goes to one of the two.
+std::unique_ptr<PieceOutput> make_piece_output(const DetectRequest& request, Cluster& cluster,
+                                               const io::PairNames& names, const std::stop_token& stop, bool moving) {
+    const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
+    if (npy) return std::make_unique<SharedNpy>(cluster, request.output, moving);
+    std::unique_ptr<io::PairWriter> writer;
+    cluster.together([&] {
+        if (!cluster.first()) return;
+        writer = request.output.empty() ? io::make_csv_writer(std::make_unique<io::StandardOutput>(stop), moving)
+                                        : io::make_file_writer(request.output, moving, names);
+    });
+    return std::make_unique<RelayedOutput>(cluster, std::move(writer));
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,145 @@
+#include "cli/output/report.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/command/numbers.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+/// The largest of this process, the child that read a mesh file, and the workers.
+std::uint64_t peak_rss_bytes() {
+    std::uint64_t peak = 0;
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        ::getrusage(who, &usage);
+        peak = std::max(peak, std::uint64_t(usage.ru_maxrss) * 1024);
+    }
+    return peak;
+}
+
+std::string duration(double seconds) {
+    return seconds < 0.1 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.3f} s", seconds);
+}
+
+std::string speed(double objects_per_second) {
+    return objects_per_second < 1e6 ? grouped(std::uint64_t(objects_per_second)) + " objects/s"
+                                    : fmt::format("{:.1f} million objects/s", objects_per_second / 1e6);
+}
+
+std::string plural(unsigned count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// Those that are known.
+nlohmann::ordered_json seconds_json(const DetectReport& report) {
+    nlohmann::ordered_json seconds = {
+        {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
+    if (!report.events) {
+        seconds["encode"] = report.steps.encode;
+        seconds["sort"] = report.steps.sort;
+        seconds["merge"] = report.steps.merge;
+        seconds["scan"] = report.steps.scan;
+        seconds["prepare"] = report.seconds.prepare;
+        seconds["filter"] = report.seconds.filter;
+    }
+    seconds["write"] = report.seconds.write;
+    if (report.verified) seconds["verify"] = report.seconds.verify;
+    return seconds;
+}
+
+nlohmann::ordered_json filters_json(const DetectReport& report) {
+    auto filters = nlohmann::ordered_json::array();
+    for (const FilterCounts& filter : report.filters) {
+        filters.push_back({{"name", filter.name}, {"in", filter.in}, {"out", filter.out}, {"seconds", filter.seconds}});
+    }
+    return filters;
+}
+
+/// Where time went.
+std::string time_text(const DetectReport& report) {
+    const DetectSeconds& seconds = report.seconds;
+    std::string text = fmt::format("time        {} = read {}", duration(seconds.total), duration(seconds.read));
+    if (!report.filters.empty()) text += fmt::format(" + prepare {}", duration(seconds.prepare));
+    text += fmt::format(" + detect {}", duration(seconds.detect));
+    if (!report.filters.empty()) text += fmt::format(" + filter {}", duration(seconds.filter));
+    if (report.verified) text += fmt::format(" + verify {}", duration(seconds.verify));
+    return text + fmt::format(" + write {} + other\n", duration(seconds.write));
+}
+
+/// The certificate: what was checked, and what was not.
+std::string verified_text(const DetectReport& report) {
+    if (!report.verified) return {};
+    std::string text = fmt::format("verified    {} {} by a second algorithm in {}", grouped(report.candidates),
+                                   report.filters.empty() ? "pairs" : "candidates", duration(report.seconds.verify));
+    if (!report.not_checked.empty()) text += fmt::format(" (not checked: {})", report.not_checked);
+    return text + '\n';
+}
+
+/// What each filter let through, and how long it took, on all threads together.
+std::string filters_text(const DetectReport& report) {
+    if (report.filters.empty()) return {};
+    std::string text = fmt::format("candidates  {}\n", grouped(report.candidates));
+    for (const FilterCounts& filter : report.filters) {
+        text += fmt::format("filter      {}: {} of {} in {}\n", filter.name, grouped(filter.out), grouped(filter.in),
+                            duration(filter.seconds));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string summary_text(const DetectReport& report) {
+    const DetectSeconds& seconds = report.seconds;
+    const StepSeconds& steps = report.steps;
+    std::string text = fmt::format("objects     {}", grouped(report.objects));
+    if (report.moving) text += fmt::format(" in each of {} frames", grouped(report.frames));
+    text += fmt::format("\npairs       {}", grouped(report.pairs));
+    if (report.events) {
+        text += fmt::format("\nevents      {} began, {} ended", grouped(report.events->began),
+                            grouped(report.events->ended));
+    }
+    text += report.truncated ? " (the limit was reached; more exist)\n" : "\n";
+    if (report.changes) {
+        text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
+                            grouped(report.changes->same), grouped(report.changes->gone));
+    }
+    text += filters_text(report) + verified_text(report) + time_text(report);
+    if (!report.events) {
+        text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
+                            duration(steps.sort), duration(steps.merge), duration(steps.scan));
+    }
+    const double objects = double(report.objects) * double(report.frames);
+    if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
+    const EngineCrew& crew = report.crew;
+    if (!crew.server.empty()) return text + fmt::format(" on server {}\n", crew.server);
+    if (crew.ranks > 0) {
+        return text + fmt::format(" on {} with {} each\n", plural(crew.ranks, "rank"), plural(crew.threads, "thread"));
+    }
+    return text + " on " + (crew.workers > 0 ? plural(crew.workers, "worker") : plural(crew.threads, "thread")) + '\n';
+}
+
+std::string stats_json(const DetectReport& report) {
+    nlohmann::ordered_json stats = {
+        {"objects", report.objects},          {"frames", report.frames},        {"pairs", report.pairs},
+        {"truncated", report.truncated},      {"verified", report.verified},    {"engine", report.crew.engine},
+        {"threads", report.crew.threads},     {"workers", report.crew.workers}, {"entries", report.entries},
+        {"peak_rss_bytes", peak_rss_bytes()}, {"seconds", seconds_json(report)}};
+    if (!report.not_checked.empty()) stats["not_checked"] = report.not_checked;
+    if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
+    if (!report.crew.server.empty()) stats["server"] = report.crew.server;
+    if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});
+    if (report.changes) {
+        const io::ChangeCounts& changes = *report.changes;
+        stats.update({{"new", changes.begun}, {"same", changes.same}, {"gone", changes.gone}});
+    }
+    if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
+    return stats.dump(2) + '\n';
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,53 @@
+// octopair serve: the server.
+#include <malloc.h>
+
+#include <memory>
+
+#include "cli/command/interrupt.hpp"
+#include "cli/server/serve_options.hpp"
+#include "cli/server/serving.hpp"
+#include "cli/subcommands.hpp"
+
+#ifdef OCTOPAIR_WITH_MPI
+#include "cli/server/rank_serving.hpp"
+#endif
+
+namespace octopair::cli {
+
+namespace {
+
+/// What an upload gave back serves the next one: memory that the system takes meanwhile has to be cleared again, which takes as
+/// long as all else that the server does with the bytes.
+void keep_freed_memory() {
+    mallopt(M_MMAP_THRESHOLD, 2 << 20);
+    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+}
+
+int run_serve(const ServeRequest& request) {
+    keep_freed_memory();
+#ifdef OCTOPAIR_WITH_MPI
+    if (request.engine.kind == EngineKind::mpi) return serve_on_ranks(request);
+#endif
+    const Interrupt interrupt;
+    const auto log = make_log(request);
+    const service::ServerOptions options = server_options_of(request);
+    service::Server server(options, log);
+    tell_start(*log, server, options);
+    wait_for(interrupt.token());
+    drain(*log, server);
+    return 0;
+}
+
+}  // namespace
+
+void add_serve(Command& program, Action& action) {
+    Command command = program.add_subcommand("serve", "find pairs for others: a server");
+    const auto request = std::make_shared<ServeRequest>();
+    add_serve_options(command, *request);
+    command.callback([command, request, &action] {
+        complete_serve_request(command, *request);
+        action = [request] { return run_serve(*request); };
+    });
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,73 @@
+#include "cli/server/server_choice.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "cli/command/command.hpp"
+#include "cli/command/numbers.hpp"
+#include "octopair/error.hpp"
+#include "service/protocol/private_file.hpp"
+
+namespace octopair::cli {
+
+void add_server_options(Command& command, ServerChoice& choice) {
+    command
+        .add_option("--token-file", choice.token_file,
+                    "of a server: holds the token that it wants (default: $OCTOPAIR_TOKEN)")
+        .type_name("FILE");
+    command.add_flag("--tls", choice.options.tls, "of a server: encrypt, and trust the system's authorities");
+    command.add_option("--tls-authority", choice.options.authority, "of a server: encrypt, and trust this authority")
+        .type_name("FILE.pem");
+    command.add_option("--tls-certificate", choice.options.certificate, "of a server: our own certificate")
+        .type_name("FILE.pem");
+    command.add_option("--tls-key", choice.options.key, "of a server: the key of our certificate")
+        .type_name("FILE.pem");
+    command
+        .add_option(
+            "--patience", [&choice](const std::string& text) { choice.patience = parse_length("--patience", text); },
+            "of a server that was there: how long it may be away (default 30)")
+        .type_name("SECONDS");
+}
+
+void add_server_address(Command& command, ServerChoice& choice) {
+    command.add_option("--server", choice.address, "the server: unix:PATH or HOST:PORT (default: $OCTOPAIR_SERVER)")
+        .environment("OCTOPAIR_SERVER")
+        .type_name("ADDRESS");
+    add_server_options(command, choice);
+}
+
+void check_server_named(const ServerChoice& choice) {
+    if (choice.address.empty()) {
+        throw Error(ErrorCode::usage, "no server was named; give --server ADDRESS, or set OCTOPAIR_SERVER");
+    }
+}
+
+void check_server_choice(const ServerChoice& choice) {
+    if (!choice.address.empty()) return;
+    const ClientOptions& options = choice.options;
+    const char* given = nullptr;
+    if (!choice.token_file.empty()) given = "--token-file";
+    if (options.tls) given = "--tls";
+    if (!options.authority.empty()) given = "--tls-authority";
+    if (!options.certificate.empty()) given = "--tls-certificate";
+    if (!options.key.empty()) given = "--tls-key";
+    if (choice.patience) given = "--patience";
+    if (given != nullptr) throw Error(ErrorCode::usage, std::string(given) + ": no server is asked (--engine ADDRESS)");
+}
+
+ClientOptions client_options(const ServerChoice& choice) {
+    constexpr double longest = 1e9;  // what a clock can add
+    // What gRPC would write to standard error, our errors say.
+    ::setenv("GRPC_VERBOSITY", "NONE", 0);
+    ClientOptions options = choice.options;
+    if (choice.patience)
+        options.patience = std::chrono::milliseconds(std::int64_t(std::min(*choice.patience, longest) * 1e3));
+    const char* const token = std::getenv("OCTOPAIR_TOKEN");
+    if (!choice.token_file.empty())
+        options.token = service::read_token(choice.token_file);
+    else if (token != nullptr)
+        options.token = token;
+    return options;
+}
+
+}  // namespace octopair::cli

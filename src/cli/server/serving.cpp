@@ -1,0 +1,71 @@
+#include "cli/server/serving.hpp"
+
+#include <spdlog/logger.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+
+#include "octopair/version.hpp"
+
+#ifdef OCTOPAIR_WITH_PROCESSES
+#include "octopair/processes.hpp"
+#endif
+
+namespace octopair::cli {
+
+service::ServerOptions server_options_of(const ServeRequest& request) {
+    service::ServerOptions options = request.options;
+    const EngineCrew crew = crew_of(request.engine);
+    options.engine_name = crew.engine;
+    const unsigned width = crew.threads + crew.workers;
+    // A worker process is woken for every job anyway.
+    options.lanes = {width, width, request.engine.kind == EngineKind::local ? width : 0};
+    options.engine = [choice = request.engine](unsigned workers) {
+        EngineChoice one = choice;
+        (one.kind == EngineKind::processes ? one.workers : one.threads) = workers;
+        return make_engine(one);
+    };
+#ifdef OCTOPAIR_WITH_PROCESSES
+    if (request.engine.kind == EngineKind::processes) {
+        options.worker_faults = [](const Engine& engine) {
+            const WorkerFaults faults = worker_faults(engine);
+            return faults.ended + faults.stopped;
+        };
+    }
+#endif
+    return options;
+}
+
+std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request) {
+    auto log = service::make_log(request.log_form);
+    service::take_grpc_log(log);
+    log->set_level(spdlog::level::from_str(request.quiet ? "err" : request.log_level));
+    return log;
+}
+
+void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
+                const std::vector<service::Field>& more) {
+    std::vector<service::Field> fields = {{"address", server.address().text()},
+                                          {"version", OCTOPAIR_VERSION},
+                                          {"engine", options.engine_name},
+                                          {"width", std::uint64_t(options.lanes.large)}};
+    fields.insert(fields.end(), more.begin(), more.end());
+    service::log_event(log, service::LogLevel::info, "started", fields);
+}
+
+void wait_for(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any changed;
+    std::unique_lock lock(mutex);
+    changed.wait(lock, stop, [] { return false; });
+}
+
+void drain(spdlog::logger& log, service::Server& server) {
+    service::log_text(log, service::LogLevel::info, "stopping: no more jobs are taken");
+    server.drain();
+    service::log_text(log, service::LogLevel::info, "stopped");
+}
+
+}  // namespace octopair::cli

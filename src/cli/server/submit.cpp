@@ -1,0 +1,90 @@
+// octopair submit: a scene's pairs as a detached job of a server's.
+#include <memory>
+#include <optional>
+
+#include "cli/command/interrupt.hpp"
+#include "cli/command/progress_line.hpp"
+#include "cli/detect/detect_options.hpp"
+#include "cli/input/input_set.hpp"
+#include "cli/input/join.hpp"
+#include "cli/server/server_choice.hpp"
+#include "cli/subcommands.hpp"
+#include "io/files/output_stream.hpp"
+#include "octopair/error.hpp"
+#include "octopair/job_client.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/input/shaped_set.hpp"
+#endif
+
+namespace octopair::cli {
+
+namespace {
+
+struct SubmitRequest {
+    DetectRequest what;
+    ServerChoice server;
+    std::string id;
+};
+
+InputSet read_still_set(const std::vector<std::string>& paths, const DetectRequest& what, const std::stop_token& stop) {
+    InputSet set = read_input_set(paths, {what.mesh_objects}, stop);
+    if (set.scene.moving) throw Error(ErrorCode::usage, paths.front() + ": a job is of one frame; this scene moves");
+    return set;
+}
+
+std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
+    const DetectRequest& what = request.what;
+    ProgressLine progress(!what.quiet);
+    JobClient client(request.server.address, client_options(request.server));
+    InputSet inputs = read_still_set(what.inputs, what, stop), against;
+    if (!what.against.empty()) against = read_still_set({what.against}, what, stop);
+#ifdef OCTOPAIR_WITH_PIPELINE
+    make_shaped(inputs, against, 0, stop);
+#endif
+    const Paddings padding(what, {inputs.scene.objects, against.scene.objects}, stop);
+    if (!what.padding.empty()) {
+        inputs.padding = padding.inputs();
+        against.padding = padding.against();
+    }
+    for (const InputSet* set : {&inputs, &against}) {
+        if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, *fault);
+    }
+    Options options;
+    options.order = what.order;
+    options.margin = what.margin;
+    options.limit = what.limit;
+    options.progress = [&progress](double done) { progress.show("sending", done); };
+    const JobTerms terms = {request.id, what.count_only};
+    const Objects first = inputs.frame(0), second = against.frame(0);
+    return what.against.empty() ? client.submit(first, options, terms, stop)
+                                : client.submit_between(first, second, options, terms, stop);
+}
+
+int run_submit(const SubmitRequest& request) {
+    const Interrupt interrupt;
+    const std::string id = submit(request, interrupt.token());
+    io::StandardOutput out(interrupt.token());
+    out.write(id + '\n');
+    out.commit();
+    return 0;
+}
+
+}  // namespace
+
+void add_submit(Command& program, Action& action) {
+    Command command = program.add_subcommand("submit", "have a server find pairs, and collect them later");
+    const auto request = std::make_shared<SubmitRequest>();
+    add_scene_options(command, request->what);
+    add_order_options(command, request->what, "the first N pairs");
+    command.add_flag("--count-only", request->what.count_only, "the number of pairs alone");
+    command.add_option("--id", request->id, "the job's name; again: the same job (default: a random one)")
+        .type_name("UUID");
+    add_server_address(command, request->server);
+    command.add_flag("--quiet", request->what.quiet, "no progress on standard error");
+    command.callback([request, &action] {
+        check_server_named(request->server);
+        action = [request] { return run_submit(*request); };
+    });
+}
+
+}  // namespace octopair::cli

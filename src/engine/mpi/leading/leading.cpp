@@ -1,0 +1,234 @@
+#include "engine/mpi/leading/leading.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/stop.hpp"
+#include "base/timed.hpp"
+#include "engine/job_queue.hpp"
+#include "engine/mpi/comm/communicator.hpp"
+#include "engine/mpi/comm/pulse.hpp"
+#include "engine/mpi/leading/dealing.hpp"
+#include "engine/mpi/rank_search.hpp"
+#include "engine/turns.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// What each rank has, whether it leads or follows.
+class Company {
+public:
+    Company(MPI_Comm comm, const LeadingOptions& options)
+        : told_(comm),
+          searched_(comm),
+          pulse_(told_, options.silence),
+          search_(searched_, {.threads = options.threads}, [this] { pulse_.beat(); }) {}
+
+    Communicator& told() { return told_; }
+    Pulse& pulse() { return pulse_; }
+    /// Rank 0 gives the assignment, the others get it.
+    void tell(Assignment& assignment) { told_.broadcast(std::span(&assignment, 1), 0); }
+    /// A call has begun: until it is over, ranks that wait show that they do.
+    void begin() {
+        pulse_.begin();
+        told_.set_meanwhile([this] { pulse_.beat(); });
+    }
+    /// Collective. `request`: on rank 0, null on the others.
+    Summary find(const Assignment& assignment, const Engine::Request* request, const Engine::Output& output,
+                 const Engine::Control& control);
+
+private:
+    Communicator told_, searched_;  // of what is told and dealt out, and of the search
+    Deal deal_{told_};
+    Pulse pulse_;
+    RankSearch search_;
+};
+
+Summary Company::find(const Assignment& assignment, const Engine::Request* request, const Engine::Output& output,
+                      const Engine::Control& control) {
+    deal_.make(assignment, request, control.stop);
+    const Options options = assignment.options();
+    const Objects* const second = assignment.join ? &deal_.slice(1) : nullptr;
+    return search_.run({deal_.slice(0), second, options}, output, control, Recipients::first);
+}
+
+/// What the caller's functions threw. Ranks tell each other but the words of it; the caller shall have it as it was.
+class Captured {
+public:
+    template <typename... Arguments>
+    std::function<void(Arguments...)> wrap(const std::function<void(Arguments...)>& function) {
+        if (!function) return {};
+        return [this, &function](Arguments... arguments) {
+            try {
+                function(arguments...);
+            } catch (...) {
+                const std::lock_guard lock(mutex_);
+                if (!failure_) failure_ = std::current_exception();
+                throw;
+            }
+        };
+    }
+    void rethrow() {
+        const std::lock_guard lock(mutex_);
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+private:
+    std::mutex mutex_;
+    std::exception_ptr failure_;
+};
+
+[[noreturn]] void wait_for_stop(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any stopped;
+    std::unique_lock lock(mutex);
+    (void)stopped.wait(lock, stop, [] { return false; });
+    throw Error(ErrorCode::cancelled, "cancelled");
+}
+
+class Leader {
+public:
+    Leader(MPI_Comm comm, const LeadingOptions& options) : company_(comm, options), lost_(options.lost) {}
+    Leader(const Leader&) = delete;
+    Leader& operator=(const Leader&) = delete;
+    ~Leader();
+
+    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
+
+private:
+    void look_for_lost();
+
+    Company company_;
+    std::function<void(const std::string&)> lost_;
+};
+
+/// The others end with it.
+Leader::~Leader() {
+    if (company_.pulse().lost()) return;
+    try {
+        company_.begin();
+        Assignment none;
+        company_.tell(none);
+        company_.pulse().end();
+    } catch (const std::exception&) {
+        look_for_lost();
+    }
+}
+
+void Leader::look_for_lost() {
+    if (company_.pulse().lost() && lost_) lost_(*company_.pulse().lost());
+}
+
+Summary Leader::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
+    if (company_.pulse().lost()) wait_for_stop(control.stop);
+    Summary summary;
+    Captured captured;
+    const ProgressSink progress = captured.wrap(control.progress);
+    const PairSink sink = output.sink == nullptr ? PairSink() : captured.wrap(*output.sink);
+    try {
+        Assignment assignment = Assignment::of(request, outlet_of(output));
+        company_.begin();
+        company_.tell(assignment);
+        summary = company_.find(assignment, &request, {output.list, output.sink == nullptr ? nullptr : &sink},
+                                {control.stop, progress});
+    } catch (...) {
+        look_for_lost();
+        captured.rethrow();
+        throw;
+    }
+    return summary;
+}
+
+class LeadingEngine final : public Engine {
+public:
+    LeadingEngine(MPI_Comm comm, const LeadingOptions& options) : leader_(comm, options) {}
+
+private:
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        const Turns::Turn turn(turns_, control.stop);
+        double seconds = 0;
+        Summary summary;
+        {
+            const Timed timed(seconds);
+            summary = leader_.run(request, output, control);
+        }
+        summary.seconds = seconds;
+        return summary;
+    }
+    JobQueue& jobs() override { return jobs_; }
+
+    Turns turns_;
+    Leader leader_;
+    JobQueue jobs_{*this};  // the last, so that it ends first
+};
+
+/// Whoever waits for long sleeps for long, but no longer than a person notices.
+class Nap {
+public:
+    void operator()() const {
+        constexpr std::chrono::milliseconds awake(1), longest(5);
+        const auto waited = std::chrono::steady_clock::now() - begun_;
+        if (waited > awake) std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / 8, longest));
+    }
+
+private:
+    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
+
+/// A rank that is not the first.
+class Follower {
+public:
+    Follower(MPI_Comm comm, const LeadingOptions& options) : company_(comm, options) {}
+
+    void run() {
+        for (Assignment next = wait(); !next.end; next = wait()) take_part(next);
+        company_.pulse().end();
+    }
+
+private:
+    Assignment wait() {
+        Assignment next;
+        company_.told().set_meanwhile(Nap());
+        company_.tell(next);
+        company_.begin();
+        return next;
+    }
+
+    void take_part(const Assignment& assignment) {
+        PairList list;
+        const PairSink nothing = [](std::span<const Pair>) {};
+        const Engine::Output output = {assignment.outlet == Outlet::list ? &list : nullptr,
+                                       assignment.outlet == Outlet::sink ? &nothing : nullptr};
+        const ProgressSink nobody;
+        try {
+            (void)company_.find(assignment, nullptr, output, {{}, nobody});
+        } catch (const Error&) {
+            return;  // rank 0 tells it to its caller
+        }
+    }
+
+    Company company_;
+};
+
+}  // namespace
+
+void check_leading_threads() {
+    int level = 0;
+    MPI_Query_thread(&level);
+    if (level >= MPI_THREAD_SERIALIZED) return;
+    throw Error(ErrorCode::engine_failed, "MPI allows calls from one thread alone (no MPI_THREAD_SERIALIZED)");
+}
+
+std::unique_ptr<Engine> make_leading_engine(MPI_Comm comm, const LeadingOptions& options) {
+    return std::make_unique<LeadingEngine>(comm, options);
+}
+
+void follow(MPI_Comm comm, const LeadingOptions& options) { Follower(comm, options).run(); }
+
+}  // namespace octopair

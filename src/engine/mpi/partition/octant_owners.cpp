@@ -1,0 +1,35 @@
+#include "engine/mpi/partition/octant_owners.hpp"
+
+#include <algorithm>
+
+#include "engine/mpi/partition/even_cuts.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr double tested_an_entry = 64;  // boxes that a sweep tests while all else is done for an entry; measured
+
+/// A sweep tests each entry against those that it meets on its axis.
+std::uint64_t work_of(const OctantLoad& load, unsigned level) {
+    const double met = double(load.extent) / double(cells_per_axis >> level);
+    return std::uint64_t(double(load.entries) * (tested_an_entry + met));
+}
+
+std::vector<std::uint64_t> work_of(const Directory& directory, std::span<const OctantLoad> loads) {
+    std::vector<std::uint64_t> work(loads.size());
+    for (std::size_t node = 0; node < work.size(); ++node)
+        work[node] = work_of(loads[node], directory.nodes()[node].level);
+    return work;
+}
+
+}  // namespace
+
+OctantOwners::OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks)
+    : directory_(directory), begins_(even_cuts(work_of(directory, loads), ranks)), owners_(loads.size()) {
+    for (unsigned rank = 0; rank < ranks; ++rank) {
+        std::fill(owners_.begin() + begin(rank), owners_.begin() + end(rank), rank);
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,222 @@
+#include "engine/mpi/partition/routing.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+#include "boxes/box_kernel.hpp"
+#include "octree/build/octants_of.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t most_batch = default_tuning.ranks.batch;
+constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): what is routed, where, with which memory, until when.
+Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
+                 std::stop_token stop)
+    : call_(call),
+      source_(source),
+      octants_(octants),
+      stop_(std::move(stop)),
+      blocks_(memory.blocks_),
+      places_(memory.places_) {
+    counted_stride_ = std::max<std::size_t>(1, source.size() / tuning().ranks.counted);
+    places_.resize_discard(source.size());
+    const std::size_t objects_a_block = tuning().ranks.block;
+    std::size_t count = 0, end = 0;
+    for (unsigned set = 0; set < 2; ++set) {
+        std::size_t begin = end;
+        end += std::size_t(call.sizes[set]);
+        for (; begin < end; begin += objects_a_block) {
+            if (count == blocks_.size()) blocks_.emplace_back();
+            blocks_[count++].begin(set, {begin, std::min(begin + objects_a_block, end)});
+        }
+    }
+    blocks_.resize(count);
+}
+
+void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
+    // Loads are as long as the tree: one copy for each thread, none for one alone.
+    const std::size_t shares = std::min<std::size_t>(executor.width(), blocks_.size());
+    std::mutex mutex;
+    executor.for_each(shares, [&](std::size_t share) {
+        std::vector<OctantLoad> copy(shares > 1 ? loads.size() : 0);
+        const std::span<OctantLoad> own = shares > 1 ? std::span(copy) : loads;
+        for (std::size_t i = share; i < blocks_.size(); i += shares) find(blocks_[i], own);
+        const std::lock_guard lock(mutex);
+        for (std::size_t node = 0; node < copy.size(); ++node) loads[node].add(copy[node]);
+    });
+    for (OctantLoad& load : loads) load.multiply(counted_stride_);
+    for (const Block& block : blocks_) {
+        if (block.bad) call_.refuse(source_, *block.bad);
+    }
+}
+
+namespace {
+
+/// The cells of objects [begin, begin + cells.size()) of a source; false if one of them is not a box.
+bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, std::span<CellBox> cells) {
+    if (const auto boxes = source.plain(begin, cells.size()); !boxes.empty()) {
+        frame.cells(boxes, cells);
+        return are_boxes(boxes);
+    }
+    std::array<Entry, most_batch> entries;
+    const std::span<Entry> loaded = std::span(entries).first(cells.size());
+    const bool good = source.load(begin, loaded);
+    frame.cells(loaded, cells);
+    return good;
+}
+
+}  // namespace
+
+void Routing::find(Block& block, std::span<OctantLoad> loads) {
+    const Directory& directory = octants_.directory;
+    const std::size_t batch_size = tuning().ranks.batch;
+    std::array<CellBox, most_batch> cells, ends;
+    std::array<Directory::Leaf, most_batch> homes, end_leaves;
+    std::array<std::uint32_t, most_batch> crossers;
+    for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
+        if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
+        const std::size_t count = std::min(batch_size, block.objects.end - begin);
+        if (!load_cells(source_, octants_.frame, begin, std::span(cells).first(count))) {
+            block.bad = begin;
+            return;
+        }
+        directory.leaves(std::span(cells).first(count), homes);
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            // No branch on whether a box crosses, which nothing foretells.
+            const bool crosses = !within(cells[i], homes[i].level());
+            places_[begin + i] = homes[i].node();
+            crossers[crossing] = std::uint32_t(i);
+            crossing += crosses ? 1 : 0;
+        }
+        const bool counted = begin / batch_size % counted_stride_ == 0;
+        for (std::size_t i = 0; counted && i < count; ++i) loads[homes[i].node()].add(cells[i]);
+        for (std::size_t i = 0; i < crossing; ++i) ends[i].lo = cells[crossers[i]].hi;
+        directory.leaves(std::span(ends).first(crossing), end_leaves);
+        for (std::size_t i = 0; i < crossing; ++i) {
+            const std::uint32_t object = crossers[i];
+            if (counted) loads[end_leaves[i].node()].add(cells[object]);
+            block.crossers.push_back(
+                {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
+        }
+    }
+}
+
+void Routing::address(Executor& executor, const OctantOwners& owners) {
+    owners_ = &owners;
+    several_ = owners.ranks();
+    executor.for_each(blocks_.size(), [&](std::size_t i) { address(blocks_[i]); });
+}
+
+void Routing::address(Block& block) {
+    block.counts.assign(several_ + 1, 0);
+    for (std::size_t i = block.objects.begin; i < block.objects.end; ++i) {
+        places_[i] = owners_->owner(places_[i]);
+        ++block.counts[places_[i]];
+    }
+    std::vector<Crosser> shared;
+    for (const Crosser& crosser : block.crossers) {
+        std::uint32_t& place = places_[crosser.object];
+        --block.counts[place];
+        place = owners_->is_shared(crosser.reach) ? several_ : owners_->owner(crosser.reach.first);
+        ++block.counts[place];
+        if (place == several_) shared.push_back(crosser);
+    }
+    block.counts.pop_back();
+    share(block, shared);
+}
+
+void Routing::share(Block& block, std::span<const Crosser> crossers) const {
+    // Between the first and the last octant of a reach there may be some that the box does not touch.
+    std::vector<std::size_t> unclear;
+    for (const Crosser& crosser : crossers) {
+        if (!crosser.reach.only) unclear.push_back(crosser.object);
+    }
+    std::vector<Entry> entries(unclear.size());
+    source_.pick(unclear, entries);
+    std::vector<CellBox> cells(unclear.size());
+    octants_.frame.cells(entries, cells);
+
+    const CellBox* next = cells.data();
+    std::vector<std::uint32_t> owners;
+    for (const Crosser& crosser : crossers) {
+        owners = {owners_->owner(crosser.reach.first), owners_->owner(crosser.reach.last)};
+        if (!crosser.reach.only) {
+            owners.clear();
+            owners_->for_each_owner(*next, octants_.directory.leaf(next->lo),
+                                    [&](std::uint32_t owner) { owners.push_back(owner); });
+            std::ranges::sort(owners);
+            owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+            ++next;
+        }
+        block.owners.push_back(std::uint32_t(owners.size()));
+        block.owners.insert(block.owners.end(), owners.begin(), owners.end());
+        if (owners.size() > 1) count_path(Path::object_on_ranks);
+        block.shared += owners.size() > 1 ? 1 : 0;
+        for (const std::uint32_t owner : owners) ++block.counts[owner];
+    }
+}
+
+RankCounts Routing::counts(unsigned set) const {
+    RankCounts all(owners_->ranks(), 0);
+    for (const Block& block : blocks_) {
+        if (block.set == set) std::ranges::transform(all, block.counts, all.begin(), std::plus<>());
+    }
+    return all;
+}
+
+std::uint64_t Routing::shared_objects() const {
+    std::uint64_t objects = 0;
+    for (const Block& block : blocks_) objects += block.shared;
+    return objects;
+}
+
+/// Calls place(object, where), objects ascending; next[rank] is where the next of a rank's goes.
+template <typename Place>
+void Routing::for_each_copy(const Block& block, RankCounts& next, const Place& place) const {
+    const std::uint32_t* owners = block.owners.data();
+    for (std::size_t object = block.objects.begin; object < block.objects.end; ++object) {
+        if (places_[object] != several_) {
+            place(object, next[places_[object]]++);
+        } else {
+            for (std::uint32_t left = *owners++; left > 0; --left) place(object, next[*owners++]++);
+        }
+    }
+}
+
+void Routing::pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const {
+    // Where each block's go: by rank, then by block.
+    std::vector<RankCounts> places(blocks_.size(), RankCounts(owners_->ranks()));
+    std::uint64_t at = 0;
+    for (unsigned rank = 0; rank < owners_->ranks(); ++rank) {
+        for (std::size_t b = 0; b < blocks_.size(); ++b) {
+            if (blocks_[b].set != set) continue;
+            places[b][rank] = at;
+            at += blocks_[b].counts[rank];
+        }
+    }
+    out.resize(std::size_t(at));
+    const std::size_t begin = set == 0 ? 0 : std::size_t(call_.sizes[0]);
+    out.copying(objects, [&](const auto& copy) {
+        out.naming(call_.indices[set], call_.begins[set], [&](const auto& name) {
+            executor.for_each(blocks_.size(), [&](std::size_t b) {
+                if (blocks_[b].set != set) return;
+                for_each_copy(blocks_[b], places[b], [&](std::size_t object, std::uint64_t to) {
+                    copy(std::size_t(to), object - begin);
+                    name(std::size_t(to), object - begin);
+                });
+            });
+        });
+    });
+}
+
+}  // namespace octopair

@@ -1,0 +1,185 @@
+#include "engine/processes/client/process_passes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+#include "engine/processes/client/ring_reader.hpp"
+#include "octopair/error.hpp"
+#include "octree/linear_octree.hpp"
+
+namespace octopair {
+
+namespace {
+
+[[noreturn]] void throw_damaged_result() {
+    throw Error(ErrorCode::engine_failed, "what worker processes left in shared memory makes no sense");
+}
+
+}  // namespace
+
+ProcessPasses::ProcessPasses(Crew& crew, const SharedArrays& arrays) : crew_(crew), inputs_(arrays) {}
+
+void ProcessPasses::build(Call& call, double) {
+    if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
+    regions_ = {arena_};
+    pass_ = {};
+    inputs_.place(call, crew_, pass_, regions_);
+    pass_.job = crew_.begin_job();
+    pass_.workers = unsigned(
+        std::clamp<std::uint64_t>(call.source.size() / tuning().processes.objects_per_worker, 1, crew_.workers()));
+    pass_.margin = call.request.options.margin;
+    pass_.arena_region = arena_->number;
+}
+
+/// Sends the workers on the errand that pass_ is, with their pairs to the region `pairs`.
+void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch) {
+    pass_.pairs_region = pairs->number;
+    std::vector<std::shared_ptr<Region>> needed = regions_;
+    needed.push_back(pairs);
+    // The steps before the scan are told together with it.
+    call.progress.stage(progress, std::max<std::uint64_t>(1, call.source.size() * 5 / 4));
+    std::uint64_t shown = 0;
+    watch.stop = call.stop.get_token();
+    watch.look = [&, look = std::move(watch.look)] {
+        show_progress(call, shown);
+        if (look) look();
+    };
+    try {
+        (void)crew_.run(pass_, needed, watch);
+    } catch (const LinearOctree::Invalid& invalid) {
+        call.source.refuse(std::min(invalid.begin, std::size_t(call.source.size())));
+    } catch (const OverBudget&) {
+        pass_.built = 1;
+        throw;
+    }
+    take_results(call);
+    pass_.built = 1;
+}
+
+void ProcessPasses::show_progress(Call& call, std::uint64_t& shown) {
+    std::uint64_t scanned = 0;
+    for (unsigned slot = 0; slot < pass_.workers; ++slot) scanned += crew_.view().slot(slot).entries_scanned.load();
+    if (scanned > shown) call.progress.add(scanned - std::exchange(shown, scanned));
+}
+
+/// Times are those of the slowest worker: the steps end together.
+void ProcessPasses::take_results(Call& call) {
+    StepSeconds steps;
+    for (unsigned i = 0; i < pass_.workers; ++i) {
+        const Slot& slot = crew_.view().slot(i);
+        steps.encode = std::max(steps.encode, slot.encode_seconds);
+        steps.sort = std::max(steps.sort, slot.sort_seconds);
+        steps.merge = std::max(steps.merge, slot.merge_seconds);
+        steps.scan = std::max(steps.scan, slot.scan_seconds);
+        call.summary.entries = slot.entries;
+    }
+    if (pass_.built == 0) {
+        call.summary.steps.encode = steps.encode;
+        call.summary.steps.sort = steps.sort;
+        call.summary.steps.merge = steps.merge;
+    }
+    call.summary.steps.scan += steps.scan;
+}
+
+std::span<Share> ProcessPasses::shares_done() {
+    const auto shares = crew_.view().shares(0, crew_.shares());
+    for (const Share& share : shares) {
+        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) throw_damaged_result();
+    }
+    return shares;
+}
+
+/// A region that no list holds any more.
+std::shared_ptr<Region> ProcessPasses::free_pairs() {
+    auto found = std::find_if(pairs_.begin(), pairs_.end(), [](const auto& region) { return region.use_count() == 1; });
+    if (found == pairs_.end()) {
+        pairs_.push_back(crew_.add_region(SharedMemory::create(roomy_bytes())));
+        found = pairs_.end() - 1;
+    }
+    return *found;
+}
+
+std::uint64_t ProcessPasses::count(Call& call, double progress) {
+    pass_.kind = PassKind::count;
+    run(call, progress, free_pairs(), {});
+    std::uint64_t all = 0;
+    for (const Share& share : shares_done()) all += share.pairs;
+    return all;
+}
+
+/// Counting cannot be done again for one share, which may have been counted in part: where a worker is lost, all of it is.
+void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
+    struct Again {};
+    pass_.kind = PassKind::count_by_object;
+    const auto pairs = free_pairs();
+    for (bool again = true; again;) {
+        try {
+            PassWatch watch;
+            watch.lost = [](unsigned) { throw Again{}; };
+            run(call, progress, pairs, std::move(watch));
+            again = false;
+        } catch (const Again&) {
+        }
+    }
+    const std::uint64_t place = crew_.view().slot(0).number;
+    if (place % alignof(std::uint32_t) != 0) throw_damaged_result();
+    std::copy_n(arena_->memory.array<std::uint32_t>(place, counts.size()), counts.size(), counts.begin());
+}
+
+void ProcessPasses::list_octal(Call& call, PairList::Storage& list, double progress) {
+    pass_.kind = PassKind::list_octal;
+    const auto pairs = free_pairs();
+    run(call, progress, pairs, {});
+    append_runs(list, pairs);
+}
+
+void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds,
+                                   double progress) {
+    pass_.kind = PassKind::list_ascending;
+    pass_.bounds = bounds;
+    const auto pairs = free_pairs();
+    run(call, progress, pairs, {});
+    append_runs(list, pairs);
+}
+
+/// The list keeps the memory that the workers wrote to, or gets a copy.
+void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs) {
+    const DeskView& view = crew_.view();
+    const std::uint64_t written = view.desk().next_block.load();
+    if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged_result();
+    const std::span<const Pair> all{pairs->memory.array<const Pair>(0, written * list_block_pairs),
+                                    std::size_t(written * list_block_pairs)};
+    std::vector<std::span<const Pair>> runs;
+    std::uint64_t size = 0;
+    for (const Share& share : shares_done()) {
+        for (const Run& run : view.runs(share.first_run, share.runs)) {
+            if (run.begin > all.size() || run.count > all.size() - run.begin) throw_damaged_result();
+            runs.push_back(all.subspan(run.begin, run.count));
+            size += run.count;
+        }
+    }
+    const bool keep = size >= tuning().processes.worth_keeping && pairs_.size() <= tuning().processes.kept_regions;
+    count_path(keep ? Path::region_kept : Path::region_copied);
+    if (keep) list.keep(pairs);
+    for (const auto run : runs) list.append(keep ? run : list.copy(run));
+}
+
+void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double progress) {
+    pass_.kind = PassKind::stream_octal;
+    const auto pairs = free_pairs();
+    const RingSize size = ring_size(call.buffer_pairs(), pass_.workers);
+    pass_.ring_blocks = size.blocks;
+    pass_.block_pairs = size.block_pairs;
+    RingReader reader(crew_, pairs->memory, pass_, deliver);
+    PassWatch watch;
+    watch.look = [&] { (void)reader.take(); };
+    watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
+    run(call, progress, pairs, std::move(watch));
+    while (reader.take()) throw_if_stopped(call.stop.get_token());
+    if (!reader.complete(crew_.shares())) throw_damaged_result();
+}
+
+}  // namespace octopair

@@ -1,0 +1,47 @@
+#include "engine/processes/client/worker_program.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> places(const std::string& packaged) {
+    std::vector<std::string> found;
+    std::error_code error;
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    if (!error) {
+        const fs::path folder = self.parent_path();
+        found.push_back(folder / "octopair-worker");
+        found.push_back(folder.parent_path() / OCTOPAIR_WORKER_FOLDER / "octopair-worker");
+    }
+    if (!packaged.empty()) found.push_back(packaged);
+    found.emplace_back(OCTOPAIR_WORKER_INSTALLED);
+    found.emplace_back(OCTOPAIR_WORKER_BUILT);
+    return found;
+}
+
+}  // namespace
+
+std::string find_worker_program(const std::string& asked, const std::string& packaged) {
+    if (!asked.empty()) return asked;
+    const char* const named = std::getenv("OCTOPAIR_WORKER");
+    if (named != nullptr && *named != 0) return named;
+    std::string looked;
+    for (const std::string& place : places(packaged)) {
+        if (::access(place.c_str(), X_OK) == 0) return place;
+        looked += (looked.empty() ? "" : ", ") + place;
+    }
+    throw Error(ErrorCode::engine_failed, "cannot find the worker program; looked for " + looked);
+}
+
+}  // namespace octopair

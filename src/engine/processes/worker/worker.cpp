@@ -1,0 +1,159 @@
+#include "engine/processes/worker/worker.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "base/floating_point.hpp"
+#include "engine/processes/shared_memory/mail.hpp"
+#include "engine/processes/worker/worker_pass.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr unsigned looks_for_pass = 4000;  // for a next pass, about 80 us: calls tend to come one after another
+constexpr std::chrono::seconds longest_pass_sleep(3600);
+
+/// The stop source of the pass under way, and which pass was stopped last.
+class Stops {
+public:
+    std::stop_token begin(std::uint32_t pass) {
+        const std::lock_guard lock(mutex_);
+        pass_ = pass;
+        source_ = {};
+        if (stopped_ == pass) source_.request_stop();
+        return source_.get_token();
+    }
+    void stop(std::uint32_t pass) {
+        const std::lock_guard lock(mutex_);
+        stopped_ = pass;
+        if (pass_ == pass) source_.request_stop();
+    }
+
+private:
+    std::mutex mutex_;
+    std::stop_source source_;
+    std::uint32_t pass_ = 0, stopped_ = 0;
+};
+
+class Worker {
+public:
+    Worker(Descriptor socket, unsigned slot, ShareObserver* observer)
+        : socket_(std::move(socket)), number_(slot), observer_(observer), parent_(::getppid()) {}
+
+    /// Takes what the client sends, until it is gone.
+    void read_mail() {
+        while (client_lives()) {
+            std::optional<Received> received = receive_mail(socket_);
+            if (!received) return;
+            const Mail& mail = received->mail;
+            switch (mail.kind) {
+                case MailKind::region:
+                    take_region(mail, std::move(received->file));
+                    break;
+                case MailKind::forget:
+                    regions_.forget(mail.number);
+                    forgot_.store(true);
+                    if (DeskView* const view = view_) view->slot(number_).command.raise();
+                    break;
+                case MailKind::stop:
+                    stop(mail.number);
+                    break;
+            }
+        }
+    }
+
+    [[noreturn]] void work() {
+        const FloatingPointScope scope;
+        const auto memory = regions_.get(desk_region);
+        DeskView view(*memory);
+        if (view.desk().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");
+        if (number_ >= view.slots()) throw Error(ErrorCode::engine_failed, "there is no such slot");
+        view_ = &view;
+        WorkerProgram program(view, regions_);
+        Slot& slot = view.slot(number_);
+        slot.attached.store(1);
+        view.desk().for_client.raise();
+        for (;;) {
+            const std::uint32_t seen = slot.command.count.load();
+            const std::uint32_t asked = slot.asked.load();
+            if (asked == slot.finished.load()) {
+                if (forgot_.exchange(false)) program.forget_job();
+                const Waiting waiting(slot);
+                slot.command.wait(seen, longest_pass_sleep, looks_for_pass);
+                continue;
+            }
+            const Pass pass = view.desk().pass;
+            const std::stop_token token = stops_.begin(asked);
+            if (view.desk().stopped.load() == asked) stops_.stop(asked);
+            program.run(pass, {number_, asked, observer_}, token);
+            slot.finished.store(asked);
+            view.desk().for_client.raise();
+            // It has told why; another will be sent what this one could not take.
+            if (regions_.failed()) throw Error(ErrorCode::resource_limit, "shared memory could not be taken");
+        }
+    }
+
+private:
+    void take_region(const Mail& mail, Descriptor file) {
+        try {
+            regions_.add(mail.number, SharedMemory::open(std::move(file), mail.bytes));
+        } catch (...) {
+            regions_.fail(std::current_exception());
+        }
+    }
+
+    /// Waits for mail or the end of the client. Its process is looked for as well: a copy of its end of the socket may
+    /// live on in some child that it forked.
+    bool client_lives() const {
+        constexpr int look_interval = 1000;  // milliseconds
+        for (;;) {
+            pollfd waiting{socket_.number(), POLLIN, 0};
+            const int ready = ::poll(&waiting, 1, look_interval);
+            if (ready > 0) return true;
+            if (::getppid() != parent_) return false;
+        }
+    }
+
+    void stop(std::uint32_t pass) {
+        stops_.stop(pass);
+        if (DeskView* const view = view_) {
+            view->desk().among_workers.raise();
+            view->slot(number_).command.raise();
+        }
+    }
+
+    Descriptor socket_;
+    const unsigned number_;
+    ShareObserver* observer_;
+    const pid_t parent_;
+    WorkerRegions regions_;
+    Stops stops_;
+    std::atomic<DeskView*> view_ = nullptr;
+    std::atomic<bool> forgot_ = false;
+};
+
+}  // namespace
+
+void run_worker(Descriptor socket, unsigned slot, ShareObserver* observer, const std::function<void()>& gone) {
+    // It stays until the process ends, with the thread that reads its mail.
+    static Worker worker(std::move(socket), slot, observer);
+    std::thread([gone] {
+        try {
+            worker.read_mail();
+        } catch (...) {
+            // Without its mail it is of no use; the client starts another.
+        }
+        gone();
+    }).detach();
+    worker.work();
+}
+
+}  // namespace octopair

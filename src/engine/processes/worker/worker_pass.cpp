@@ -1,0 +1,301 @@
+#include "engine/processes/worker/worker_pass.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <optional>
+
+#include "base/test_hooks.hpp"
+#include "base/timed.hpp"
+#include "base/tuning.hpp"
+#include "engine/processes/sorted_lists.hpp"
+#include "engine/processes/worker/shared_buckets.hpp"
+#include "octopair/error.hpp"
+#include "octree/scan.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// A set of the client's objects, in shared memory.
+struct Set {
+    Set(const SetRef& ref, WorkerRegions& regions) {
+        if (ref.wide != 0) {
+            objects.boxes = regions.array<Box3d>(ref.boxes, boxes);
+        } else {
+            objects.boxes = regions.array<Box3f>(ref.boxes, boxes);
+        }
+        objects.padding = regions.array<double>(ref.padding, padding);
+    }
+
+    std::shared_ptr<SharedMemory> boxes, padding;
+    Objects objects{std::span<const Box3f>{}};
+};
+
+/// Tells an observer whenever boxes are read.
+class ObservedSource final : public EntrySource {
+public:
+    ObservedSource(const EntrySource& source, ShareObserver* observer) : source_(source), observer_(observer) {}
+    std::size_t size() const override { return source_.size(); }
+    bool load(std::size_t begin, std::span<Entry> out) const override {
+        tick();
+        return source_.load(begin, out);
+    }
+    std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override {
+        tick();
+        return source_.plain(begin, count);
+    }
+    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
+        source_.pick(positions, out);
+    }
+
+private:
+    void tick() const {
+        if (observer_ != nullptr) observer_->tick();
+    }
+
+    const EntrySource& source_;
+    ShareObserver* observer_;
+};
+
+/// Tells an observer whenever pairs are written.
+class ObservedWriter final : public PairWriter {
+public:
+    ObservedWriter(PairWriter& writer, ShareObserver& observer) : writer_(writer), observer_(observer) {}
+    bool counting() const override { return writer_.counting(); }
+    void write(std::span<const Pair> pairs) override {
+        observer_.tick();
+        writer_.write(pairs);
+    }
+    void write_count(std::uint64_t pairs) override {
+        observer_.tick();
+        writer_.write_count(pairs);
+    }
+
+private:
+    PairWriter& writer_;
+    ShareObserver& observer_;
+};
+
+void set_message(Slot& slot, const Error& error) {
+    slot.error_code = std::uint32_t(error.code());
+    slot.message = {};
+    std::strncpy(slot.message.data(), error.what(), slot.message.size() - 1);
+}
+
+}  // namespace
+
+struct WorkerProgram::Job {
+    Job(const Pass& pass, WorkerRegions& regions)
+        : number(pass.job),
+          first(pass.first, regions),
+          second(pass.second, regions),
+          memory(regions.get(pass.arena_region)),
+          scratch_memory(regions.get(pass.pairs_region != 0 ? pass.pairs_region : pass.arena_region)),
+          arena(*memory),
+          scratch(*scratch_memory),
+          source(first.objects, pass.join != 0 ? &second.objects : nullptr, pass.margin),
+          octree(arena, scratch) {}
+
+    std::uint32_t number;
+    Set first, second;
+    std::shared_ptr<SharedMemory> memory, scratch_memory;
+    Arena arena;
+    Arena scratch;  ///< where pairs will be: what nobody reads after the sort makes room for them
+    BoxSource source;
+    LinearOctree octree;
+    bool built = false;
+    std::uint64_t built_mark = 0;  // of the arena
+};
+
+WorkerProgram::WorkerProgram(DeskView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
+
+WorkerProgram::~WorkerProgram() = default;
+
+/// Shares out the steps that make the octree, in memory that all workers see.
+class WorkerProgram::BuildExecutor final : public Executor {
+public:
+    /// `built`: the steps are done, by an earlier pass.
+    BuildExecutor(ShareOut& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
+    unsigned width() const override { return width_; }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+        constexpr std::array steps = {Step::encode, Step::merge, Step::sort};
+        const Step step = steps.at(step_++);
+        if (built_) return;
+        shares_.run(step, count, [&](const ShareOut::Task& task) { body(std::size_t(task.index)); });
+    }
+    void for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) override {
+        throw Error(ErrorCode::engine_failed, "a step that writes no pairs wrote some");
+    }
+
+private:
+    ShareOut& shares_;
+    unsigned width_;
+    bool built_;
+    std::size_t step_ = 0;
+};
+
+/// Shares out the steps that write pairs, and those that build the nested octrees of large octants. Each worker sorts and
+/// measures sets of boxes for itself: the results are functions of the octrees, which no longer change, so a replacement
+/// worker computes the same.
+class WorkerProgram::ScanExecutor final : public Executor {
+public:
+    /// Borrows all. `arena`: pages for nested octrees. It is not rewound before the pass ends: a worker that is slow, or
+    /// takes over, still reads octrees that others no longer need.
+    ScanExecutor(ShareOut& shares, unsigned width, ShareOutput& output, Arena& arena)
+        : shares_(shares), width_(width), output_(output), arena_(arena) {}
+    unsigned width() const override { return width_; }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
+        for (std::size_t i = 0; i < count; ++i) body(i);
+    }
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
+        shares_.run(Step::scan, count, [&](const ShareOut::Task& task) {
+            PairWriter& writer = output_.begin(task);
+            if (shares_.observer() != nullptr) {
+                ObservedWriter observed(writer, *shares_.observer());
+                body(std::size_t(task.index), observed);
+            } else {
+                body(std::size_t(task.index), writer);
+            }
+            output_.end(task);
+        });
+    }
+    BuildPlace build_place(std::size_t entries) override {
+        if (!worth_sharing(entries)) return Executor::build_place(entries);
+        count_path(Path::nested_shared);
+        return {build_.emplace(shares_, width_, false), arena_, arena_};
+    }
+
+private:
+    /// Whether to build a nested octree in the arena. All workers of the pass decide alike: the arguments are the same,
+    /// and all have reserved the same.
+    bool worth_sharing(std::size_t entries) const {
+        const bool several_blocks = width_ > 1 && entries / tuning().build.least_block > 1;
+        return several_blocks && entries <= arena_.left() / tuning().processes.nested_bytes;
+    }
+
+    ShareOut& shares_;
+    unsigned width_;
+    ShareOutput& output_;
+    Arena& arena_;
+    std::optional<BuildExecutor> build_;  // of the nested octree that is being built
+};
+
+void WorkerProgram::run(const Pass& pass, const ShareOut::Self& self, std::stop_token stop) {
+    Slot& slot = view_.slot(self.slot);
+    ShareOut shares(view_, self, stop);
+    const Context context{pass, shares, stop, slot};
+    try {
+        slot.outcome = take_part(context);
+    } catch (const LinearOctree::Invalid& invalid) {
+        slot.number = invalid.begin;
+        slot.outcome = Outcome::bad_box;
+    } catch (const OverBudget&) {
+        slot.outcome = Outcome::over_budget;
+    } catch (const Error& error) {
+        set_message(slot, error);
+        slot.outcome = error.code() == ErrorCode::cancelled ? Outcome::stopped : Outcome::failed;
+    } catch (const std::bad_alloc&) {
+        set_message(slot, Error(ErrorCode::resource_limit, "a worker process ran out of memory"));
+        slot.outcome = Outcome::failed;
+    } catch (const std::exception& failure) {
+        set_message(slot, Error(ErrorCode::engine_failed, failure.what()));
+        slot.outcome = Outcome::failed;
+    }
+    slot.share.store(0);
+    slot.preparing.store(0);
+}
+
+Outcome WorkerProgram::take_part(const Context& context) {
+    if (job_ == nullptr || job_->number != context.pass.job) start_job(context.pass);
+    if (context.pass.kind == PassKind::lists) {
+        make_lists(context);
+    } else {
+        build(context);
+        scan(context);
+    }
+    context.slot.shares = context.shares.shares();
+    return Outcome::done;
+}
+
+void WorkerProgram::forget_job() { job_ = nullptr; }
+
+void WorkerProgram::start_job(const Pass& pass) {
+    job_ = nullptr;
+    job_ = std::make_unique<Job>(pass, regions_);
+}
+
+void WorkerProgram::build(const Context& context) {
+    if (!job_->built) {
+        BuildExecutor executor(context.shares, context.pass.workers, context.pass.built != 0);
+        const ObservedSource source(job_->source, context.shares.observer());
+        job_->octree.build(source, executor, context.stop);
+        job_->built = true;
+        job_->built_mark = job_->arena.mark();
+    }
+    context.slot.entries = job_->octree.entry_count();
+    context.slot.encode_seconds = job_->octree.seconds().encode;
+    context.slot.merge_seconds = job_->octree.seconds().merge;
+    context.slot.sort_seconds = job_->octree.seconds().sort;
+}
+
+void WorkerProgram::make_lists(const Context& context) {
+    job_->arena.rewind(0);
+    const ObservedSource source(job_->source, context.shares.observer());
+    SortedLists lists(source, job_->arena, context.pass.workers, context.stop);
+    context.slot.encode_seconds = 0;
+    const Timed timed(context.slot.encode_seconds);
+    context.shares.run(Step::encode, context.pass.workers, [&](const ShareOut::Task& task) {
+        lists.make(std::size_t(task.index), context.stop);
+        task.record.first_run = job_->arena.offset(lists.head(std::size_t(task.index)));
+    });
+}
+
+void WorkerProgram::scan(const Context& context) {
+    job_->arena.rewind(job_->built_mark);
+    const Pass& pass = context.pass;
+    context.slot.scan_seconds = 0;
+    const Timed timed(context.slot.scan_seconds);
+    const auto pairs = regions_.get(pass.pairs_region);
+    const OutputPlace place{view_, *pairs, context.shares, context.stop};
+    switch (pass.kind) {
+        case PassKind::count:
+            return scan_into(context, *make_count_output());
+        case PassKind::count_by_object:
+            return count_by_object(context);
+        case PassKind::list_octal:
+            return scan_into(context, *make_list_output(place));
+        case PassKind::stream_octal:
+            return scan_into(context, *make_stream_output(place, pass));
+        case PassKind::list_ascending: {
+            SharedBuckets buckets(place, pass);
+            scan_into(context, buckets);
+            return buckets.order(context.shares);
+        }
+        case PassKind::lists:
+            break;
+    }
+    throw Error(ErrorCode::engine_failed, "an unknown kind of pass");
+}
+
+void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {
+    ScanExecutor executor(context.shares, context.pass.workers, output, job_->arena);
+    octopair::scan(job_->octree, {job_->source, context.stop}, executor,
+                   [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
+}
+
+void WorkerProgram::count_by_object(const Context& context) {
+    Buffer<std::uint32_t> counts(job_->arena);
+    counts.resize_discard(job_->source.size());
+    const std::uint64_t blocks = context.pass.workers;
+    context.shares.run(Step::scan, blocks, [&](const ShareOut::Task& task) {
+        const std::size_t begin = counts.size() * task.index / blocks, end = counts.size() * (task.index + 1) / blocks;
+        std::fill(counts.data() + begin, counts.data() + end, 0u);
+    });
+    context.slot.number = job_->arena.offset(counts.data());
+    scan_into(context, *make_count_by_object_output(counts.span()));
+}
+
+}  // namespace octopair

@@ -1,0 +1,102 @@
+#include "engine/threads/ascending.hpp"
+
+#include <atomic>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "engine/bucket_sort.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// Pages of a list's blocks.
+class ListPages final : public Pages {
+public:
+    /// `left` is how many pages all threads together may still take from the list.
+    ListPages(PairList::Storage& list, std::atomic<std::int64_t>& left) : list_(list), left_(left) {}
+
+private:
+    Pair* fresh() override {
+        constexpr std::size_t pages_at_once = 64;  // a whole block
+        if (--left_ < 0) throw OverBudget{};
+        if (block_.empty()) block_ = list_.take_block(pages_at_once * page_pairs()).first(pages_at_once * page_pairs());
+        Pair* page = block_.data();
+        block_ = block_.subspan(page_pairs());
+        return page;
+    }
+
+    PairList::Storage& list_;
+    std::atomic<std::int64_t>& left_;
+    std::span<Pair> block_;
+};
+
+/// What one thread needs.
+struct Worker {
+    Worker(const BucketPlan& plan, PairList::Storage& list, std::atomic<std::int64_t>& pages_left)
+        : pages(list, pages_left), found(plan.buckets()), sort(plan, pages) {}
+
+    ListPages pages;
+    std::vector<PageString> found;  // by bucket
+    BucketSort sort;
+};
+
+/// Throws pairs into one thread's buckets.
+class BucketWriter final : public FullWriter {
+public:
+    BucketWriter(const BucketPlan& plan, Worker& worker) : plan_(plan), worker_(worker) {}
+    void write(std::span<const Pair> pairs) override { plan_.fill(pairs, worker_.found, worker_.pages); }
+
+private:
+    const BucketPlan& plan_;
+    Worker& worker_;
+};
+
+}  // namespace
+
+class AscendingExecutor::Buckets {
+public:
+    Buckets(unsigned threads, PairList::Storage& list, const AscendingBounds& bounds)
+        : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.most / page_pairs())) {
+        for (unsigned i = 0; i < threads; ++i) workers_.push_back(std::make_unique<Worker>(plan_, list, pages_left_));
+    }
+
+    BucketWriter writer(unsigned worker) { return {plan_, *workers_[worker]}; }
+
+    void append_sorted(Team& team, const std::stop_token& stop) {
+        pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting takes a few more
+        std::vector<BucketSort::Runs> sorted(plan_.buckets());
+        team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
+            std::vector<PageString> strings;
+            strings.reserve(workers_.size());
+            for (const auto& other : workers_) strings.push_back(std::exchange(other->found[bucket], {}));
+            sorted[bucket] = workers_[worker]->sort.sort(std::move(strings), stop);
+        });
+        for (const auto& runs : sorted) {
+            for (const auto run : runs) list_.append(run);
+        }
+    }
+
+private:
+    PairList::Storage& list_;
+    const BucketPlan plan_;
+    std::atomic<std::int64_t> pages_left_;
+    std::vector<std::unique_ptr<Worker>> workers_;
+};
+
+AscendingExecutor::AscendingExecutor(Team& team, PairList::Storage& list, const AscendingBounds& bounds)
+    : TeamExecutor(team), buckets_(std::make_unique<Buckets>(team.threads(), list, bounds)) {}
+
+AscendingExecutor::~AscendingExecutor() = default;
+
+void AscendingExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
+    team().for_each(count, [&](std::size_t i, unsigned worker) {
+        BucketWriter writer = buckets_->writer(worker);
+        body(i, writer);
+    });
+}
+
+void AscendingExecutor::append_sorted(const std::stop_token& stop) { buckets_->append_sorted(team(), stop); }
+
+}  // namespace octopair

@@ -1,0 +1,54 @@
+// The local engine: the steps of the algorithm on the threads of this process.
+
+#include "engine/job_queue.hpp"
+#include "engine/search.hpp"
+#include "engine/threads/thread_passes.hpp"
+#include "engine/threads/writers.hpp"
+#include "engine/turns.hpp"
+
+namespace octopair {
+
+namespace {
+
+class LocalPasses final : public ThreadPasses {
+public:
+    using ThreadPasses::ThreadPasses;
+
+    void build(Call& call, double progress) override {
+        call.progress.stage(progress, 1);
+        TeamExecutor executor(team());
+        try {
+            octree().build(call.source, executor, call.stop.get_token());
+        } catch (const LinearOctree::Invalid& invalid) {
+            call.source.refuse(invalid.begin);
+        }
+        call.summary.entries = octree().entry_count();
+        call.summary.steps.encode = octree().seconds().encode;
+        call.summary.steps.merge = octree().seconds().merge;
+        call.summary.steps.sort = octree().seconds().sort;
+    }
+};
+
+class LocalEngine final : public Engine {
+public:
+    explicit LocalEngine(unsigned threads) : passes_(threads) {}
+
+private:
+    Summary run(const Request& request, const Output& output, const Control& control) override {
+        const Turns::Turn turn(turns_, control.stop);
+        return search_.run(request, output, control);
+    }
+    JobQueue& jobs() override { return jobs_; }
+    unsigned verification_threads() const override { return passes_.width(); }
+
+    Turns turns_;
+    LocalPasses passes_;
+    Search search_{passes_};
+    JobQueue jobs_{*this};  // the last, so that it ends first
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_local_engine(unsigned threads) { return std::make_unique<LocalEngine>(threads); }
+
+}  // namespace octopair

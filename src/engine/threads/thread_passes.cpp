@@ -1,0 +1,48 @@
+#include "engine/threads/thread_passes.hpp"
+
+#include "base/timed.hpp"
+#include "engine/threads/ascending.hpp"
+#include "engine/threads/writers.hpp"
+
+namespace octopair {
+
+void ThreadPasses::scan_into(Call& call, Executor& executor, double progress) {
+    scan_into(call, octree_, executor, progress);
+}
+
+void ThreadPasses::scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress) {
+    const Timed timed(call.summary.steps.scan);
+    call.progress.stage(progress, octants.octree.entry_count(octants.begin, octants.end));
+    const ScanContext context{call.source, call.stop.get_token()};
+    scan(octants, context, executor, [&](std::uint64_t entries) { call.progress.add(entries); });
+}
+
+std::uint64_t ThreadPasses::count(Call& call, double progress) {
+    CountExecutor executor(team_);
+    scan_into(call, executor, progress);
+    return executor.pairs();
+}
+
+void ThreadPasses::count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
+    CountByObjectExecutor executor(team_, counts);
+    scan_into(call, executor, progress);
+}
+
+void ThreadPasses::list_octal(Call& call, PairList::Storage& list, double progress) {
+    ListExecutor executor(team_, list);
+    scan_into(call, executor, progress);
+}
+
+void ThreadPasses::stream_octal(Call& call, const Deliver& deliver, double progress) {
+    StreamExecutor executor(team_, deliver, call.buffer_pairs(), call.stop);
+    scan_into(call, executor, progress);
+}
+
+void ThreadPasses::list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) {
+    AscendingExecutor executor(team_, list, bounds);
+    scan_into(call, executor, progress);
+    const Timed timed(call.summary.steps.scan);
+    executor.append_sorted(call.stop.get_token());
+}
+
+}  // namespace octopair

@@ -1,0 +1,138 @@
+#include "io/boxes/npy.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "boxes/box_kernel.hpp"
+#include "io/boxes/spheres.hpp"
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+
+namespace octopair::io {
+
+static_assert(std::endian::native == std::endian::little, "arrays are read as they lie in the file");
+
+namespace {
+
+/// As many as a file name NAME.000000.npy can number.
+constexpr std::uint64_t most_frames = 1'000'000;
+
+NpyHeader read_header(const InputFile& file) {
+    Buffer<std::byte> start(std::size_t(std::min<std::uint64_t>(npy_header_max_bytes, file.size())));
+    file.read(0, start.span());
+    return parse_npy_header(start.span(), file.size(), file.path());
+}
+
+void refuse_integers(const NpyHeader& header, std::string_view file) {
+    if (header.type == NpyType::float32 || header.type == NpyType::float64) return;
+    refuse(file, fmt::format("its array is of type '{}'; '<f4' or '<f8' is needed", type_text(header.type)));
+}
+
+}  // namespace
+
+SceneShape scene_shape(const NpyHeader& header, std::string_view file) {
+    refuse_integers(header, file);
+    const auto& shape = header.shape;
+    if (shape.size() == 2 && (shape[1] == 6 || shape[1] == 4)) return {.objects = shape[0], .spheres = shape[1] == 4};
+    if (shape.size() != 3 || shape[2] != 6) {
+        refuse(file,
+               fmt::format("its shape is {}; boxes are (n, 6) or (frames, n, 6), spheres (n, 4)", shape_text(shape)));
+    }
+    if (shape[0] > most_frames) refuse(file, fmt::format("{} frames; at most {} are known", shape[0], most_frames));
+    return {.objects = shape[1], .frames = shape[0], .moving = true};
+}
+
+NpyScene::NpyScene(const std::string& path)
+    : file_(path), header_(read_header(file_)), shape_(scene_shape(header_, path)) {}
+
+LoadedScene NpyScene::read(const ObjectRows& rows, const std::stop_token& stop) const {
+    LoadedScene scene;
+    scene.objects = rows.end - rows.begin;
+    scene.frames = shape_.frames;
+    scene.moving = shape_.moving;
+    if (wide()) {
+        scene.boxes = read_boxes<double>(rows, stop);
+    } else {
+        scene.boxes = read_boxes<float>(rows, stop);
+    }
+    return scene;
+}
+
+template <typename Real>
+Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_token& stop) const {
+    const std::size_t objects = std::size_t(rows.end - rows.begin);
+    Buffer<Box<Real>> boxes{std::size_t(shape_.frames) * objects};
+    if (shape_.spheres) {
+        Buffer<Sphere<Real>> spheres{objects};
+        read_rows(rows.begin, spheres.span(), stop);
+        boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin});
+        return boxes;
+    }
+    // Whole frames lie in the file as they will lie in memory.
+    const bool whole = objects == shape_.objects;
+    const std::size_t runs = whole ? 1 : std::size_t(shape_.frames), length = whole ? boxes.size() : objects;
+    for (std::size_t run = 0; run < runs; ++run) {
+        read_rows(run * shape_.objects + rows.begin, boxes.span().subspan(run * length, length), stop);
+    }
+    return boxes;
+}
+
+template <typename T>
+void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
+    file_.read(header_.data_offset + first * sizeof(T), std::as_writable_bytes(rows), stop);
+}
+
+LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop) {
+    const NpyScene scene(path);
+    return scene.read({0, scene.shape().objects}, stop);
+}
+
+std::optional<NpyFrames> NpyFrames::open(const std::string& path) {
+    InputFile file(path);
+    NpyHeader header = read_header(file);
+    const SceneShape shape = scene_shape(header, path);
+    if (!shape.moving) return std::nullopt;
+    return NpyFrames(std::move(file), std::move(header), shape);
+}
+
+void NpyFrames::read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const {
+    read_rows(frame * shape_.objects, boxes, stop);
+}
+
+void NpyFrames::read(std::uint64_t frame, std::span<Box3d> boxes, const std::stop_token& stop) const {
+    const std::uint64_t first = frame * shape_.objects;
+    if (wide()) return read_rows(first, boxes, stop);
+    constexpr std::size_t batch = 4096;
+    Buffer<Box3f> narrow(std::min(batch, boxes.size()));
+    for (std::size_t i = 0; i < boxes.size(); i += batch) {
+        const auto rows = narrow.span().first(std::min(batch, boxes.size() - i));
+        read_rows(first + i, rows, stop);
+        std::transform(rows.begin(), rows.end(), boxes.data() + i, octopair::wide<float>);
+    }
+}
+
+Buffer<double> read_padding(const std::string& path, const std::stop_token& stop) {
+    const InputFile file(path);
+    const NpyHeader header = read_header(file);
+    refuse_integers(header, path);
+    const auto& shape = header.shape;
+    if (shape.size() != 1) refuse(path, fmt::format("its shape is {}; paddings are (n,)", shape_text(shape)));
+    Buffer<double> padding{std::size_t(shape[0])};
+    if (header.type == NpyType::float64) {
+        file.read(header.data_offset, std::as_writable_bytes(padding.span()), stop);
+    } else {
+        Buffer<float> narrow{padding.size()};
+        file.read(header.data_offset, std::as_writable_bytes(narrow.span()), stop);
+        std::copy_n(narrow.data(), narrow.size(), padding.data());
+    }
+    for (std::size_t i = 0; i < padding.size(); ++i) {
+        if (padding[i] >= 0 && std::isfinite(padding[i])) continue;
+        refuse(path, fmt::format("object {}: padding is {}, not a finite number >= 0", i, number_text(padding[i])));
+    }
+    return padding;
+}
+
+}  // namespace octopair::io

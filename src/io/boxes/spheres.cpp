@@ -1,0 +1,82 @@
+#include "io/boxes/spheres.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "io/files/failure.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// The least float64 not below a + b, for a rounding error by Knuth's two-sum: exact, since addition never underflows.
+double sum_rounded_up(double a, double b) {
+    const double sum = a + b;
+    if (std::isinf(sum)) return sum;
+    const double b_part = sum - a;
+    const double error = (a - (sum - b_part)) + (b - b_part);
+    return error > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
+}
+
+float float_rounded_up(double value) {
+    const float nearest = float(value);
+    return double(nearest) < value ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
+float upper_end(float centre, float radius) { return float_rounded_up(double(centre) + double(radius)); }
+double upper_end(double centre, double radius) { return sum_rounded_up(centre, radius); }
+
+bool is_finite(const auto& sphere) {
+    return std::isfinite(sphere.centre[0]) && std::isfinite(sphere.centre[1]) && std::isfinite(sphere.centre[2]) &&
+           std::isfinite(sphere.radius);
+}
+
+bool is_finite_box(const auto& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) return false;
+    }
+    return true;
+}
+
+template <typename Real>
+[[noreturn]] void refuse_sphere(const Sphere<Real>& sphere, std::uint64_t object, std::string_view file) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::isfinite(sphere.centre[axis])) continue;
+        refuse(file, fmt::format("object {}: centre {} is {}, not a finite number", object, "xyz"[axis],
+                                 number_text(sphere.centre[axis])));
+    }
+    if (sphere.radius >= 0 && std::isfinite(sphere.radius)) {
+        refuse(file, fmt::format("object {}: its box is beyond the file's precision", object));
+    }
+    refuse(file, fmt::format("object {}: radius is {}, not a finite number >= 0", object, number_text(sphere.radius)));
+}
+
+}  // namespace
+
+template <typename Real>
+Box<Real> box_of_sphere(const Sphere<Real>& sphere) {
+    Box<Real> box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = -upper_end(-sphere.centre[axis], sphere.radius);
+        box.max[axis] = upper_end(sphere.centre[axis], sphere.radius);
+    }
+    return box;
+}
+
+template <typename Real>
+void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place) {
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        if (!is_finite(spheres[i]) || !(spheres[i].radius >= 0)) refuse_sphere(spheres[i], place.begin + i, place.file);
+        boxes[i] = box_of_sphere(spheres[i]);
+        if (!is_finite_box(boxes[i])) refuse_sphere(spheres[i], place.begin + i, place.file);
+    }
+}
+
+template Box3f box_of_sphere(const Sphere<float>&);
+template Box3d box_of_sphere(const Sphere<double>&);
+template void boxes_of_spheres(std::span<const Sphere<float>>, std::span<Box3f>, const SpherePlace&);
+template void boxes_of_spheres(std::span<const Sphere<double>>, std::span<Box3d>, const SpherePlace&);
+
+}  // namespace octopair::io

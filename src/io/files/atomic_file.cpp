@@ -1,0 +1,153 @@
+#include "io/files/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "io/files/failure.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a name leads through symbolic links, the last of which may lead to nothing yet.
+fs::path resolved(const std::string& path) {
+    fs::path at(path);
+    std::error_code error;
+    for (int links = 0; links < 40 && fs::is_symlink(at, error); ++links) {
+        const fs::path target = fs::read_symlink(at, error);
+        if (error) break;
+        at = at.parent_path() / target;
+    }
+    return at;
+}
+
+std::string random_name(const std::string& directory) {
+    std::random_device random;
+    return fmt::format("{}/.octopair-{:08x}{:08x}.tmp", directory, random(), random());
+}
+
+void write_whole(const Descriptor& file, const std::string& path, std::span<const std::byte> bytes,
+                 std::uint64_t offset) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::pwrite(file.number(), bytes.data(), bytes.size(), off_t(offset));
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail_io(path, "cannot write", errno);
+        offset += std::uint64_t(written);
+        bytes = bytes.subspan(std::size_t(written));
+    }
+}
+
+std::string own_link(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path) {
+    choose_place(path);
+    open_unnamed();
+    if (!descriptor_.open()) open_named();
+}
+
+AtomicFile::AtomicFile(const std::string& path, Shared) {
+    choose_place(path);
+    open_named();
+}
+
+void AtomicFile::choose_place(const std::string& path) {
+    const fs::path target = resolved(path);
+    path_ = target.string();
+    directory_ = target.parent_path().empty() ? "." : target.parent_path().string();
+    struct stat status {};
+    if (::stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+        fail_io(path, "cannot be replaced, it is not a regular file", S_ISDIR(status.st_mode) ? EISDIR : EEXIST);
+    }
+    if (target.filename().empty()) fail_io(path, "cannot create", EISDIR);
+}
+
+AtomicFile::~AtomicFile() { remove_temporary(); }
+
+void AtomicFile::open_unnamed() {
+#ifdef O_TMPFILE
+    descriptor_ = Descriptor(::open(directory_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+    // The file gets its name through /proc, which may not be mounted.
+    if (descriptor_.open() && ::access(own_link(descriptor_.number()).c_str(), F_OK) != 0) descriptor_ = Descriptor();
+#endif
+}
+
+void AtomicFile::open_named() {
+    do {
+        temporary_ = random_name(directory_);
+        descriptor_ = Descriptor(::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
+    } while (!descriptor_.open() && errno == EEXIST);
+    if (descriptor_.open()) return;
+    const int error = errno;
+    temporary_.clear();
+    fail_io(path_, "cannot create", error);
+}
+
+void AtomicFile::give_name() {
+    if (!temporary_.empty()) return;
+    const std::string link = own_link(descriptor_.number());
+    int result = 0;
+    std::string name;
+    do {
+        name = random_name(directory_);
+        result = ::linkat(AT_FDCWD, link.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+    } while (result != 0 && errno == EEXIST);
+    if (result != 0) fail_io(path_, "cannot create", errno);
+    temporary_ = name;
+}
+
+void AtomicFile::remove_temporary() noexcept {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    temporary_.clear();
+}
+
+void AtomicFile::put(std::span<const std::byte> bytes) {
+    write_all(bytes, end_);
+    end_ += bytes.size();
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::string_view text) {
+    flush();
+    write_all(std::as_bytes(std::span(text)), offset);
+}
+
+void AtomicFile::write_all(std::span<const std::byte> bytes, std::uint64_t offset) {
+    write_whole(descriptor_, path_, bytes, offset);
+}
+
+void AtomicFile::finish() {
+    if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
+    give_name();
+    if (descriptor_.close() != 0) fail_io(path_, "cannot write", errno);
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail_io(path_, "cannot rename onto it", errno);
+    temporary_.clear();
+    const Descriptor directory(::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // The result stands; some file systems cannot sync a directory.
+    if (directory.open()) (void)::fsync(directory.number());
+}
+
+FilePart::FilePart(const std::string& temporary, const std::string& path)
+    : path_(path), descriptor_(::open(temporary.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
+}
+
+void FilePart::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    write_whole(descriptor_, path_, bytes, offset);
+}
+
+void FilePart::sync() {
+    if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,222 @@
+#include "io/json/json_fields.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/files/failure.hpp"
+#include "io/json/json_text.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int most_levels = 16;
+
+/// Watches a parser: where it is, and which keys the objects around it have had.
+class Watch {
+public:
+    Watch(std::string_view file, const std::stop_token& stop) : file_(file), stop_(stop) {}
+
+    bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+        if (++events_ % 65536 == 0 && stop_.stop_requested()) cancel();
+        switch (event) {
+            case json::parse_event_t::object_start:
+            case json::parse_event_t::array_start:
+                if (depth >= most_levels) refuse(place(), fmt::format("more than {} levels of nesting", most_levels));
+                levels_.push_back({.is_array = event == json::parse_event_t::array_start});
+                break;
+            case json::parse_event_t::object_end:
+            case json::parse_event_t::array_end:
+                levels_.pop_back();
+                [[fallthrough]];
+            case json::parse_event_t::value:
+                if (!levels_.empty()) ++levels_.back().values;
+                break;
+            case json::parse_event_t::key:
+                begin_key(parsed.get_ref<const std::string&>());
+                break;
+        }
+        return true;
+    }
+
+    /// The file, and the way to the value that is being read.
+    std::string place() const {
+        std::string way;
+        for (const Level& level : levels_) {
+            if (level.is_array) {
+                way += fmt::format("[{}]", level.values);
+            } else if (level.keys.size() > level.values) {
+                way += fmt::format("{}{}", way.empty() ? "" : ".", shown_text(level.key));
+            }
+        }
+        return way.empty() ? std::string(file_) : fmt::format("{}: {}", file_, way);
+    }
+
+private:
+    /// An array or an object that has begun, and not ended.
+    struct Level {
+        bool is_array = false;
+        std::size_t values = 0;  ///< that have ended
+        std::set<std::string> keys = {};
+        std::string key = {};  ///< the last
+    };
+
+    void begin_key(const std::string& key) {
+        Level& level = levels_.back();
+        if (!level.keys.insert(key).second) {
+            refuse(place(), fmt::format("the key '{}' stands twice in one object", shown_text(key)));
+        }
+        level.key = key;
+    }
+
+    std::string_view file_;
+    const std::stop_token& stop_;
+    std::uint64_t events_ = 0;
+    std::vector<Level> levels_;
+};
+
+/// The parser's words without its own name for them.
+std::string words_of(const json::exception& error) {
+    std::string_view words = error.what();
+    if (const std::size_t end = words.find("] "); words.starts_with('[') && end != std::string_view::npos) {
+        words.remove_prefix(end + 2);
+    }
+    std::string text(words.substr(0, 200));
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
+}
+
+[[noreturn]] void refuse_type(const std::string& place, const json& value, std::string_view wanted) {
+    const std::string_view type = value.type_name();
+    const bool vowel = type == "array" || type == "object";
+    refuse(place, type == "null" ? fmt::format("null, not {}", wanted)
+                                 : fmt::format("{} {}, not {}", vowel ? "an" : "a", type, wanted));
+}
+
+double number_of(const json& value, const std::string& place, std::string_view wanted) {
+    if (!value.is_number()) refuse_type(place, value, wanted);
+    return value.get<double>();
+}
+
+}  // namespace
+
+json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop) {
+    Watch watch(file, stop);
+    try {
+        return json::parse(text, [&watch](int depth, json::parse_event_t event, const json& parsed) {
+            return watch(depth, event, parsed);
+        });
+    } catch (const json::parse_error& error) {  // it says the line and the column
+        refuse(file, words_of(error));
+    } catch (const json::exception& error) {
+        refuse(watch.place(), words_of(error));
+    }
+}
+
+std::string shown_text(std::string_view text) {
+    constexpr std::size_t most = 60;
+    std::string shown(text.substr(0, most));
+    // Not half a character of UTF-8 at the end.
+    while (text.size() > most && !shown.empty() && (shown.back() & 0x80) != 0) shown.pop_back();
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
+    return text.size() > most ? shown + "..." : shown;
+}
+
+const json::array_t& json_array(const json& value, const std::string& place) {
+    if (!value.is_array()) refuse_type(place, value, "an array");
+    return value.get_ref<const json::array_t&>();
+}
+
+const std::string& json_text(const json& value, const std::string& place) {
+    if (!value.is_string()) refuse_type(place, value, "a string");
+    return value.get_ref<const std::string&>();
+}
+
+Point3d json_point(const json& value, const std::string& place) {
+    constexpr std::string_view wanted = "an array of 3 numbers";
+    if (!value.is_array()) refuse_type(place, value, wanted);
+    if (value.size() != 3) refuse(place, fmt::format("an array of {}, not {}", value.size(), wanted));
+    Point3d point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!value[axis].is_number()) refuse_type(place, value[axis], "a number in " + std::string(wanted));
+        point[axis] = value[axis].get<double>();
+    }
+    return point;
+}
+
+std::uint32_t json_index(const json& value, const std::string& place) {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() <= most) return value.get<std::uint32_t>();
+    const std::string wanted = fmt::format("a whole number from 0 to {}", most);
+    if (value.is_number()) refuse(place, fmt::format("{} is not {}", dump_json(value), wanted));
+    refuse_type(place, value, wanted);
+}
+
+JsonFields::JsonFields(const json& object, std::string place) : object_(object), place_(std::move(place)) {
+    if (!object_.is_object()) refuse_type(place_, object_, "an object");
+}
+
+void JsonFields::allow(std::initializer_list<std::string_view> known) const {
+    for (const auto& [key, value] : object_.items()) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        refuse(place_, fmt::format("the key '{}' is not known here; these are: {}", shown_text(key),
+                                   fmt::join(known.begin(), known.end(), ", ")));
+    }
+}
+
+const json* JsonFields::find(std::string_view key) const {
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+}
+
+const json& JsonFields::need(std::string_view key) const {
+    const json* value = find(key);
+    if (value == nullptr) refuse(place_, fmt::format("the key '{}' is missing", key));
+    return *value;
+}
+
+double JsonFields::number(std::string_view key) const { return number_of(need(key), place_of(key), "a number"); }
+
+double JsonFields::at_least_zero(std::string_view key) const {
+    const double value = number_of(need(key), place_of(key), "a number >= 0");
+    if (!(value >= 0)) refuse_key(key, number_text(value) + " is not a number >= 0");
+    return value;
+}
+
+double JsonFields::above_zero(std::string_view key) const {
+    const double value = number_of(need(key), place_of(key), "a number > 0");
+    if (!(value > 0)) refuse_key(key, number_text(value) + " is not a number > 0");
+    return value;
+}
+
+Point3d JsonFields::point(std::string_view key) const { return json_point(need(key), place_of(key)); }
+
+Point3d JsonFields::point_above_zero(std::string_view key) const {
+    const Point3d value = point(key);
+    for (const double number : value) {
+        if (!(number > 0)) refuse_key(key, number_text(number) + " is not a number > 0");
+    }
+    return value;
+}
+
+const std::string& JsonFields::text(std::string_view key) const { return json_text(need(key), place_of(key)); }
+
+std::uint32_t JsonFields::whole_number(std::string_view key) const { return json_index(need(key), place_of(key)); }
+
+bool JsonFields::yes_or_no(std::string_view key) const {
+    const json& value = need(key);
+    if (!value.is_boolean()) refuse_type(place_of(key), value, "true or false");
+    return value.get<bool>();
+}
+
+void JsonFields::refuse_key(std::string_view key, std::string_view what) const { refuse(place_of(key), what); }
+
+}  // namespace octopair::io

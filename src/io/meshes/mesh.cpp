@@ -1,0 +1,100 @@
+#include "io/meshes/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/meshes/mesh_file.hpp"
+#include "io/meshes/mesh_shapes.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+template <typename T>
+Buffer<T> copy_of(const std::vector<T>& boxes) {
+    Buffer<T> copy{boxes.size()};
+    std::copy(boxes.begin(), boxes.end(), copy.data());
+    return copy;
+}
+
+Box3d box_of(const MeshFile& file, const MeshNode& node) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (const unsigned number : node.meshes()) {
+        for (const unsigned index : file.shown_vertices(number)) {
+            const BoundedPoint point = file.posed_vertex(node, file.mesh(number), index);
+            for (int axis = 0; axis < 3; ++axis) {
+                box.min[axis] = std::min(box.min[axis], point.low[axis]);
+                box.max[axis] = std::max(box.max[axis], point.high[axis]);
+            }
+        }
+    }
+    return box;
+}
+
+LoadedScene node_scene(const MeshFile& file) {
+    LoadedScene scene;
+    std::vector<Box3d> boxes;
+    for (const MeshNode& node : file.nodes()) {
+        boxes.push_back(box_of(file, node));
+        scene.names.push_back(node.name);
+    }
+    scene.objects = boxes.size();
+    scene.boxes = copy_of(boxes);
+    return scene;
+}
+
+void append_triangles(const MeshFile& file, const MeshNode& node, unsigned number, std::vector<Box3f>& boxes) {
+    const aiMesh& mesh = file.mesh(number);
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+        if (face.mNumIndices != 3) continue;
+        Box3f box;
+        for (unsigned k = 0; k < 3; ++k) {
+            const BoundedPoint point = file.posed_vertex(node, mesh, face.mIndices[k]);
+            for (int axis = 0; axis < 3; ++axis) {
+                const float value = float(point.value[axis]);
+                if (!std::isfinite(value)) file.refuse_vertex(node, face.mIndices[k], double(value));
+                box.min[axis] = k == 0 ? value : std::min(box.min[axis], value);
+                box.max[axis] = k == 0 ? value : std::max(box.max[axis], value);
+            }
+        }
+        boxes.push_back(box);
+    }
+}
+
+LoadedScene triangle_scene(const MeshFile& file) {
+    std::vector<Box3f> boxes;
+    for (const MeshNode& node : file.nodes()) {
+        for (const unsigned number : node.meshes()) append_triangles(file, node, number, boxes);
+    }
+    LoadedScene scene;
+    scene.objects = boxes.size();
+    scene.boxes = copy_of(boxes);
+    return scene;
+}
+
+/// Without boxes.
+LoadedScene exact_triangle_scene(const MeshFile& file) {
+    LoadedScene scene;
+    scene.triangles = triangles_of(file);
+    scene.objects = scene.triangles->triangles.size();
+    return scene;
+}
+
+}  // namespace
+
+bool is_mesh_ending(std::string_view ending) {
+    return ending.size() > 1 && Assimp::Importer().IsExtensionSupported(std::string(ending));
+}
+
+LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content) {
+    const bool by_triangle = content.objects == MeshObjects::triangle;
+    const MeshFile file(path, by_triangle || content.shapes);
+    if (by_triangle) return content.shapes ? exact_triangle_scene(file) : triangle_scene(file);
+    LoadedScene scene = node_scene(file);
+    if (content.shapes) scene.shapes = shapes_of(file);
+    return scene;
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,124 @@
+#include "io/meshes/mesh_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <numeric>
+
+#include <assimp/postprocess.h>
+#include <fmt/format.h>
+
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// Importers turn what they throw into an error text; want of memory is told apart again.
+void rethrow_bad_alloc(const Assimp::Importer& importer) {
+    const std::exception_ptr& exception = importer.GetException();
+    if (!exception) return;
+    try {
+        std::rethrow_exception(exception);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (...) {
+        return;
+    }
+}
+
+BoundedPose pose_of(const aiNode& node) {
+    const aiMatrix4x4& m = node.mTransformation;
+    return BoundedPose({{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}});
+}
+
+std::string name_of(const aiNode& node, unsigned position) {
+    return node.mName.length == 0 ? fmt::format("#{}", position) : std::string(node.mName.C_Str());
+}
+
+/// All nodes with meshes, in pre-order. They are walked with a stack of our own: files choose how deep they are.
+std::vector<MeshNode> find_nodes(const aiScene& scene) {
+    std::vector<MeshNode> nodes;
+    std::vector<MeshNode> waiting;
+    waiting.push_back({scene.mRootNode, name_of(*scene.mRootNode, 0), pose_of(*scene.mRootNode)});
+    while (!waiting.empty()) {
+        const MeshNode at = std::move(waiting.back());
+        waiting.pop_back();
+        for (unsigned i = at.node->mNumChildren; i-- > 0;) {
+            const aiNode& child = *at.node->mChildren[i];
+            waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child)});
+        }
+        if (at.node->mNumMeshes > 0) nodes.push_back(at);
+    }
+    return nodes;
+}
+
+}  // namespace
+
+MeshFile::MeshFile(const std::string& path, bool triangles) : path_(path), scene_(&import(path, triangles)) {
+    shown_.resize(scene_->mNumMeshes);
+    nodes_ = find_nodes(*scene_);
+    std::erase_if(nodes_, [this](const MeshNode& node) { return !shows_something(node); });
+}
+
+const aiScene& MeshFile::import(const std::string& path, bool triangles) {
+    const InputFile readable(path);  // for the system's own words where it is not
+    const aiScene* scene = importer_.ReadFile(path, triangles ? unsigned(aiProcess_Triangulate) : 0u);
+    if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
+    rethrow_bad_alloc(importer_);
+    std::string words = importer_.GetErrorString();
+    std::replace_if(
+        words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+    refuse(path,
+           words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
+}
+
+bool MeshFile::shows_something(const MeshNode& node) {
+    bool something = false;
+    for (const unsigned number : node.meshes()) {
+        if (!shown_[number]) shown_[number] = find_shown(node, mesh(number));
+        something |= !shown_[number]->empty();
+    }
+    return something;
+}
+
+std::vector<unsigned> MeshFile::find_shown(const MeshNode& node, const aiMesh& mesh) const {
+    std::vector<unsigned> shown;
+    if (mesh.mNumFaces == 0) {
+        shown.resize(mesh.mNumVertices);
+        std::iota(shown.begin(), shown.end(), 0u);
+        return shown;
+    }
+    std::vector<bool> seen(mesh.mNumVertices);
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+        for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+            if (index >= mesh.mNumVertices) {
+                refuse(path_,
+                       fmt::format("node '{}': a face names vertex {} of {}", node.name, index, mesh.mNumVertices));
+            }
+            if (!seen[index]) shown.push_back(index);
+            seen[index] = true;
+        }
+    }
+    return shown;
+}
+
+BoundedPoint MeshFile::posed_vertex(const MeshNode& node, const aiMesh& mesh, unsigned index) const {
+    const Point3d place = vertex(mesh, index);
+    const BoundedPoint point = node.pose.apply(place);
+    for (const auto& numbers : {place, point.low, point.high}) {
+        for (const double number : numbers) {
+            if (!std::isfinite(number)) refuse_vertex(node, index, number);
+        }
+    }
+    return point;
+}
+
+void MeshFile::refuse_vertex(const MeshNode& node, unsigned index, double value) const {
+    refuse(path_,
+           fmt::format("node '{}': vertex {} is at {}, not at a finite place", node.name, index, number_text(value)));
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,145 @@
+#include "io/results/baseline.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/memory.hpp"
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+#include "io/json/json_fields.hpp"
+#include "io/json/json_text.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// What an object is known by.
+struct ObjectId {
+    std::uint32_t number;
+    std::string name;
+    std::optional<std::uint32_t> triangle;
+
+    /// `set`: of those without a name.
+    std::string text(std::string_view set) const {
+        if (name.empty()) return fmt::format("{}#{}", set, number);
+        return triangle ? fmt::format("{}/{}", *triangle, name) : "/" + name;
+    }
+};
+
+// A key begins with how the two objects stand: apart, together, or that nobody asked.
+constexpr char standing_unasked = '?', standing_apart = '-', standing_together = '+';
+
+char standing_in(const JsonFields& row) {
+    if (row.find("class") == nullptr) return standing_unasked;
+    return row.text("class") == word_of(CollisionClass::clearance) ? standing_apart : standing_together;
+}
+
+/// How those may have stood that a collision of this class is like, what fits best first.
+std::string_view standings_like(CollisionClass collision_class) {
+    if (collision_class == CollisionClass::unknown) return "?+-";
+    return meet(collision_class) ? "+?" : "-?";
+}
+
+std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
+    std::string first = a.text(join ? "a" : ""), second = b.text(join ? "b" : "");
+    if (second < first) std::swap(first, second);
+    return fmt::format("{}{}:{}{}", standing_unasked, first.size(), first, second);
+}
+
+ObjectId id_in(const JsonFields& row, const std::string& side) {
+    ObjectId id;
+    id.number = row.whole_number(side);
+    if (row.find(side + "_name") != nullptr) id.name = row.text(side + "_name");
+    if (row.find(side + "_triangle") != nullptr) id.triangle = row.whole_number(side + "_triangle");
+    return id;
+}
+
+ObjectId id_of(std::uint32_t object, const ObjectNames& names) {
+    ObjectId id{object, clean_text(names.of(object)), {}};
+    if (!names.owners.empty()) id.triangle = names.triangle(object);
+    return id;
+}
+
+}  // namespace
+
+Baseline::Baseline(const std::string& path, bool join, const std::stop_token& stop) : join_(join) {
+    const InputFile file(path);
+    Buffer<char> text{std::size_t(file.size())};
+    file.read(0, std::as_writable_bytes(text.span()), stop);
+    read({text.data(), text.size()}, path, stop);
+}
+
+Baseline Baseline::of_text(std::string_view text, std::string_view file, bool join) {
+    Baseline baseline(join);
+    baseline.read(text, file, {});
+    return baseline;
+}
+
+void Baseline::read(std::string_view text, std::string_view file, const std::stop_token& stop) {
+    for (std::uint64_t number = 1; !text.empty(); ++number) {
+        if (stop.stop_requested()) cancel();
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+        const std::string place = fmt::format("{}: line {}", file, number);
+        const nlohmann::json value = parse_json(line, place, stop);
+        const JsonFields row(value, place);
+        if (row.find("frame") != nullptr) row.refuse_key("frame", "results of moving scenes cannot be compared");
+        // Rows of a comparison that was itself written to a file.
+        if (row.find("change") != nullptr && row.text("change") == word_of(Change::gone)) continue;
+        std::string key = key_of_ids(id_in(row, "a"), id_in(row, "b"), join_);
+        key[0] = standing_in(row);
+        waiting_[key].push_back(lines_.size());
+        lines_.emplace_back(line);
+    }
+    met_.resize(lines_.size());
+    counts_.gone = lines_.size();
+    for (auto& [key, rows] : waiting_) std::reverse(rows.begin(), rows.end());
+}
+
+std::string Baseline::key_of(Pair pair, const CollisionNames& names) const {
+    return key_of_ids(id_of(pair.a, names.a), id_of(pair.b, names.b), join_);
+}
+
+bool Baseline::find_again(std::string key, CollisionClass collision_class) {
+    for (const char standing : standings_like(collision_class)) {
+        key[0] = standing;
+        const auto rows = waiting_.find(key);
+        if (rows == waiting_.end() || rows->second.empty()) continue;
+        met_[rows->second.back()] = true;
+        rows->second.pop_back();
+        return true;
+    }
+    return false;
+}
+
+std::vector<Change> Baseline::compare(std::span<const Pair> pairs, std::span<const Finding> findings,
+                                      const CollisionNames& names) {
+    std::vector<Change> changes(pairs.size(), Change::begun);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const CollisionClass now = findings.empty() ? CollisionClass::unknown : findings[i].collision_class;
+        if (find_again(key_of(pairs[i], names), now)) changes[i] = Change::same;
+    }
+    const auto same = std::uint64_t(std::count(changes.begin(), changes.end(), Change::same));
+    counts_.same += same;
+    counts_.gone -= same;
+    counts_.begun += changes.size() - same;
+    return changes;
+}
+
+std::vector<std::string_view> Baseline::gone() const {
+    std::vector<std::string_view> gone;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+        if (!met_[i]) gone.emplace_back(lines_[i]);
+    }
+    return gone;
+}
+
+ChangeCounts Baseline::counts() const { return counts_; }
+
+}  // namespace octopair::io

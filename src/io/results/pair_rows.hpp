@@ -1,0 +1,30 @@
+// Pairs as rows of text, behind what all rows of a call begin with: a frame, an event.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/results/pair_writer.hpp"
+
+namespace octopair::io {
+
+/// Rows `BEGIN a,b`. `begin` is as it stands in the file, with its commas: at most 64 characters.
+void write_csv_rows(OutputStream& out, std::string_view begin, std::span<const Pair> pairs);
+
+/// Rows `{BEGIN "a":0,"b":5}`, with the names of objects that have one.
+class JsonlRows {
+public:
+    explicit JsonlRows(const PairNames& names) : names_(names) {}
+
+    void write(OutputStream& out, std::string_view begin, std::span<const Pair> pairs);
+
+private:
+    void append_number(std::string_view before, std::uint32_t number);
+    void append_name(std::string_view key, const std::vector<std::string>* names, std::uint32_t object);
+
+    PairNames names_;
+    std::string line_;
+};
+
+}  // namespace octopair::io

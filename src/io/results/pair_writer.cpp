@@ -1,0 +1,135 @@
+#include "io/results/pair_writer.hpp"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "io/boxes/npy_header.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/results/pair_rows.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+class NpyWriter final : public PairWriter {
+public:
+    NpyWriter(std::string path, bool moving) : path_(std::move(path)), moving_(moving) {
+        if (!moving_) open(path_);  // at once: what cannot be written is known before the work
+    }
+
+    void begin_frame(std::uint64_t frame) override {
+        if (moving_) open(frame_path(path_, frame));
+    }
+    void write(std::span<const Pair> pairs) override {
+        static_assert(sizeof(Pair) == 2 * sizeof(std::uint32_t));
+        file_->write(std::as_bytes(pairs));
+        count_ += pairs.size();
+    }
+    void end_frame() override {
+        if (moving_) close();
+    }
+    void finish() override {
+        if (!moving_) close();
+    }
+
+private:
+    void open(const std::string& path) {
+        file_.emplace(path);
+        count_ = 0;
+        file_->write(header());
+    }
+    void close() {
+        file_->write_at(0, header());
+        file_->commit();
+        file_.reset();
+    }
+    std::string header() const { return make_npy_header(NpyType::uint32, std::array<std::uint64_t, 2>{count_, 2}); }
+
+    std::string path_;
+    bool moving_;
+    std::optional<AtomicFile> file_;
+    std::uint64_t count_ = 0;
+};
+
+class CsvWriter final : public PairWriter {
+public:
+    CsvWriter(std::unique_ptr<OutputStream> out, bool moving) : out_(std::move(out)), moving_(moving) {
+        out_->write(moving_ ? std::string_view("frame,a,b\n") : std::string_view("a,b\n"));
+    }
+
+    void begin_frame(std::uint64_t frame) override {
+        if (moving_) frame_ = fmt::format("{},", frame);
+    }
+    void write(std::span<const Pair> pairs) override { write_csv_rows(*out_, frame_, pairs); }
+    void end_frame() override {}
+    void finish() override { out_->commit(); }
+
+private:
+    std::unique_ptr<OutputStream> out_;
+    bool moving_;
+    std::string frame_;
+};
+
+class JsonlWriter final : public PairWriter {
+public:
+    JsonlWriter(std::unique_ptr<OutputStream> out, bool moving, const PairNames& names)
+        : out_(std::move(out)), moving_(moving), rows_(names) {}
+
+    void begin_frame(std::uint64_t frame) override {
+        if (moving_) frame_ = fmt::format("\"frame\":{},", frame);
+    }
+    void write(std::span<const Pair> pairs) override { rows_.write(*out_, frame_, pairs); }
+    void end_frame() override {}
+    void finish() override { out_->commit(); }
+
+private:
+    std::unique_ptr<OutputStream> out_;
+    bool moving_;
+    JsonlRows rows_;
+    std::string frame_;
+};
+
+}  // namespace
+
+PairFormat pair_format(const std::string& path) {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    if (ending == ".npy") return PairFormat::npy;
+    if (ending == ".csv") return PairFormat::csv;
+    if (ending == ".jsonl") return PairFormat::jsonl;
+    throw Error(ErrorCode::usage, fmt::format("{}: the name of a pairs file ends in .npy, .csv or .jsonl", path));
+}
+
+std::string frame_path(const std::string& path, std::uint64_t frame) {
+    const std::size_t dot = path.rfind('.');
+    return fmt::format("{}.{:06}{}", path.substr(0, dot), frame, dot == std::string::npos ? "" : path.substr(dot));
+}
+
+std::unique_ptr<PairWriter> make_npy_writer(const std::string& path, bool moving) {
+    return std::make_unique<NpyWriter>(path, moving);
+}
+
+std::unique_ptr<PairWriter> make_csv_writer(std::unique_ptr<OutputStream> out, bool moving) {
+    return std::make_unique<CsvWriter>(std::move(out), moving);
+}
+
+std::unique_ptr<PairWriter> make_jsonl_writer(std::unique_ptr<OutputStream> out, bool moving, const PairNames& names) {
+    return std::make_unique<JsonlWriter>(std::move(out), moving, names);
+}
+
+std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool moving, const PairNames& names) {
+    switch (pair_format(path)) {
+        case PairFormat::npy:
+            return make_npy_writer(path, moving);
+        case PairFormat::csv:
+            return make_csv_writer(std::make_unique<AtomicFile>(path), moving);
+        case PairFormat::jsonl:
+            return make_jsonl_writer(std::make_unique<AtomicFile>(path), moving, names);
+    }
+    throw Error(ErrorCode::usage, "unknown pair format");
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,51 @@
+#include "narrow_phase/convex/convex_plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/vector.hpp"
+#include "narrow_phase/convex/convex_frame.hpp"
+
+namespace octopair {
+PlaneSpan span_across(const PosedPlane& plane, const PosedConvex& convex) {
+    const FramedConvex framed(convex, plane.point);
+    const Point3d down = vector::times(plane.normal, -1);
+    const Point3d highest = framed.support(plane.normal), lowest = framed.support(down);
+    const double radius = framed.radius();
+    // The rounding of supports, of the plane's own point and of its normal, over how far the thing is from that point.
+    double largest = 3 * framed.magnitude() + radius;
+    for (const double at : plane.point) largest = std::max(largest, std::fabs(at));
+    const double slack = 16 * std::numeric_limits<double>::epsilon() * largest;
+    PlaneSpan span;
+    span.high = vector::dot(highest, plane.normal) + radius + slack;
+    span.low = vector::dot(lowest, plane.normal) - radius - slack;
+    span.highest = vector::plus(vector::plus(highest, vector::times(plane.normal, radius)), plane.point);
+    span.lowest = vector::plus(vector::plus(lowest, vector::times(down, radius)), plane.point);
+    return span;
+}
+
+ConvexGap plane_gap(const PosedPlane& plane, const PlaneSpan& span) {
+    ConvexGap gap;
+    gap.at_least = std::max({0.0, span.low, -span.high});
+    const bool above = span.low > -span.high;
+    gap.on_b = above ? span.lowest : span.highest;
+    const double height = height_above(plane, gap.on_b);
+    gap.on_a = vector::minus(gap.on_b, vector::times(plane.normal, height));
+    if (gap.at_least > 0) gap.distance = std::max(gap.at_least, std::fabs(height));
+    return gap;
+}
+
+ConvexContact plane_contact(const PosedPlane& plane, const PlaneSpan& span) {
+    // The shorter way: up until the lowest point is at the plane, or down until the highest one is.
+    const bool up = -span.low <= span.high;
+    ConvexContact contact;
+    contact.normal = up ? plane.normal : vector::times(plane.normal, -1);
+    const Point3d& deepest = up ? span.lowest : span.highest;
+    const double height = height_above(plane, deepest);
+    contact.depth = std::max(0.0, up ? -height : height);
+    contact.point = vector::plus(deepest, vector::times(contact.normal, contact.depth / 2));
+    return contact;
+}
+
+}  // namespace octopair

@@ -1,0 +1,173 @@
+// Geometry: a shape, checked and made ready.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "base/floating_point.hpp"
+#include "geometry/vector.hpp"
+#include "narrow_phase/mesh/mesh_tree.hpp"
+#include "narrow_phase/prepared.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+namespace {
+
+[[noreturn]] void refuse_geometry(const std::string& what) { throw Error(ErrorCode::bad_input, what); }
+
+void check_length(double value, const std::string& what) {
+    if (!(value > 0) || !std::isfinite(value)) {
+        refuse_geometry(what + " is " + std::to_string(value) + "; it must be finite and above 0");
+    }
+}
+
+void check_point(const Point3d& point, const std::string& what) {
+    for (const double at : point) {
+        if (!std::isfinite(at)) refuse_geometry(what + " has a coordinate that is not finite: " + std::to_string(at));
+    }
+}
+
+void check_lengths(const Point3d& lengths, const std::string& what) {
+    for (std::size_t axis = 0; axis < 3; ++axis) check_length(lengths[axis], what + " along " + "xyz"[axis]);
+}
+
+void check_shape(const shape::Sphere& sphere) { check_length(sphere.radius, "a sphere's radius"); }
+void check_shape(const shape::Box& box) { check_lengths(box.half_extents, "a box's half extent"); }
+void check_shape(const shape::Capsule& capsule) {
+    check_length(capsule.radius, "a capsule's radius");
+    if (!(capsule.length >= 0) || !std::isfinite(capsule.length)) {
+        refuse_geometry("a capsule's length is " + std::to_string(capsule.length) +
+                        "; it must be finite and not below 0");
+    }
+}
+void check_shape(const shape::Cylinder& cylinder) {
+    check_length(cylinder.radius, "a cylinder's radius");
+    check_length(cylinder.length, "a cylinder's length");
+}
+void check_shape(const shape::Cone& cone) {
+    check_length(cone.radius, "a cone's radius");
+    check_length(cone.length, "a cone's length");
+}
+void check_shape(const shape::Ellipsoid& ellipsoid) { check_lengths(ellipsoid.radii, "an ellipsoid's radius"); }
+void check_shape(const shape::Plane& plane) {
+    check_point(plane.normal, "a plane's normal");
+    if (plane.normal == Point3d{0, 0, 0}) refuse_geometry("a plane's normal is 0");
+    if (!std::isfinite(plane.offset))
+        refuse_geometry("a plane's offset is not finite: " + std::to_string(plane.offset));
+    const double length = vector::length(plane.normal);
+    if (!std::isfinite(length) || !std::isfinite(plane.offset / length)) {
+        refuse_geometry("a plane's offset is " + std::to_string(plane.offset) +
+                        ", beyond float64 for a normal of its length");
+    }
+}
+void check_shape(const shape::ConvexHull& hull) {
+    if (hull.points.empty()) refuse_geometry("a convex hull has no points");
+    for (std::size_t i = 0; i < hull.points.size(); ++i) {
+        check_point(hull.points[i], "point " + std::to_string(i) + " of a convex hull");
+    }
+}
+void check_shape(const shape::Mesh& mesh) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        check_point(mesh.vertices[i], "vertex " + std::to_string(i) + " of a mesh");
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const std::uint32_t vertex : mesh.triangles[i]) {
+            if (vertex < mesh.vertices.size()) continue;
+            refuse_geometry("triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) +
+                            " of " + std::to_string(mesh.vertices.size()));
+        }
+    }
+}
+
+/// The points of a hull, or the vertices that a triangle uses, each once.
+std::vector<Point3d> vertices_of(const shape::Any& shape) {
+    if (const auto* hull = std::get_if<shape::ConvexHull>(&shape)) return hull->points;
+    const auto* mesh = std::get_if<shape::Mesh>(&shape);
+    if (!mesh) return {};
+    std::vector<char> used(mesh->vertices.size(), 0);
+    for (const auto& triangle : mesh->triangles) {
+        for (const std::uint32_t vertex : triangle) used[vertex] = 1;
+    }
+    std::vector<Point3d> vertices;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i]) vertices.push_back(mesh->vertices[i]);
+    }
+    return vertices;
+}
+
+/// Its core's outermost coordinates, and outward by the radius.
+Box3d box_of(const ConvexSolid& solid) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d box = {};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Point3d direction = {};
+        direction[axis] = 1;
+        const double high = support(solid, direction)[axis];
+        direction[axis] = -1;
+        const double low = support(solid, direction)[axis];
+        box.max[axis] = solid.radius > 0 ? std::nextafter(high + solid.radius, infinity) : high;
+        box.min[axis] = solid.radius > 0 ? std::nextafter(low - solid.radius, -infinity) : low;
+    }
+    return box;
+}
+
+double farthest_from(const Point3d& centre, const std::vector<Point3d>& points) {
+    double most = 0;
+    for (const Point3d& point : points) most = std::max(most, vector::length(vector::minus(point, centre)));
+    return most;
+}
+
+/// How far a solid that is not made of points reaches from the middle of its box.
+double reach(const ConvexSolid& solid) {
+    const Point3d& extents = solid.extents;
+    switch (solid.core) {
+        case ConvexSolid::Core::ellipsoid:
+            return *std::max_element(extents.begin(), extents.end());
+        case ConvexSolid::Core::box:
+            return vector::length(extents);
+        default:
+            return std::hypot(extents[0], extents[2]);
+    }
+}
+
+ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>& vertices) {
+    const ConvexSolid& solid = made.convex;
+    if (vertices.empty() && !solid.exists()) return {};
+    ShapeBounds bounds;
+    bounds.bounded = true;
+    bounds.box = vertices.empty() ? box_of(solid) : made.vertices.world_box(Pose{});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        bounds.centre[axis] = bounds.box.min[axis] / 2 + bounds.box.max[axis] / 2;
+    }
+    const bool points = solid.core == ConvexSolid::Core::points;
+    const double core =
+        points ? farthest_from(bounds.centre, vertices.empty() ? solid.points : vertices) : reach(solid);
+    // The centre is rounded, and so are differences, squares and their sum.
+    bounds.radius = (core + solid.radius) * (1 + 16 * std::numeric_limits<double>::epsilon());
+    if (!std::isfinite(bounds.radius)) refuse_geometry("a shape is larger than float64 can tell");
+    return bounds;
+}
+
+}  // namespace
+
+Geometry::Geometry(shape::Any shape) {
+    const FloatingPointScope scope;
+    std::visit([](const auto& one) { check_shape(one); }, shape);
+    auto made = std::make_shared<Prepared>();
+    made->shape = std::move(shape);
+    made->convex = make_convex_solid(made->shape);
+    const std::vector<Point3d> vertices = vertices_of(made->shape);
+    made->vertices = VertexBlocks(vertices);
+    made->bounds = bounds_of(*made, vertices);
+    if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) {
+        made->tree = make_mesh_tree(*mesh);
+    } else if (made->convex.exists()) {
+        made->tree = std::make_shared<MeshTree>(make_box_tree(made->bounds.box));
+    }
+    prepared_ = std::move(made);
+}
+
+const shape::Any& Geometry::shape() const { return prepared_->shape; }
+
+}  // namespace octopair

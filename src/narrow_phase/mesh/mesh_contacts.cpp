@@ -1,0 +1,186 @@
+#include "narrow_phase/mesh/mesh_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "geometry/vector.hpp"
+#include "narrow_phase/exact/contact_of_triangles.hpp"
+#include "narrow_phase/exact/orientation.hpp"
+#include "narrow_phase/mesh/mesh_leaves.hpp"
+#include "narrow_phase/mesh/mesh_probe.hpp"
+#include "narrow_phase/mesh/mirror.hpp"
+
+namespace octopair {
+
+namespace {
+
+Box3d world_box(const PosedMesh& mesh) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (const auto& corners : mesh.tree.triangles) {
+        for (const std::uint32_t corner : corners) {
+            const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[corner]);
+            for (int axis = 0; axis < 3; ++axis) {
+                box.min[axis] = std::min(box.min[axis], place[axis]);
+                box.max[axis] = std::max(box.max[axis], place[axis]);
+            }
+        }
+    }
+    return box;
+}
+
+bool holds(const Box3d& box, const Point3d& point) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (point[axis] < box.min[axis] || point[axis] > box.max[axis]) return false;
+    }
+    return true;
+}
+
+Point3d middle_of_box(const Box3d& box) {
+    Point3d middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+    return middle;
+}
+
+/// How deep places of the one are inside the other.
+class DepthSearch {
+public:
+    DepthSearch(const PosedMesh& outer, const std::stop_token& stop)
+        : outer_(outer), stop_(stop), box_(world_box(outer)), probe_(outer) {}
+
+    double deepest(const PosedMesh& inner) {
+        if (!outer_.tree.parts.any_closed) return 0;
+        const Point3d middle = middle_of_box(world_box(inner));
+        if (holds(box_, middle) && probe_.distance(middle, 0) > 0 && encloses(inner, middle)) look_at(middle);
+        const std::vector<Point3d> places = places_of(inner);
+        // Some from all over first: the deeper these are, the fewer of the others ask for more than a look.
+        for (const std::size_t step : {std::size_t(64), std::size_t(1)}) {
+            for (std::size_t i = 0; i < places.size() && !stop_.stop_requested(); i += step) look_at(places[i]);
+        }
+        return deepest_;
+    }
+
+private:
+    /// Corners and middles of triangles, where they can be inside; those of one neighbourhood together.
+    std::vector<Point3d> places_of(const PosedMesh& inner) const {
+        std::vector<Point3d> places;
+        std::vector<bool> seen(inner.tree.vertices.size());
+        const auto add = [&](const Point3d& place) {
+            if (holds(box_, place)) places.push_back(place);
+        };
+        for (std::uint32_t i = 0; i < inner.tree.triangles.size(); ++i) {
+            const Triangle3d triangle = inner.tree.world_triangle(inner.pose, i);
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t vertex = inner.tree.triangles[i][corner];
+                if (!seen[vertex]) add(triangle[corner]);
+                seen[vertex] = true;
+            }
+            add(middle_of(triangle));
+        }
+        return places;
+    }
+
+    /// Few places are deeper than those before; the cheaper questions come first.
+    void look_at(const Point3d& place) {
+        if (vector::length(vector::minus(place, outside_)) < outside_radius_) return;
+        const double distance = probe_.distance(place, deepest_);
+        if (distance <= deepest_) return;
+        if (encloses(outer_, place)) {
+            deepest_ = distance;
+        } else {
+            outside_ = place, outside_radius_ = distance * (1 - 1e-9);
+        }
+    }
+
+    const PosedMesh& outer_;
+    const std::stop_token& stop_;
+    Box3d box_;
+    SurfaceProbe probe_;
+    double deepest_ = 0;
+    // Around the last place outside, as far as no surface is: all of that is outside.
+    Point3d outside_ = {};
+    double outside_radius_ = 0;
+};
+
+/// Whether two triangles in one plane face the same side of it.
+bool face_alike(const Triangle3d& a, const Triangle3d& b) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const int side_a = line_side(a[0], a[1], a[2], axis);
+        if (side_a != 0) return side_a == line_side(b[0], b[1], b[2], axis);
+    }
+    return false;
+}
+
+/// Before others: the deeper, then the lesser numbers.
+bool comes_first(const Contact& a, const Contact& b) {
+    return std::tuple(-a.depth, a.feature_a, a.feature_b) < std::tuple(-b.depth, b.feature_a, b.feature_b);
+}
+
+class ContactSearch {
+public:
+    ContactSearch(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request)
+        : a_(a), b_(b), request_(request), same_handed_(mirrors(a.pose) == mirrors(b.pose)) {}
+
+    void run(Finding& finding) {
+        visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
+            add(at);
+            return !request_.stop.stop_requested();
+        });
+        const double depth = depth_of_meshes(a_, b_, request_.stop);
+        const bool inside = penetrating_ || depth > 0;
+        finding.collision_class = inside ? CollisionClass::penetrating : CollisionClass::touching;
+        finding.depth = !inside ? 0 : depth > 0 ? depth : deepest_;
+        std::sort(contacts_.begin(), contacts_.end(), comes_first);
+        finding.more_contacts = more_;
+        finding.contacts = std::move(contacts_);
+    }
+
+private:
+    void add(const MeetingTriangles& at) {
+        const TriangleContact contact = triangle_contact(at.a, at.b);
+        penetrating_ |= contact.meeting == TriangleMeeting::crossing;
+        if (contact.meeting == TriangleMeeting::overlapping && at.both_oriented) {
+            penetrating_ |= face_alike(at.a, at.b) == same_handed_;
+        }
+        Contact made = contact_of(at.a, at.b, contact);
+        deepest_ = std::max(deepest_, made.depth);
+        made.feature_a = at.number_a;
+        made.feature_b = at.number_b;
+        keep(made);
+    }
+
+    /// A heap with the last one to be told in front.
+    void keep(const Contact& contact) {
+        if (contacts_.size() == request_.max_contacts) {
+            more_ = true;
+            if (contacts_.empty() || !comes_first(contact, contacts_.front())) return;
+            std::pop_heap(contacts_.begin(), contacts_.end(), comes_first);
+            contacts_.pop_back();
+        }
+        contacts_.push_back(contact);
+        std::push_heap(contacts_.begin(), contacts_.end(), comes_first);
+    }
+
+    const PosedMesh &a_, &b_;
+    const ContactRequest& request_;
+    bool same_handed_;
+    bool penetrating_ = false, more_ = false;
+    double deepest_ = 0;  // of the contacts
+    std::vector<Contact> contacts_;
+};
+
+}  // namespace
+
+double depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop) {
+    if (a.tree.nodes.empty() || b.tree.nodes.empty()) return 0;
+    return std::max(DepthSearch(a, stop).deepest(b), DepthSearch(b, stop).deepest(a));
+}
+
+void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding) {
+    ContactSearch(a, b, request).run(finding);
+}
+
+}  // namespace octopair

@@ -1,0 +1,79 @@
+// What a mesh encloses: a ray from the point, in the world, along x, and how the closed parts wind around it.
+#include <algorithm>
+
+#include "narrow_phase/exact/orientation.hpp"
+#include "narrow_phase/exact/ray_parity.hpp"
+#include "narrow_phase/mesh/mesh_leaves.hpp"
+#include "narrow_phase/mesh/mesh_pair.hpp"
+#include "narrow_phase/mesh/world_boxes.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// Whether the ray may pass a box.
+bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Point3d& from) {
+    for (int row = 0; row < 3; ++row) {
+        const auto [low, high] = boxes.span(node, row);
+        if (high < from[row]) return false;
+        if (row > 0 && low > from[row]) return false;
+    }
+    return true;
+}
+
+/// How often the surface was crossed: outward less inward, and of what does not know its outside, how often in all.
+struct Crossings {
+    std::int64_t winding = 0;
+    std::uint64_t unoriented = 0;
+};
+
+void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const Point3d& from, Crossings& crossings) {
+    for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+        const MeshParts::Side side = mesh.tree.parts.sides[i];
+        if (side == MeshParts::Side::open) continue;
+        const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
+        if (!ray_crosses(from, triangle, 0)) continue;
+        if (side == MeshParts::Side::unoriented) {
+            ++crossings.unoriented;
+        } else {
+            crossings.winding += line_side(triangle[0], triangle[1], triangle[2], 0);
+        }
+    }
+}
+
+}  // namespace
+
+bool encloses(const PosedMesh& mesh, const Point3d& point) {
+    if (!mesh.tree.parts.any_closed) return false;
+    const WorldBoxes boxes(mesh);
+    Crossings crossings;
+    NodeStack<std::uint32_t> waiting;
+    waiting.push(0);
+    while (!waiting.empty()) {
+        const MeshNode& node = mesh.tree.nodes[waiting.pop()];
+        if (!may_pass(boxes, node, point)) continue;
+        if (node.is_leaf()) {
+            count_leaf(mesh, node, point, crossings);
+        } else {
+            waiting.push(node.first + 1);
+            waiting.push(node.first);
+        }
+    }
+    return crossings.winding != 0 || crossings.unoriented % 2 != 0;
+}
+
+bool encloses_part(const PosedMesh& outer, const PosedMesh& inner) {
+    const auto& corners = inner.tree.parts.corners;
+    return outer.tree.parts.any_closed && std::any_of(corners.begin(), corners.end(), [&](const Point3d& corner) {
+               return encloses(outer, vector::posed(inner.pose, corner));
+           });
+}
+
+bool holds_whole(const PosedMesh& outer, const PosedMesh& inner) {
+    const auto& corners = inner.tree.parts.corners;
+    return !corners.empty() && !encloses_part(inner, outer) &&
+           std::all_of(corners.begin(), corners.end(),
+                       [&](const Point3d& corner) { return encloses(outer, vector::posed(inner.pose, corner)); });
+}
+
+}  // namespace octopair

@@ -1,0 +1,177 @@
+// Boxes of shaped objects for the all-pairs stage, of what they sweep where they move.
+//
+// Meshes    the bounds of their vertices as they are in the world, exactly. Others: of their support, and outward by what
+//           rounding may have taken.
+// Sweeps    an object that turns is looked at in steps of at most 1/8 radian; between two of these its points stay within
+//           Motion::sagitta of straight ways, so the boxes of the steps are widened by that.
+// Planes    an upright one (across an axis, to 1e-9) is as thin as rounding allows. Others fill the bounds of all other
+//           objects: a smaller box that holds the part within these would be too small for a margin, as the plane's
+//           nearest point to an object may lie outside them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "base/floating_point.hpp"
+#include "narrow_phase/convex/posed_plane.hpp"
+#include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/prepared.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+Box3d around(const Point3d& point) { return {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}}; }
+
+void unite(Box3d& box, const Box3d& other) {
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = std::min(box.min[axis], other.min[axis]);
+        box.max[axis] = std::max(box.max[axis], other.max[axis]);
+    }
+}
+
+void widen(Box3d& box, int axis, double by) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    box.min[axis] = std::nextafter(box.min[axis] - by, -infinity);
+    box.max[axis] = std::nextafter(box.max[axis] + by, infinity);
+}
+
+Box3d box_by_support(const Geometry::Prepared& shape, const Pose& pose) {
+    const Box3d& local = shape.bounds.box;
+    Box3d box = shape.vertices.empty() ? Box3d{} : shape.vertices.world_box(pose);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto& row = pose.rows[axis];
+        const Point3d direction = {row[0], row[1], row[2]};
+        if (shape.vertices.empty()) {
+            box.max[axis] = vector::dot(direction, support(shape.convex, direction)) + row[3];
+            box.min[axis] = vector::dot(direction, support(shape.convex, vector::times(direction, -1))) + row[3];
+        }
+        double magnitude = std::fabs(row[3]) + shape.convex.radius;
+        for (std::size_t k = 0; k < 3; ++k) {
+            magnitude += std::fabs(row[k]) * std::max(std::fabs(local.min[k]), std::fabs(local.max[k]));
+        }
+        // The support is right to a few roundings of each coordinate, and so are three products and four sums.
+        widen(box, int(axis), shape.convex.radius + 16 * epsilon * magnitude);
+    }
+    return box;
+}
+
+Box3d box_at(const Geometry::Prepared& shape, const Pose& pose) {
+    if (shape.convex.exists()) return box_by_support(shape, pose);
+    return shape.vertices.empty() ? around(vector::place(pose)) : shape.vertices.world_box(pose);
+}
+
+Box3d swept_box(const Geometry::Prepared& shape, const Motion& motion) {
+    Box3d box = box_at(shape, motion.at(0));
+    unite(box, box_at(shape, motion.at(1)));
+    const int steps = 1 + int(motion.angle() * 8);
+    for (int step = 1; step < steps; ++step) unite(box, box_at(shape, motion.at(double(step) / steps)));
+    const double reach = vector::length(shape.bounds.centre) + shape.bounds.radius;
+    const double sagitta = motion.sagitta(reach, 1.0 / steps);
+    for (int axis = 0; axis < 3; ++axis) {
+        // Places on the way, and boxes there, are rounded too.
+        const double largest = std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis]));
+        widen(box, axis, sagitta + 64 * epsilon * (largest + motion.speed(reach)));
+    }
+    return box;
+}
+
+const shape::Plane* plane_of(const ShapedObjects& objects, std::size_t i) {
+    return std::get_if<shape::Plane>(&objects.geometries[objects.geometry[i]].shape());
+}
+
+/// Of objects that are not planes; `bounds` grows around them.
+std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<Box3d>& bounds) {
+    check(objects);
+    std::vector<Box3d> boxes(objects.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (plane_of(objects, i)) continue;
+        const Geometry::Prepared& shape = objects.geometries[objects.geometry[i]].prepared();
+        boxes[i] = objects.end_poses.empty()
+                       ? box_at(shape, objects.poses[i])
+                       : swept_box(shape, *Motion::between(objects.poses[i], objects.end_poses[i]));
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::isfinite(boxes[i].min[axis]) && std::isfinite(boxes[i].max[axis])) continue;
+            throw Error(ErrorCode::bad_input, "object " + std::to_string(i) + " reaches beyond float64");
+        }
+        if (!bounds) bounds = boxes[i];
+        unite(*bounds, boxes[i]);
+    }
+    return boxes;
+}
+
+/// The axis that a plane is across.
+std::optional<std::size_t> upright_axis(const PosedPlane& plane) {
+    // A tilt of 1e-9 makes way along the axis longer than along the normal by 1e-18 of it: less than a rounding.
+    constexpr double tolerance = 1e-9;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (std::fabs(plane.normal[(axis + 1) % 3]) > tolerance) continue;
+        if (std::fabs(plane.normal[(axis + 2) % 3]) <= tolerance) return axis;
+    }
+    return std::nullopt;
+}
+
+/// Cuts the box down to the plane's part of it.
+void flatten(Box3d& box, const PosedPlane& plane, std::size_t axis) {
+    double slope = 0, reach = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (k == axis) continue;
+        slope = std::max(slope, std::fabs(plane.normal[k]));
+        reach += std::max(std::fabs(box.min[k] - plane.point[k]), std::fabs(box.max[k] - plane.point[k]));
+    }
+    box.min[axis] = box.max[axis] = plane.point[axis];
+    widen(box, int(axis),
+          2 * slope * reach + 16 * epsilon * (std::fabs(plane.point[axis]) + vector::length(plane.point)));
+}
+
+void add_planes(const ShapedObjects& objects, const std::optional<Box3d>& bounds, std::vector<Box3d>& boxes) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const shape::Plane* shape = plane_of(objects, i);
+        if (!shape) continue;
+        const PosedPlane plane = posed_plane(*shape, objects.poses[i]);
+        if (!bounds) {
+            boxes[i] = around(vector::place(objects.poses[i]));
+            continue;
+        }
+        boxes[i] = *bounds;
+        const auto axis = upright_axis(plane);
+        if (!axis) continue;
+        if (objects.end_poses.empty()) {
+            flatten(boxes[i], plane, *axis);
+            continue;
+        }
+        // Two turns that leave a normal where it is differ by a turn about it: it is there all the time.
+        const PosedPlane end = posed_plane(*shape, objects.end_poses[i]);
+        if (upright_axis(end) != axis || (end.normal[*axis] > 0) != (plane.normal[*axis] > 0)) continue;
+        flatten(boxes[i], plane, *axis);
+        Box3d last = *bounds;
+        flatten(last, end, *axis);
+        unite(boxes[i], last);
+    }
+}
+
+}  // namespace
+
+std::vector<Box3d> boxes_of(const ShapedObjects& objects) {
+    const FloatingPointScope scope;
+    std::optional<Box3d> bounds;
+    std::vector<Box3d> boxes = boxes_of_bounded(objects, bounds);
+    add_planes(objects, bounds, boxes);
+    return boxes;
+}
+
+JoinBoxes boxes_of(const ShapedObjects& first, const ShapedObjects& second) {
+    const FloatingPointScope scope;
+    std::optional<Box3d> bounds;
+    JoinBoxes boxes;
+    boxes.first = boxes_of_bounded(first, bounds);
+    boxes.second = boxes_of_bounded(second, bounds);
+    add_planes(first, bounds, boxes.first);
+    add_planes(second, bounds, boxes.second);
+    return boxes;
+}
+
+}  // namespace octopair

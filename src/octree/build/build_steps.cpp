@@ -1,0 +1,188 @@
+#include "octree/build/build_steps.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+#include "octree/build/octants_of.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+constexpr std::size_t most_batch = default_tuning.build.batch;
+constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
+constexpr std::size_t prefetched_ghosts = 8;     // and ghosts
+constexpr std::size_t ghosts_at_once = 1 << 14;  // committed; more than a batch can have
+
+/// A block's ghosts, in the order in which they are found.
+class GhostList {
+public:
+    GhostList(BuildMemory& memory, const ObjectBlock& block)
+        : ghosts_(memory.ghosts), begin_(most_ghosts * block.begin), end_(most_ghosts * block.end) {}
+
+    /// Makes room for a batch.
+    void prepare() {
+        if (size_ + most_ghosts * most_batch <= committed_) return;
+        const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
+        ghosts_.commit(begin_ + committed_, more);
+        committed_ += more;
+    }
+    void add(NodeIndex node, unsigned begins) { ghosts_[begin_ + size_++] = Ghost(node, begins); }
+    void end_box() { ghosts_[begin_ + size_ - 1].set_last(); }
+    std::size_t size() const { return size_; }
+
+private:
+    Buffer<Ghost>& ghosts_;
+    std::size_t begin_, end_;
+    std::size_t size_ = 0;
+    std::size_t committed_ = 0;
+};
+
+}  // namespace
+
+void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t node_count, std::size_t node_ranges) {
+    nodes = node_count;
+    homes.resize_discard(objects);
+    ghosts.reserve_discard(most_ghosts * objects);
+    ghost_counts.resize_discard(blocks);
+    counts.resize_discard(2 * blocks * nodes);
+    places.resize_discard(2 * blocks * nodes);
+    begins.resize_discard(nodes);
+    totals.resize_discard(node_ranges);
+    valid.resize_discard(blocks);
+}
+
+void BuildSteps::encode(const NumberedBlock& block) const {
+    const auto above = NodeIndex(memory.nodes);
+    const ObjectBlock& objects = block.objects;
+    std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
+    std::vector<std::uint64_t> ghost_counts(above, 0);
+    GhostList ghosts(memory, objects);
+    const std::size_t batch_size = tuning().build.batch;
+    std::array<Entry, most_batch> batch;
+    std::array<CellBox, most_batch> cells;
+    std::array<Directory::Leaf, most_batch> leaves;
+    std::array<std::uint32_t, most_batch> crossers;
+    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
+        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
+        const std::size_t count = std::min(batch_size, objects.end - begin);
+        if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
+            frame.cells(boxes, cells);
+        } else {
+            const std::span<Entry> entries = std::span(batch).first(count);
+            (void)source.load(begin, entries);
+            frame.cells(entries, cells);
+        }
+        directory.leaves(std::span(cells).first(count), leaves);
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            // No branch on whether a box crosses: mispredicting it cost more than everything else here.
+            const bool crosses = !within(cells[i], leaves[i].level());
+            const NodeIndex node = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].node();
+            memory.homes[begin + i] = Home(node, crosses);
+            ++home_counts[node];
+            crossers[crossing] = std::uint32_t(i);
+            crossing += crosses ? 1 : 0;
+        }
+        ghosts.prepare();
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            const NodeIndex home = memory.homes[begin + i].node();
+            for_each_octant_of(cells[i], directory, leaves[i], [&](NodeIndex node, unsigned begins) {
+                if (node == home) return;
+                ++ghost_counts[node];
+                ghosts.add(node, begins);
+            });
+            count_path(home == above ? Path::kept_above_leaf : Path::ghost_entries);
+            ghosts.end_box();
+        }
+    }
+    memory.ghost_counts[block.number] = ghosts.size();
+    std::copy_n(home_counts.begin(), above, memory.home_part(memory.counts, block.number).begin());
+    std::copy_n(ghost_counts.begin(), above, memory.ghost_part(memory.counts, block.number).begin());
+}
+
+void BuildSteps::merge(const NumberedNodes& nodes, std::span<const std::size_t> blocks) const {
+    std::uint64_t at = 0;
+    for (NodeIndex node = nodes.begin; node < nodes.end; ++node) {
+        memory.begins[node] = at;
+        for (const std::size_t block : blocks) {
+            memory.home_part(memory.places, block)[node] = at;
+            at += memory.home_part(memory.counts, block)[node];
+        }
+        for (const std::size_t block : blocks) {
+            memory.ghost_part(memory.places, block)[node] = at;
+            at += memory.ghost_part(memory.counts, block)[node];
+        }
+    }
+    memory.totals[nodes.number] = at;
+}
+
+namespace {
+
+/// Where the next entry of each node goes, of one block.
+std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const SortTarget& target) {
+    std::vector<std::uint64_t> places(part.begin(), part.end());
+    for (const NumberedNodes& range : target.ranges) {
+        const std::uint64_t begin = target.range_begins[range.number];
+        for (NodeIndex node = range.begin; node < range.end; ++node) places[node] += begin;
+    }
+    return places;
+}
+
+}  // namespace
+
+void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) const {
+    const auto above = NodeIndex(memory.nodes);
+    const ObjectBlock& objects = block.objects;
+    const std::span<Entry> entries_out = target.entries;
+    auto home_at = places_of(memory.home_part(memory.places, block.number), target);
+    home_at.push_back(target.spare);
+    auto ghost_at = places_of(memory.ghost_part(memory.places, block.number), target);
+    const std::span<const Ghost> ghosts =
+        std::as_const(memory.ghosts).span().subspan(most_ghosts * objects.begin, memory.ghost_counts[block.number]);
+    const std::size_t batch_size = tuning().build.batch;
+    std::array<Entry, most_batch> batch;
+    std::array<std::uint32_t, most_batch> crossers;
+    std::size_t ghost = 0;
+    memory.valid[block.number] = 0;
+    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
+        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
+        const std::span<Entry> entries(batch.data(), std::min(batch_size, objects.end - begin));
+        if (!source.load(begin, entries)) return;
+        const auto homes = std::as_const(memory.homes).span().subspan(begin, entries.size());
+        std::size_t crossing = 0;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const Home soon = homes[std::min(i + prefetched, homes.size() - 1)];
+            hwy::Prefetch(&entries_out[std::size_t(home_at[soon.node()])]);
+            const NodeIndex node = homes[i].node();
+            std::uint64_t& at = home_at[node];
+            entries_out[std::size_t(at)] = entries[i];
+            at += node != above ? 1 : 0;
+            crossers[crossing] = std::uint32_t(i);
+            crossing += homes[i].crosses() ? 1 : 0;
+        }
+        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
+            for (bool last = false; !last; ++ghost) {
+                last = ghosts[ghost].last();
+                if (ghosts.size() - ghost > prefetched_ghosts) {
+                    hwy::Prefetch(&entries_out[std::size_t(ghost_at[ghosts[ghost + prefetched_ghosts].node()])]);
+                }
+                const NodeIndex node = ghosts[ghost].node();
+                Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
+                entry = entries[i];
+                if ((entry.mask & begins_before) != 0) count_path(Path::class_bits_brought);
+                if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;
+                entry.mask |= ghosts[ghost].begins();  // on top of the bits that it brought: see entry.hpp
+            }
+        }
+    }
+    memory.valid[block.number] = 1;
+}
+
+}  // namespace octopair

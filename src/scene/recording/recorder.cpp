@@ -1,0 +1,105 @@
+#include "scene/recording/recorder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <exception>
+
+#include "base/io_failure.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t(256) << 10;
+
+}  // namespace
+
+Recorder::Recorder(const SceneOptions& options) : path_(options.recording), buffer_(buffer_bytes) {
+    // O_NONBLOCK: opening a pipe that nobody reads must not wait; it means nothing for a regular file.
+    descriptor_ = Descriptor(::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC | O_NONBLOCK, 0666));
+    if (!descriptor_.open()) fail_io(path_, "cannot create", errno);
+    keep(bytes_of(recording_head(options)));
+    flush();
+}
+
+Recorder::~Recorder() {
+    try {
+        flush();
+    } catch (const std::exception&) {
+        // The records before are whole; there is nobody to tell.
+    }
+}
+
+void Recorder::begin_step() {
+    append(RecordKind::step, {});
+    try {
+        flush();
+    } catch (...) {
+        used_ -= record_overhead;  // this step is not to be
+        throw;
+    }
+}
+
+void Recorder::end_step(const StepResult& result) noexcept {
+    try {
+        const RecordedResult recorded = recorded_result(result);
+        append(RecordKind::result, {bytes_of(recorded)});  // for which begin_step() left room
+        flush();
+    } catch (const std::exception&) {
+        // It stays in the buffer, and the next call says why it cannot be written.
+    }
+}
+
+void Recorder::append(RecordKind kind, std::initializer_list<Bytes> pieces) {
+    const auto [head, checksum] = frame_of(kind, pieces);
+    if (head.length + record_overhead > buffer_.size() - used_) flush();
+    if (head.length + record_overhead > buffer_.size()) return write_large(pieces, head, checksum);
+    keep(bytes_of(head));
+    for (const Bytes piece : pieces) keep(piece);
+    keep(bytes_of(checksum));
+}
+
+void Recorder::keep(Bytes bytes) {
+    if (!bytes.empty()) std::memcpy(buffer_.data() + used_, bytes.data(), bytes.size());
+    used_ += bytes.size();
+}
+
+void Recorder::flush() {
+    if (used_ == 0) return;
+    write_at(end_, buffer_.span().first(used_));
+    end_ += used_;
+    used_ = 0;
+}
+
+void Recorder::write_large(std::initializer_list<Bytes> pieces, const RecordHead& head, std::uint64_t checksum) {
+    std::uint64_t at = end_;
+    const auto write_next = [&](Bytes bytes) {
+        write_at(at, bytes);
+        at += bytes.size();
+    };
+    write_next(bytes_of(head));
+    for (const Bytes piece : pieces) write_next(piece);
+    write_next(bytes_of(checksum));
+    end_ = at;
+}
+
+void Recorder::write_at(std::uint64_t offset, Bytes bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::pwrite(descriptor_.number(), bytes.data(), bytes.size(), off_t(offset));
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            const int error = errno;
+            // What there is of a record goes, so that a shorter one in its place is the end of the file.
+            (void)!::ftruncate(descriptor_.number(), off_t(end_));
+            fail_io(path_, "cannot write", error);
+        }
+        offset += std::uint64_t(written);
+        bytes = bytes.subspan(std::size_t(written));
+    }
+}
+
+}  // namespace octopair

@@ -1,0 +1,108 @@
+#include "service/server/calls/calls.hpp"
+
+#include <string>
+
+#include "octopair/version.hpp"
+#include "service/protocol/job_hash.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.grpc.pb.h"
+#include "service/server/calls/detect_call.hpp"
+#include "service/server/calls/job_calls.hpp"
+#include "service/server/calls/result_call.hpp"
+#include "service/server/calls/scene_call.hpp"
+#include "service/server/calls/submit_call.hpp"
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+using Service = v1::Octopair;
+using Stated = Service::WithCallbackMethod_Describe<Service::Service>;
+using OfJobs = Service::WithCallbackMethod_Status<Service::WithCallbackMethod_Wait<
+    Service::WithCallbackMethod_Cancel<Service::WithCallbackMethod_Release<Service::WithCallbackMethod_List<Stated>>>>>;
+/// The calls whose messages have large fields take the messages as bytes, not parsed.
+using Detached = Service::WithRawCallbackMethod_Submit<Service::WithRawCallbackMethod_Result<OfJobs>>;
+using Methods = Service::WithRawCallbackMethod_Detect<
+    Service::WithRawCallbackMethod_DetectSmall<Service::WithRawCallbackMethod_Scene<Detached>>>;
+
+class Calls final : public Methods {
+public:
+    explicit Calls(Host& host) : host_(host) {}
+
+    grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Detect(grpc::CallbackServerContext* context) override {
+        return start_detect(host_, *context);
+    }
+    grpc::ServerUnaryReactor* DetectSmall(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                                          grpc::ByteBuffer* response) override {
+        return start_detect_small(host_, *context, *request, *response);
+    }
+    grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Scene(grpc::CallbackServerContext* context) override {
+        return start_scene(host_, *context);
+    }
+    grpc::ServerReadReactor<grpc::ByteBuffer>* Submit(grpc::CallbackServerContext* context,
+                                                      grpc::ByteBuffer* response) override {
+        return start_submit(host_, *context, *response);
+    }
+    grpc::ServerWriteReactor<grpc::ByteBuffer>* Result(grpc::CallbackServerContext* context,
+                                                       const grpc::ByteBuffer* request) override {
+        return start_result(host_, *context, *request);
+    }
+    grpc::ServerUnaryReactor* Status(grpc::CallbackServerContext* context, const v1::JobName* request,
+                                     v1::JobReport* response) override {
+        return start_status(host_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* Wait(grpc::CallbackServerContext* context, const v1::WaitRequest* request,
+                                   v1::JobReport* response) override {
+        return start_wait(host_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* Cancel(grpc::CallbackServerContext* context, const v1::JobName* request,
+                                     v1::JobReport* response) override {
+        return start_cancel(host_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* Release(grpc::CallbackServerContext* context, const v1::JobName* request,
+                                      v1::JobReport* response) override {
+        return start_release(host_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* List(grpc::CallbackServerContext* context, const v1::ListRequest* request,
+                                   v1::JobList* response) override {
+        return start_list(host_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* Describe(grpc::CallbackServerContext* context, const v1::DescribeRequest*,
+                                       v1::ServerDescription* description) override {
+        std::string owner;
+        const grpc::Status status = host_.let_in(*context, owner);
+        if (status.ok()) describe(*description);
+        grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+        reactor->Finish(status);
+        return reactor;
+    }
+
+private:
+    void describe(v1::ServerDescription& description) const {
+        const ServerLimits& limits = host_.options.limits;
+        description.set_version(OCTOPAIR_VERSION);
+        description.set_algorithm(algorithm_version);
+        description.set_engine(host_.options.engine_name);
+        description.set_detached(!host_.options.state_folder.empty());
+        v1::Limits& told = *description.mutable_limits();
+        told.set_objects(limits.objects);
+        told.set_input_bytes(limits.input_bytes);
+        told.set_pairs(limits.pairs);
+        told.set_jobs(limits.jobs);
+        told.set_jobs_per_client(limits.jobs_per_client);
+        told.set_connections(limits.connections);
+        told.set_job_seconds(limits.job_seconds);
+        told.set_memory_bytes(limits.memory_bytes);
+        told.set_state_bytes(limits.state_bytes);
+        told.set_message_bytes(most_message_bytes);
+    }
+
+    Host& host_;
+};
+
+}  // namespace
+
+std::unique_ptr<grpc::Service> make_calls(Host& host) { return std::make_unique<Calls>(host); }
+
+}  // namespace octopair::service

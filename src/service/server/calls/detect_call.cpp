@@ -1,0 +1,193 @@
+#include "service/server/calls/detect_call.hpp"
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
+#include "service/protocol/status.hpp"
+#include "service/server/calls/download_call.hpp"
+#include "service/server/calls/upload.hpp"
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// Reads the upload, queues the job, and sends its pairs, all at once.
+class DetectCall final : public DownloadCall<grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>>,
+                         public std::enable_shared_from_this<DetectCall> {
+public:
+    DetectCall(Host& host, grpc::CallbackServerContext& context)
+        : DownloadCall(host, context), upload_([this](v1::JobSpec spec) -> InputTarget& {
+              check_id(spec.id());
+              const auto job = this->host().begin(owner(), std::move(spec));
+              const std::lock_guard lock(job_mutex_);
+              job_ = job;
+              return job->input();
+          }) {}
+
+    void start() {
+        if (begin(shared_from_this())) StartRead(&in_);
+    }
+
+    void OnReadDone(bool ok) override {
+        try {
+            if (!ok) return upload_.finish();
+            read();
+        } catch (...) {
+            refuse(status_of_exception());
+        }
+    }
+
+private:
+    void read() {
+        host().ledger.received(in_.Length());
+        upload_.take(in_);
+        if (upload_.complete() && !queued_) queue();
+        if (upload_.moves()) moved();
+        StartRead(&in_);
+    }
+
+    void queue() {
+        queued_ = true;
+        attached_ = host().attached.take(1);
+        const std::shared_ptr<ServerJob> job = this->job();
+        job->queue();
+        // A client that comes back may find its own job of before, whose connection was not seen to break yet.
+        for (auto before = host().jobs.enter(job); before != job; before = host().jobs.enter(job)) {
+            before->cancel();
+            host().jobs.remove(*before);
+        }
+        send(job, job->spec().offset());
+        host().queue(job);
+    }
+
+    void refused() override {
+        if (const auto job = this->job()) job->cancel();
+    }
+
+    void done() override {
+        if (const auto job = this->job()) {
+            job->cancel();
+            host().jobs.remove(*job);
+        }
+    }
+
+    void waits(bool downloading) override {
+        if (!downloading) refuse(host().refuse_stalled(owner()));
+    }
+
+    std::shared_ptr<ServerJob> job() const {
+        const std::lock_guard lock(job_mutex_);
+        return job_;
+    }
+
+    // The reading side's.
+    grpc::ByteBuffer in_;
+    Upload upload_;
+    bool queued_ = false;
+    Budget::Share attached_;
+
+    mutable std::mutex job_mutex_;
+    std::shared_ptr<ServerJob> job_;  // none before the first message
+};
+
+/// Answers when the job has ended.
+class SmallCall final : public grpc::ServerUnaryReactor,
+                        public JobWatcher,
+                        public std::enable_shared_from_this<SmallCall> {
+public:
+    SmallCall(Host& host, grpc::CallbackServerContext& context, grpc::ByteBuffer& response)
+        : host_(host), context_(context), response_(response) {}
+
+    void start(grpc::ByteBuffer request) {
+        self_ = shared_from_this();
+        std::string owner;
+        const grpc::Status status = host_.let_in(context_, owner);
+        if (!status.ok()) return answer({}, status);
+        host_.ledger.received(request.Length());
+        Upload upload([&](v1::JobSpec spec) -> InputTarget& {
+            if (!spec.id().empty()) check_id(spec.id());
+            job_ = host_.begin(owner, std::move(spec));
+            return job_->input();
+        });
+        try {
+            upload.take(request);
+            upload.finish();
+            attached_ = host_.attached.take(1);
+            job_->queue();
+            job_->watch(self_);
+            host_.queue(job_);
+        } catch (...) {
+            if (job_) job_->cancel();
+            answer({}, status_of_exception());
+        }
+    }
+
+    void OnCancel() override {
+        if (job_) job_->cancel();
+    }
+    void OnDone() override { self_.reset(); }
+
+    void job_changed() override {
+        if (!job_->ended()) {
+            if (job_->pairs().ready() <= piece_bytes / sizeof(Pair)) return;
+            answer({}, too_large());
+            return job_->cancel();
+        }
+        Download::Next next = Download(job_, job_->spec().offset()).next();
+        if (next.kind == Download::Next::Kind::message) {
+            next.status = too_large();
+        }
+        answer(next.message, next.status);
+    }
+
+private:
+    static grpc::Status too_large() {
+        return status_of(LimitError("message_bytes", most_message_bytes,
+                                    "the result is too large for one message; ask for it in a stream"));
+    }
+
+    /// Once.
+    void answer(const grpc::ByteBuffer& message, const grpc::Status& status) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (std::exchange(answered_, true)) return;
+        }
+        response_ = message;
+        host_.ledger.sent(response_.Length());
+        Finish(status);
+    }
+
+    Host& host_;
+    grpc::CallbackServerContext& context_;
+    grpc::ByteBuffer& response_;
+    std::shared_ptr<SmallCall> self_;  // until the call is done
+    std::shared_ptr<ServerJob> job_;
+    Budget::Share attached_;
+    std::mutex mutex_;
+    bool answered_ = false;
+};
+
+}  // namespace
+
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(Host& host,
+                                                                          grpc::CallbackServerContext& context) {
+    const auto call = std::make_shared<DetectCall>(host, context);
+    call->start();
+    return call.get();
+}
+
+grpc::ServerUnaryReactor* start_detect_small(Host& host, grpc::CallbackServerContext& context,
+                                             const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    const auto call = std::make_shared<SmallCall>(host, context, response);
+    call->start(request);
+    return call.get();
+}
+
+}  // namespace octopair::service

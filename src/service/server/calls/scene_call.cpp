@@ -1,0 +1,284 @@
+#include "service/server/calls/scene_call.hpp"
+
+#include <grpcpp/server_context.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/protocol/octopair.pb.h"
+#include "service/protocol/status.hpp"
+#include "service/server/calls/server_scene.hpp"
+#include "service/server/calls/uploaded_calls.hpp"
+#include "service/server/host.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Bytes of `first`, then of `second`, from `offset` on.
+grpc::Slice piece_of(Bytes first, Bytes second, std::size_t offset) {
+    grpc::Slice piece = make_slice(std::min(first.size() + second.size() - offset, piece_bytes));
+    std::span<std::byte> room = room_in(piece);
+    for (const Bytes part : {first, second}) {
+        const std::size_t skipped = std::min(offset, part.size()), count = std::min(part.size() - skipped, room.size());
+        if (count > 0) std::memcpy(room.data(), part.data() + skipped, count);
+        offset -= skipped;
+        room = room.subspan(count);
+    }
+    return piece;
+}
+
+/// A thread of its own takes the messages, steps and answers; it alone asks gRPC for anything after the first read. gRPC's
+/// threads tell it what has come to pass, and the overseer when it has waited too long.
+class SceneCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
+                        public Overseen,
+                        public std::enable_shared_from_this<SceneCall> {
+public:
+    SceneCall(Host& host, grpc::CallbackServerContext& context) : host_(host), context_(context) {}
+
+    void start() {
+        self_ = shared_from_this();
+        const grpc::Status status = host_.let_in(context_, owner_);
+        if (!status.ok()) return Finish(status);
+        try {
+            place_ = host_.places.enter(owner_);
+            host_.threads.start([call = self_] { call->work(); });
+        } catch (const LimitError& error) {
+            return Finish(refused(error));
+        } catch (...) {
+            return Finish(status_of_exception());
+        }
+        host_.overseer.watch(self_);
+    }
+
+    void OnReadDone(bool ok) override {
+        set([&] { read_ = ok ? Read::came : Read::ended; });
+    }
+    void OnWriteDone(bool ok) override {
+        set([&] {
+            doing_ = Doing::working;
+            broken_ |= !ok;
+        });
+    }
+    void OnCancel() override { end_by({grpc::StatusCode::CANCELLED, "cancelled"}); }
+    void OnDone() override { self_.reset(); }
+
+    void look(Clock::time_point now) override {
+        Doing late = Doing::working;
+        {
+            const std::lock_guard lock(mutex_);
+            if (is_late(now)) late = doing_;
+        }
+        switch (late) {
+            case Doing::working:
+                return;
+            case Doing::idle:
+                return end_by({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
+            case Doing::waiting:
+                return end_by(stalled());
+            case Doing::stepping:
+                return end_by(stepped_too_long());
+            case Doing::writing:
+                return context_.TryCancel();
+        }
+    }
+
+private:
+    enum class Read : std::uint8_t { none, came, ended };
+    /// idle: between frames; waiting: for what is missing of one.
+    enum class Doing : std::uint8_t { working, idle, waiting, stepping, writing };
+
+    void work() {
+        grpc::Status status;
+        try {
+            StartRead(&in_);
+            while (take_message()) {
+            }
+        } catch (const LimitError& error) {
+            status = refused(error);
+        } catch (...) {
+            status = status_of_exception();
+        }
+        scene_.reset();
+        place_ = {};
+        {
+            const std::lock_guard lock(mutex_);
+            if (refusal_) status = *refusal_;
+        }
+        Finish(status);
+    }
+
+    /// False at the end of the call.
+    bool take_message() {
+        if (!wait_for_message()) return false;
+        StartRead(&in_);  // the next one comes while this one is worked on
+        host_.ledger.received(message_.Length());
+        v1::SceneUpload small;
+        if (!unpack(message_, small, [this](Bytes piece) { calls_.append(piece); })) {
+            throw Error(ErrorCode::bad_input, "a message that is none");
+        }
+        message_.Clear();
+        for (RecordedCall call; calls_.next(call);) {
+            if (!scene_) scene_.emplace(host_, calls_.options());
+            call.kind == RecordKind::step ? step() : scene_->make(call);
+            in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
+        }
+        in_frame_ |= calls_.cut();
+        return true;
+    }
+
+    bool wait_for_message() {
+        std::unique_lock lock(mutex_);
+        begin(in_frame_ ? Doing::waiting : Doing::idle);
+        changed_.wait(lock, [&] { return read_ != Read::none || refusal_; });
+        begin(Doing::working);
+        if (refusal_) return false;
+        if (read_ == Read::came) {
+            in_.Swap(&message_);
+            read_ = Read::none;
+            return true;
+        }
+        if (!in_frame_) return false;
+        throw Error(ErrorCode::bad_input, "the upload ended in the middle of a frame");
+    }
+
+    void step() {
+        {
+            const std::lock_guard lock(mutex_);
+            begin(Doing::stepping);
+        }
+        const StepResult& result = scene_->step(stop_.get_token());
+        {
+            const std::lock_guard lock(mutex_);
+            begin(Doing::working);
+        }
+        answer(result);
+    }
+
+    void answer(const StepResult& result) {
+        const Bytes began = std::as_bytes(result.began), ended = std::as_bytes(result.ended);
+        const std::size_t all = began.size() + ended.size();
+        v1::SceneDownload small;
+        small.set_step(++steps_);
+        for (std::size_t sent = 0; sent < all || !small.has_result();) {
+            const grpc::Slice piece = piece_of(began, ended, sent);
+            sent += piece.size();
+            if (sent == all) {
+                v1::SceneStep& told = *small.mutable_result();
+                told.set_began(result.began.size());
+                told.set_ended(result.ended.size());
+                told.set_persisting(result.persisting);
+                told.set_full(result.full);
+                told.set_seconds(result.seconds);
+            }
+            write(pack(small, piece));
+        }
+    }
+
+    void write(const grpc::ByteBuffer& message) {
+        out_ = message;  // its bytes are shared
+        {
+            const std::lock_guard lock(mutex_);
+            begin(Doing::writing);
+        }
+        host_.ledger.sent(out_.Length());
+        StartWrite(&out_);
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return doing_ != Doing::writing; });
+        if (broken_) throw Error(ErrorCode::cancelled, "the client does not read");
+    }
+
+    /// With the lock held.
+    void begin(Doing doing) {
+        doing_ = doing;
+        since_ = Clock::now();
+    }
+
+    template <typename Change>
+    void set(Change&& change) {
+        const std::lock_guard lock(mutex_);
+        change();
+        changed_.notify_all();
+    }
+
+    void end_by(const grpc::Status& status) {
+        set([&] {
+            if (!refusal_) refusal_ = status;
+        });
+        stop_.request_stop();
+    }
+
+    /// With the lock held: what is being done has taken too long, or must not go on.
+    bool is_late(Clock::time_point now) const {
+        const auto took = now - since_;
+        const double most_seconds = host_.options.limits.job_seconds;
+        switch (doing_) {
+            case Doing::working:
+                return false;
+            case Doing::idle:
+                return host_.draining;
+            case Doing::waiting:
+            case Doing::writing:
+                return took > host_.options.stall;
+            case Doing::stepping:
+                return most_seconds > 0 && std::chrono::duration<double>(took).count() > most_seconds;
+        }
+        return false;
+    }
+
+    grpc::Status refused(const LimitError& error) {
+        host_.ledger.limit_refused(owner_, error);
+        return status_of(error);
+    }
+
+    grpc::Status stalled() {
+        const auto seconds = std::uint64_t(host_.options.stall.count());
+        return refused(
+            LimitError("stall_seconds", seconds,
+                       "stall_seconds: nothing came for " + std::to_string(seconds) + " s in the middle of a frame"));
+    }
+
+    grpc::Status stepped_too_long() { return refused(ran_too_long("the step", host_.options.limits.job_seconds)); }
+
+    Host& host_;
+    grpc::CallbackServerContext& context_;
+    std::shared_ptr<SceneCall> self_;  // until the call is done
+    std::string owner_;
+    ClientCounts::Place place_;
+    std::stop_source stop_;
+    // The thread's.
+    grpc::ByteBuffer in_, message_, out_;
+    UploadedCalls calls_;
+    std::optional<ServerScene> scene_;
+    std::uint64_t steps_ = 0;
+    bool in_frame_ = true;  // something has come of the next frame; a call begins like that
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    Read read_ = Read::none;
+    Doing doing_ = Doing::working;
+    Clock::time_point since_;
+    bool broken_ = false;
+    std::optional<grpc::Status> refusal_;
+};
+
+}  // namespace
+
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(Host& host,
+                                                                         grpc::CallbackServerContext& context) {
+    const auto call = std::make_shared<SceneCall>(host, context);
+    call->start();
+    return call.get();
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,77 @@
+#include "service/server/calls/server_scene.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "service/protocol/limit_error.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+// As octopair/scene.hpp says.
+constexpr std::uint64_t object_bytes = 120;
+/// Of messages on their way, and what is read from them.
+constexpr std::uint64_t own_bytes = std::uint64_t(4) << 20;
+
+}  // namespace
+
+ServerScene::ServerScene(Host& host, const SceneOptions& options)
+    : host_(host), memory_(host.memory.take(own_bytes)), scene_(within_limits(options)) {}
+
+SceneOptions ServerScene::within_limits(SceneOptions options) {
+    options.threads = host_.options.lanes.large;
+    options.room_for_pairs = [this](std::uint64_t bytes) { memory_.grow(bytes); };
+    return options;
+}
+
+void ServerScene::make(const RecordedCall& call) {
+    switch (call.kind) {
+        case RecordKind::add:
+            return add(call);
+        case RecordKind::move:
+            return scene_.move(call.ids, call.objects.boxes);
+        case RecordKind::sweep:
+            return scene_.sweep(call.ids, call.objects.boxes);
+        case RecordKind::remove:
+            scene_.remove(call.ids);
+            removed_ += call.ids.size();
+            return;
+        case RecordKind::set_traits:
+            return scene_.set_traits(call.ids, call.traits);
+        case RecordKind::step:
+        case RecordKind::result:
+            return;
+    }
+}
+
+void ServerScene::add(const RecordedCall& call) {
+    make_room(call.objects.size());
+    ids_.resize(std::size_t(call.objects.size()));
+    scene_.add(call.objects, ids_, call.traits);
+}
+
+/// What takes memory is an index, whether there is an object at it or not.
+void ServerScene::make_room(std::uint64_t objects) {
+    const std::uint64_t free = scene_.indices() - scene_.size() - removed_;
+    const std::uint64_t fresh = objects - std::min(objects, free), all = scene_.indices() + fresh;
+    const std::uint64_t allowed = host_.options.limits.objects;
+    if (allowed > 0 && all > allowed) {
+        throw LimitError("objects", allowed,
+                         "a scene of " + std::to_string(all) + " objects; at most " + std::to_string(allowed));
+    }
+    memory_.grow(fresh * object_bytes);
+}
+
+const StepResult& ServerScene::step(const std::stop_token& stop) {
+    const StepResult& result = scene_.step(stop);
+    removed_ = 0;
+    const std::uint64_t most = host_.options.limits.pairs;
+    if (most > 0 && result.pairs() > most) {
+        throw LimitError("pairs", most,
+                         std::to_string(result.pairs()) + " pairs in a scene; at most " + std::to_string(most));
+    }
+    return result;
+}
+
+}  // namespace octopair::service

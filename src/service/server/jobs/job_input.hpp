@@ -1,0 +1,60 @@
+// The objects of a job, put together from the pieces in which they come.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "octopair/engine.hpp"
+#include "service/protocol/job_hash.hpp"
+#include "service/server/jobs/input_target.hpp"
+#include "service/server/jobs/spare_boxes.hpp"
+
+namespace octopair::v1 {
+class JobSpec;
+class ObjectSet;
+}  // namespace octopair::v1
+
+namespace octopair::service {
+
+class JobInput final : public InputTarget {
+public:
+    /// Room for what `spec` says, which was checked; the boxes lie where `engine` reads them, in spare arrays if there are
+    /// such, and become spare ones. Throws Error.
+    JobInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares = nullptr);
+    JobInput(const JobInput&) = delete;
+    JobInput& operator=(const JobInput&) = delete;
+    ~JobInput() override;
+
+    void append(std::span<const std::byte> data) override;
+    std::uint64_t missing() const override { return missing_; }
+
+    const Objects& first() const { return sets_[0].objects; }
+    const Objects* second() const { return joined_ ? &sets_[1].objects : nullptr; }
+    /// Of a complete input and its options.
+    std::string hash() const { return hash_.digest(); }
+
+private:
+    struct Set {
+        AnyBoxes boxes;
+        std::vector<double> padding;
+        Objects objects;
+    };
+
+    std::span<std::byte> make_room(const v1::ObjectSet& set, Set& made);
+    template <typename Real>
+    std::span<std::byte> make_boxes(std::uint64_t count, Set& made);
+
+    Engine& engine_;
+    SpareBoxes* const spares_;
+    std::array<Set, 2> sets_;
+    bool joined_;
+    JobHash hash_;
+    std::array<std::span<std::byte>, 4> arrays_;
+    std::size_t array_ = 0;  // that is filled now, and what it lacks is what is left of it
+    std::uint64_t missing_ = 0;
+};
+
+}  // namespace octopair::service

@@ -1,0 +1,83 @@
+#include "service/server/jobs/job_table.hpp"
+
+#include "service/protocol/limit_error.hpp"
+#include "service/server/jobs/server_job.hpp"
+
+namespace octopair::service {
+
+ClientCounts::ClientCounts(std::uint64_t most, std::uint64_t most_each)
+    : all_("jobs", "places for jobs", most), most_each_(most_each) {}
+
+ClientCounts::Place ClientCounts::enter(const std::string& owner) {
+    auto share = std::make_shared<Budget::Share>(all_.take(1));
+    count_one_more(owner);
+    // If there is no memory for it, the deleter runs here: so not with the lock held.
+    Place place;
+    place.counted_ = std::shared_ptr<void>(share.get(), [this, share, owner](void*) {
+        const std::lock_guard lock(mutex_);
+        const auto found = each_.find(owner);
+        if (--found->second == 0) each_.erase(found);
+    });
+    return place;
+}
+
+void ClientCounts::count_one_more(const std::string& owner) {
+    const std::lock_guard lock(mutex_);
+    std::uint64_t& count = each_[owner];
+    if (most_each_ > 0 && count >= most_each_) {
+        throw LimitError("jobs_per_client", most_each_,
+                         "jobs_per_client: the client has " + std::to_string(count) + " jobs on the server; at most " +
+                             std::to_string(most_each_) + " each");
+    }
+    ++count;
+}
+
+std::shared_ptr<ServerJob> JobTable::enter(const std::shared_ptr<ServerJob>& job) {
+    const std::lock_guard lock(mutex_);
+    const auto [entry, fresh] = jobs_.try_emplace({job->owner(), job->spec().id()}, job);
+    if (fresh) return job;
+    const v1::JobReport known = entry->second->report();
+    if (known.head().hash() != job->input_hash() || known.detached() != job->detached()) {
+        throw Error(ErrorCode::bad_input, "job " + known.id() + " is there already, with other input or options");
+    }
+    return entry->second;
+}
+
+std::shared_ptr<ServerJob> JobTable::find(const std::string& owner, const std::string& id) const {
+    std::shared_ptr<ServerJob> found = look_up(owner, id);
+    if (!found) throw Error(ErrorCode::bad_input, "there is no job " + id.substr(0, 36));
+    return found;
+}
+
+std::shared_ptr<ServerJob> JobTable::look_up(const std::string& owner, const std::string& id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find({owner, id});
+    return found == jobs_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<ServerJob>> JobTable::of(const std::string& owner, const std::string& after,
+                                                     std::size_t most) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<ServerJob>> jobs;
+    for (auto at = jobs_.upper_bound({owner, after}); at != jobs_.end() && jobs.size() < most; ++at) {
+        if (at->first.first != owner) break;
+        jobs.push_back(at->second);
+    }
+    return jobs;
+}
+
+std::vector<std::shared_ptr<ServerJob>> JobTable::all() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<ServerJob>> jobs;
+    jobs.reserve(jobs_.size());
+    for (const auto& [key, job] : jobs_) jobs.push_back(job);
+    return jobs;
+}
+
+void JobTable::remove(const ServerJob& job) {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find({job.owner(), job.spec().id()});
+    if (found != jobs_.end() && found->second.get() == &job) jobs_.erase(found);
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,285 @@
+#include "service/server/jobs/server_job.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/status.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// The exception under way; there may be no memory for its words.
+v1::Failure failure_of_exception() noexcept {
+    v1::Failure failure;
+    try {
+        throw;
+    } catch (const Error& error) {
+        return failure_of(error);
+    } catch (const std::bad_alloc&) {
+        failure.set_code(v1::RESOURCE_LIMIT);
+        failure.set_message("out of memory");
+    } catch (const std::exception& error) {
+        failure.set_code(v1::ENGINE_FAILED);
+        failure.set_message(error.what());
+    }
+    return failure;
+}
+
+}  // namespace
+
+void ServerJob::queue() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (state_ != v1::UPLOADING || early_) return;
+        hash_ = detached() ? parts_.record->hash() : parts_.input->hash();
+        state_ = v1::QUEUED;
+    }
+    tell();
+}
+
+void ServerJob::set_ended(const v1::JobReport& ending) {
+    const std::lock_guard lock(mutex_);
+    hash_ = ending.head().hash();
+    algorithm_ = ending.head().algorithm();
+    summary_ = ending.summary();
+    failure_ = ending.failure();
+    state_ = ending.state();
+    ended_ = Clock::now();
+}
+
+bool ServerJob::ask_memory() {
+    const std::lock_guard lock(mutex_);
+    if (!detached() || state_ != v1::QUEUED || early_) return true;
+    auto memory = parts_.record->ask_memory();
+    if (memory) parts_.memory = std::move(*memory);
+    return memory.has_value();
+}
+
+void ServerJob::run(Engine& engine) noexcept {
+    {
+        const std::lock_guard lock(mutex_);
+        if (state_ != v1::QUEUED || early_ || abandoned_) {
+            parts_.memory.give_back();
+            return;
+        }
+        state_ = v1::RUNNING;
+        began_ = Clock::now();
+    }
+    tell();
+    try {
+        if (detached()) parts_.input = parts_.record->load(engine, stop_.get_token());
+        const Summary summary = find(engine, options());
+        parts_.pairs->finish();
+        end_well(summary);
+    } catch (...) {
+        end_by(failure_of_exception());
+    }
+    tell();
+}
+
+void ServerJob::end_well(const Summary& summary) {
+    if (detached()) {
+        v1::JobReport last = ending(v1::DONE, {});
+        last.set_progress(1);
+        *last.mutable_summary() = message_of(summary);
+        parts_.record->end(last);
+    }
+    const std::lock_guard lock(mutex_);
+    summary_ = message_of(summary);
+    set_ended(v1::DONE);
+}
+
+/// As it will be told after the server's end.
+v1::JobReport ServerJob::ending(v1::JobState state, const v1::Failure& failure) const {
+    v1::JobReport last = report();
+    last.set_state(state);
+    if (state == v1::FAILED) *last.mutable_failure() = failure;
+    return last;
+}
+
+/// Where there is no room for it, it lasts as long as the server.
+void ServerJob::keep(const v1::JobReport& ending) noexcept {
+    try {
+        if (detached()) parts_.record->end(ending);
+    } catch (const std::exception&) {
+        return;
+    }
+}
+
+/// The running job stopped because of `failure`, which may be that it was asked to.
+void ServerJob::end_by(v1::Failure failure) noexcept {
+    bool cancelled = false;
+    {
+        const std::lock_guard lock(mutex_);
+        if (abandoned_ && !early_) return set_waiting();
+        if (early_ && *early_) failure = **early_;
+        cancelled = early_ ? !early_->has_value() : failure.code() == v1::CANCELLED_BY_CALLER;
+    }
+    const v1::JobState state = cancelled ? v1::CANCELLED : v1::FAILED;
+    if (detached()) keep(ending(state, failure));
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(failure);
+    set_ended(state);
+}
+
+Summary ServerJob::find(Engine& engine, const Options& options) {
+    const Objects& first = parts_.input->first();
+    const Objects* const second = parts_.input->second();
+    const PairSink sink = parts_.spec.count_only() ? PairSink() : [this](std::span<const Pair> pairs) {
+        const std::uint64_t before = parts_.pairs->ready();
+        parts_.pairs->append(pairs);
+        if (parts_.pairs->ready() > before) tell();
+    };
+    return second == nullptr ? engine.stream_pairs(first, sink, options, stop_.get_token())
+                             : engine.stream_pairs_between(first, *second, sink, options, stop_.get_token());
+}
+
+Options ServerJob::options() {
+    Options options = options_of(parts_.spec);
+    options.buffer_bytes = parts_.buffer_bytes;
+    options.progress = [this](double done) { tell_progress(done); };
+    return options;
+}
+
+/// Not oftener than people see.
+void ServerJob::tell_progress(double done) {
+    constexpr std::chrono::milliseconds apart(100);
+    progress_.store(done, std::memory_order_relaxed);
+    const auto now = Clock::now();
+    if (now - told_ < apart) return;
+    told_ = now;
+    tell();
+}
+
+void ServerJob::end_early(const Ending& why) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (early_ || is_last()) return;
+        early_ = why;
+        if (state_ == v1::RUNNING) {
+            stop_.request_stop();  // the running thread ends it
+            return;
+        }
+    }
+    if (!detached()) return end_in_queue();
+    parts_.record->later([self = shared_from_this()] { self->end_in_queue(); });
+}
+
+/// As `early_` says, before it ran.
+void ServerJob::end_in_queue() {
+    const v1::JobState state = *early_ ? v1::FAILED : v1::CANCELLED;
+    if (detached()) keep(ending(state, early_->value_or(v1::Failure())));
+    {
+        const std::lock_guard lock(mutex_);
+        if (*early_) failure_ = **early_;
+        set_ended(state);
+    }
+    tell();
+}
+
+void ServerJob::abandon() {
+    const std::lock_guard lock(mutex_);
+    if (is_last()) return;
+    abandoned_ = true;
+    stop_.request_stop();
+}
+
+/// With the lock held: it has not ended, here.
+void ServerJob::set_waiting() noexcept {
+    state_ = v1::QUEUED;
+    parts_.input.reset();
+    parts_.memory.give_back();
+}
+
+/// With the lock held.
+void ServerJob::set_ended(v1::JobState state) noexcept {
+    const bool uploaded = state_ != v1::UPLOADING;  // else the uploading call may be writing to the input
+    state_ = state;
+    ended_ = Clock::now();
+    parts_.place = {};
+    if (!uploaded) return;
+    parts_.input.reset();
+    parts_.memory.give_back();
+}
+
+v1::JobState ServerJob::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
+bool ServerJob::ended() const {
+    const std::lock_guard lock(mutex_);
+    return is_last();
+}
+
+v1::JobReport ServerJob::report() const {
+    const std::lock_guard lock(mutex_);
+    v1::JobReport report;
+    report.set_id(parts_.spec.id());
+    report.set_detached(detached());
+    report.set_count_only(parts_.spec.count_only());
+    report.set_state(state_);
+    report.set_progress(state_ == v1::DONE ? 1 : progress_.load(std::memory_order_relaxed));
+    report.set_objects(object_count(parts_.spec));
+    if (!hash_.empty()) {
+        report.mutable_head()->set_hash(hash_);
+        report.mutable_head()->set_algorithm(algorithm_);
+    }
+    if (state_ == v1::DONE) *report.mutable_summary() = summary_;
+    if (state_ == v1::FAILED) *report.mutable_failure() = failure_;
+    return report;
+}
+
+std::string ServerJob::input_hash() const {
+    const std::lock_guard lock(mutex_);
+    return hash_;
+}
+
+void ServerJob::look(Clock::time_point now) {
+    {
+        const std::lock_guard lock(mutex_);
+        const std::chrono::duration<double> ran = now - began_;
+        if (state_ != v1::RUNNING || parts_.most_seconds <= 0 || ran.count() <= parts_.most_seconds) return;
+    }
+    fail(failure_of(ran_too_long("the job", parts_.most_seconds)));
+}
+
+std::optional<ServerJob::Clock::time_point> ServerJob::ended_at() const {
+    const std::lock_guard lock(mutex_);
+    if (!is_last()) return {};
+    return ended_;
+}
+
+double ServerJob::seconds() const {
+    const std::lock_guard lock(mutex_);
+    if (began_ == Clock::time_point()) return 0;
+    return std::chrono::duration<double>((is_last() ? ended_ : Clock::now()) - began_).count();
+}
+
+void ServerJob::watch(const std::shared_ptr<JobWatcher>& watcher) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(watchers_, [](const auto& known) { return known.expired(); });
+    watchers_.push_back(watcher);
+}
+
+void ServerJob::tell() noexcept {
+    std::vector<std::weak_ptr<JobWatcher>> watchers;
+    v1::JobState from = v1::UPLOADING, to = v1::UPLOADING;
+    {
+        const std::lock_guard lock(mutex_);
+        watchers = watchers_;
+        to = state_;
+        from = std::exchange(moved_, to);
+    }
+    for (const auto& weak : watchers) {
+        if (const auto watcher = weak.lock()) watcher->job_changed();
+    }
+    // The last: nobody waits for it.
+    if (from != to && parts_.moved) parts_.moved(*this, from, to);
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,102 @@
+#include "service/server/log/event.hpp"
+
+#include <google/protobuf/stubs/logging.h>
+#include <grpc/support/log.h>
+#include <spdlog/formatter.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "service/server/log/log_line.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// Between an event's words and its fields, which follow as a JSON object.
+constexpr char border = '\x1f';
+
+/// Where events come from, by which they are known: what a line's text holds may come from outside.
+constexpr const char* origin = "event";
+
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+    switch (level) {
+        case LogLevel::debug:
+            return spdlog::level::debug;
+        case LogLevel::info:
+            return spdlog::level::info;
+        case LogLevel::warning:
+            return spdlog::level::warn;
+        case LogLevel::error:
+            break;
+    }
+    return spdlog::level::err;
+}
+
+class Formatter final : public spdlog::formatter {
+public:
+    explicit Formatter(LogForm form) : form_(form) {}
+
+    void format(const spdlog::details::log_msg& line, spdlog::memory_buf_t& out) override {
+        const std::string_view payload(line.payload.data(), line.payload.size());
+        const auto level = spdlog::level::to_string_view(line.level);
+        const bool is_event = line.source.filename == origin;
+        const std::size_t end = is_event ? std::min(payload.find(border), payload.size()) : payload.size();
+        const std::string text =
+            format_line(form_, {line.time, std::string(level.data(), level.size()), payload.substr(0, end),
+                                payload.substr(std::min(end + 1, payload.size()))});
+        out.append(text.data(), text.data() + text.size());
+    }
+    std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<Formatter>(form_); }
+
+private:
+    LogForm form_;
+};
+
+/// What gRPC has to say goes here; null: nowhere.
+std::atomic<spdlog::logger*> grpc_log = nullptr;
+
+void tell_of_grpc(gpr_log_func_args* line) {
+    spdlog::logger* const log = grpc_log;
+    if (log == nullptr) return;
+    const LogLevel level = line->severity == GPR_LOG_SEVERITY_ERROR ? LogLevel::warning : LogLevel::debug;
+    if (is_logged(*log, level)) log_text(*log, level, std::string("gRPC: ") + line->message);
+}
+
+void tell_of_protobuf(google::protobuf::LogLevel, const char*, int, const std::string& words) {
+    if (spdlog::logger* const log = grpc_log) log_text(*log, LogLevel::debug, "protobuf: " + words);
+}
+
+}  // namespace
+
+bool is_logged(const spdlog::logger& log, LogLevel level) { return log.should_log(spdlog_level(level)); }
+
+void log_event(spdlog::logger& log, LogLevel level, std::string_view what, const std::vector<Field>& fields) {
+    if (!is_logged(log, level)) return;
+    const std::string payload = std::string(what) + border + json_of(fields);
+    log.log(spdlog::source_loc(origin, 1, ""), spdlog_level(level), spdlog::string_view_t(payload));
+}
+
+void log_text(spdlog::logger& log, LogLevel level, std::string_view text) {
+    log.log(spdlog_level(level), spdlog::string_view_t(text.data(), text.size()));
+}
+
+void take_grpc_log(const std::shared_ptr<spdlog::logger>& log) {
+    static std::shared_ptr<spdlog::logger> kept;
+    kept = log;
+    grpc_log = kept.get();
+    gpr_set_log_function(&tell_of_grpc);
+    google::protobuf::SetLogHandler(&tell_of_protobuf);
+}
+
+std::shared_ptr<spdlog::logger> make_log(LogForm form, std::shared_ptr<spdlog::sinks::sink> sink) {
+    if (!sink) sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    auto log = std::make_shared<spdlog::logger>("octopair", std::move(sink));
+    log->set_formatter(std::make_unique<Formatter>(form));
+    return log;
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,80 @@
+#include "service/server/store/file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "base/io_failure.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::service {
+
+File::File(std::string path, Mode mode) : path_(std::move(path)) {
+    const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_EXCL;
+    descriptor_ = Descriptor(::open(path_.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0600));
+    if (!descriptor_.open()) fail_io(path_, mode == Mode::read ? "cannot open" : "cannot create", errno);
+}
+
+std::uint64_t File::size() const {
+    struct stat status {};
+    if (::fstat(descriptor_.number(), &status) != 0) fail_io(path_, "cannot read", errno);
+    return std::uint64_t(status.st_size);
+}
+
+void File::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pread(descriptor_.number(), bytes.data(), bytes.size(), off_t(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail_io(path_, "cannot read", errno);
+        if (count == 0) throw Error(ErrorCode::io_failed, path_ + ": damaged: it is too short");
+        offset += std::uint64_t(count);
+        bytes = bytes.subspan(std::size_t(count));
+    }
+}
+
+void File::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pwrite(descriptor_.number(), bytes.data(), bytes.size(), off_t(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail_io(path_, "cannot write", errno);
+        offset += std::uint64_t(count);
+        bytes = bytes.subspan(std::size_t(count));
+    }
+}
+
+void File::reserve(std::uint64_t bytes) const {
+    int result = 0;
+    do {
+        result = ::fallocate(descriptor_.number(), FALLOC_FL_KEEP_SIZE, 0, off_t(bytes));
+    } while (result != 0 && errno == EINTR);
+    if (result != 0 && errno != EOPNOTSUPP && errno != ENOSYS) fail_io(path_, "cannot write", errno);
+}
+
+void File::finish(const std::string& path) const {
+    if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
+    if (::rename(path_.c_str(), path.c_str()) != 0) fail_io(path, "cannot rename onto it", errno);
+    if (!sync_folder_of(path)) fail_io(path, "cannot be written for good", errno);
+}
+
+bool remove_file(const std::string& path) noexcept { return ::unlink(path.c_str()) == 0; }
+
+bool sync_folder_of(const std::string& path) noexcept {
+    const std::size_t slash = path.rfind('/');
+    char folder[4096] = ".";
+    if (slash != std::string::npos) {
+        const int length =
+            std::snprintf(folder, sizeof folder, "%.*s", int(std::max<std::size_t>(slash, 1)), path.c_str());
+        if (length < 0 || std::size_t(length) >= sizeof folder) return false;
+    }
+    const Descriptor descriptor(::open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!descriptor.open()) return false;
+    return ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP;  // not all file systems can
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,137 @@
+#include "service/server/store/state_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "base/io_failure.hpp"
+#include "octopair/error.hpp"
+#include "service/server/log/event.hpp"
+#include "service/server/store/file.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t digits = 16;
+
+/// The number of "N.job", if it is one.
+std::optional<std::uint64_t> number_of(const std::string& name, std::string_view ending) {
+    if (name.size() != digits + ending.size() || name.substr(digits) != ending) return {};
+    if (name.find_first_not_of("0123456789abcdef") < digits) return {};
+    return std::stoull(name.substr(0, digits), nullptr, 16);
+}
+
+FileBytes bytes_of(const File& file) {
+    return {file.path(), file.size(),
+            [&file](std::uint64_t offset, std::span<std::byte> bytes) { file.read(offset, bytes); }};
+}
+
+}  // namespace
+
+StateFolder::StateFolder(std::string path, std::uint64_t most_bytes, std::shared_ptr<spdlog::logger> log)
+    : path_(std::move(path)), log_(std::move(log)), disk_("state_bytes", "bytes of state on its disk", most_bytes) {
+    const bool made = ::mkdir(path_.c_str(), 0700) == 0;
+    if (!made && errno != EEXIST) fail_io(path_, "cannot create", errno);
+    if (made && !sync_folder_of(path_)) fail_io(path_, "cannot be written for good", errno);
+    const Descriptor folder(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder.open()) fail_io(path_, "cannot open", errno);
+    struct stat status {};
+    if (::fstat(folder.number(), &status) != 0) fail_io(path_, "cannot open", errno);
+    if ((status.st_mode & 077) != 0) {
+        throw Error(ErrorCode::usage,
+                    path_ + ": others may use this folder; give the server one of its own (chmod 700)");
+    }
+    lock();
+}
+
+void StateFolder::lock() {
+    const std::string path = path_ + "/lock";
+    lock_ = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+    if (!lock_.open()) fail_io(path, "cannot open", errno);
+    if (::flock(lock_.number(), LOCK_EX | LOCK_NB) == 0) return;
+    if (errno == EWOULDBLOCK) throw Error(ErrorCode::io_failed, path_ + ": another server has this state folder");
+    fail_io(path, "cannot lock", errno);
+}
+
+std::string StateFolder::base_of(std::uint64_t number) const {
+    char name[digits + 1];
+    (void)std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(number));
+    return path_ + "/" + name;
+}
+
+std::string StateFolder::new_base() { return base_of(++last_); }
+
+/// Takes away what has no meaning, and gives the numbers of the jobs.
+std::vector<std::uint64_t> StateFolder::clean_up() {
+    std::vector<std::uint64_t> jobs, results;
+    std::error_code error;
+    for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (const auto job = number_of(name, ".job")) jobs.push_back(*job);
+        if (const auto result = number_of(name, ".result")) results.push_back(*result);
+        const bool part = number_of(name, ".job.part") || number_of(name, ".result.part");
+        if (part && remove_file(at->path().string())) log_text(*log_, LogLevel::info, name + ": half-written, removed");
+    }
+    if (error) fail_io(path_, "cannot read", error.value());
+    std::sort(jobs.begin(), jobs.end());
+    for (const std::uint64_t result : results) {
+        last_ = std::max<std::uint64_t>(last_, result);
+        if (!std::binary_search(jobs.begin(), jobs.end(), result)) remove_file(base_of(result) + ".result");
+    }
+    if (!jobs.empty()) last_ = std::max<std::uint64_t>(last_, jobs.back());
+    return jobs;
+}
+
+std::vector<StateFolder::Found> StateFolder::find_jobs() {
+    std::vector<Found> found;
+    for (const std::uint64_t number : clean_up()) {
+        if (auto job = find_job(base_of(number))) found.push_back(std::move(*job));
+    }
+    return found;
+}
+
+std::optional<StateFolder::Found> StateFolder::find_job(const std::string& base) {
+    try {
+        const File file(base + ".job", File::Mode::read);
+        Found found;
+        found.base = base;
+        found.disk = disk_.take_anyway(file.size() + bytes_beside);
+        found.stored = read_job(bytes_of(file));
+        if (found.stored.hash.empty()) {
+            found.damage = Error(ErrorCode::io_failed, file.path() + ": damaged: its end is not that of its job");
+        }
+        find_result(found);
+        return found;
+    } catch (const Error& error) {
+        log_text(*log_, LogLevel::error, std::string(error.what()) + "; it is left there");
+        return {};
+    }
+}
+
+void StateFolder::find_result(Found& found) {
+    const std::string path = found.base + ".result";
+    if (!fs::exists(path)) return;
+    try {
+        const File file(path, File::Mode::read);
+        found.result_disk = disk_.take_anyway(file.size());
+        found.result = read_result(bytes_of(file));
+        if (found.result->hash != found.stored.hash && !found.damage) {
+            fail_damaged(path, "it is the result of another job");
+        }
+    } catch (const Error& error) {
+        found.result.reset();
+        found.damage = error;
+    }
+}
+
+}  // namespace octopair::service

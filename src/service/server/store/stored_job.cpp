@@ -1,0 +1,101 @@
+#include "service/server/store/stored_job.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/memory.hpp"
+#include "base/stop.hpp"
+#include "octopair/error.hpp"
+#include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/messages.hpp"
+#include "service/server/jobs/job_input.hpp"
+#include "service/server/log/event.hpp"
+
+namespace octopair::service {
+
+std::optional<Budget::Share> StoredJob::ask_memory() {
+    try {
+        return parts_.memory.take(parts_.memory_bytes);
+    } catch (const LimitError&) {
+        return {};
+    }
+}
+
+std::unique_ptr<JobInput> StoredJob::load(Engine& engine, const std::stop_token& stop) const {
+    const File file(parts_.base + ".job", File::Mode::read);
+    auto input = std::make_unique<JobInput>(parts_.stored.spec, engine);
+    Buffer<std::byte> piece(piece_bytes);
+    for (std::uint64_t at = parts_.stored.input_at; input->missing() > 0;) {
+        throw_if_stopped(stop);
+        const auto bytes = piece.span().first(std::size_t(std::min<std::uint64_t>(input->missing(), piece.size())));
+        file.read(at, bytes);
+        input->append(bytes);
+        at += bytes.size();
+    }
+    if (input->hash() != parts_.stored.hash) fail_damaged(file.path(), "its input is not what was submitted");
+    return input;
+}
+
+void StoredJob::end(const v1::JobReport& ending) {
+    if (ending.state() != v1::DONE) parts_.pairs->discard();
+    try {
+        parts_.pairs->seal(ending);
+    } catch (const std::exception& error) {
+        log_text(parts_.folder.log(), LogLevel::error,
+                 "job " + parts_.stored.spec.id() + ": how it ended cannot be kept: " + error.what());
+        throw;
+    }
+}
+
+/// The job first: a result without one is nothing, a job without one would run.
+void StoredJob::remove() noexcept {
+    remove_file(parts_.base + ".job");
+    parts_.pairs->remove();
+    (void)sync_folder_of(parts_.base);
+    parts_.disk.give_back();
+}
+
+StoredUpload::StoredUpload(StoredSpec stored)
+    : stored_(std::move(stored)), hash_(stored_.spec), missing_(input_bytes(stored_.spec)) {}
+
+StoredUpload::StoredUpload(StateFolder& folder, StoredSpec stored) : StoredUpload(std::move(stored)) {
+    block_ = encode_block(stored_);
+    const std::uint64_t bytes = job_file_bytes(block_, missing_);
+    disk_ = folder.disk().take(bytes + StateFolder::bytes_beside);
+    base_ = folder.new_base();
+    job_path_ = base_ + ".job";
+    file_ = File(base_ + ".job.part", File::Mode::create);
+    try {
+        file_.reserve(bytes);
+        file_.write(0, std::as_bytes(std::span(block_)));
+    } catch (...) {
+        remove_file(file_.path());
+        throw;
+    }
+    stored_.input_at = at_ = block_.size();
+}
+
+StoredUpload::~StoredUpload() {
+    if (!file_.open() || handed_over_) return;
+    remove_file(file_.path());
+    remove_file(job_path_);
+}
+
+void StoredUpload::append(std::span<const std::byte> data) {
+    check_fits(data, missing_);
+    missing_ -= data.size();
+    hash_.add(data);
+    if (file_.open()) file_.write(at_, data);
+    at_ += data.size();
+}
+
+std::string StoredUpload::commit() {
+    stored_.hash = hash_.digest();
+    const std::string end = encode_job_end(block_, stored_.hash);
+    file_.write(at_, std::as_bytes(std::span(end)));
+    file_.finish(job_path_);
+    return base_;
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,173 @@
+// Boxes on their way in: every fault is seen, wherever it stands, and rounding goes outward.
+#include "boxes/box_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "boxes/box_kernel.hpp"
+
+namespace octopair {
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+TEST(BoxKernel, SeesEachFaultOfEachNumber) {
+    const std::vector<Box3f> boxes(300, {{0, 1, 2}, {3, 1, 5}});
+    std::vector<Entry> entries(boxes.size());
+    ASSERT_TRUE(copy_boxes(boxes, entries));
+    for (const std::size_t place : {std::size_t(0), std::size_t(7), boxes.size() - 1}) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            for (const float bad : {infinite, -infinite, nan, -nan, 100.0f}) {
+                auto spoilt = boxes;
+                spoilt[place].min[axis] = bad;
+                EXPECT_FALSE(copy_boxes(spoilt, entries)) << bad;
+                spoilt = boxes;
+                spoilt[place].max[axis] = bad == 100.0f ? -bad : bad;
+                EXPECT_FALSE(copy_boxes(spoilt, entries)) << bad;
+            }
+        }
+    }
+}
+
+TEST(BoxKernel, AgreesWithItsSpecification) {
+    const std::array<float, 10> values = {0, -0.0f, 1, -1, 1e-45f, FLT_MAX, -FLT_MAX, infinite, -infinite, nan};
+    std::mt19937 random(1);
+    std::array<std::size_t, 2> seen{};
+    for (int i = 0; i < 20'000; ++i) {
+        Box3f box{};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            box.min[axis] = values[random() % (i % 2 == 0 ? 7 : 10)];
+            box.max[axis] = values[random() % (i % 2 == 0 ? 7 : 10)];
+            if (i % 4 != 3 && box.min[axis] > box.max[axis]) std::swap(box.min[axis], box.max[axis]);
+        }
+        Entry entry;
+        ASSERT_EQ(copy_boxes({&box, 1}, {&entry, 1}), is_box(box));
+        ++seen[is_box(box) ? 1 : 0];
+    }
+    EXPECT_GT(seen[0], 1000u);
+    EXPECT_GT(seen[1], 1000u);
+}
+
+/// The kernel and the specification on boxes of special and of ordinary numbers.
+template <typename Real>
+void check_rounding(const OutwardRounding& rounding, bool padded) {
+    const Real most = std::numeric_limits<Real>::max();
+    const Real special[] = {0,     Real(-0.0),   1, -1, Real(1e-45), Real(1e-40), Real(1 + 1e-7), most,
+                            -most, Real(3.4e38), 7};
+    std::mt19937_64 random(padded ? 3 : 4);
+    std::uniform_real_distribution<double> place(-100, 100);
+    std::vector<Box<Real>> boxes(3000);
+    std::vector<double> padding(padded ? boxes.size() : 0);
+    for (Box<Real>& box : boxes) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const auto number = [&] {
+                return random() % 3 == 0 ? special[random() % std::size(special)] : Real(place(random));
+            };
+            std::tie(box.min[axis], box.max[axis]) = std::minmax({number(), number()});
+        }
+    }
+    for (double& one : padding) one = random() % 20 == 0 ? DBL_MAX : random() % 2 == 0 ? 0 : std::abs(place(random));
+    std::vector<Entry> entries(boxes.size());
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Entry expected = rounding.entry(wide(boxes[i]), padded ? padding[i] : 0);
+        ASSERT_EQ(std::memcmp(&entries[i], &expected, 6 * sizeof(float)), 0) << i;
+    }
+    boxes.back().max[1] = std::numeric_limits<Real>::infinity();
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+    boxes.back().max[1] = boxes.back().min[1];
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    for (const double bad : {-1.0, double(nan), double(infinite)}) {
+        if (!padded) break;
+        padding[17] = bad;
+        EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries)) << bad;
+    }
+    padding.assign(padding.size(), 0);
+    std::swap(boxes[5].min[2], boxes[5].max[2]);
+    boxes[5].min[2] += Real(1);
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+}
+
+TEST(BoxKernel, RoundsAsSpecified) {
+    for (const double margin : {0.0, 1e-9, 3.0, DBL_MAX}) {
+        for (const double origin : {0.0, 12.345, -1e7}) {
+            for (const bool padded : {false, true}) {
+                const OutwardRounding rounding{{origin, -origin, 0, 0}, margin};
+                check_rounding<float>(rounding, padded);
+                check_rounding<double>(rounding, padded);
+            }
+        }
+    }
+}
+
+Depths depths(const RoundingSlack& slack, const Entry& a, const Entry& b) {
+    Depths depths;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        float largest = 0;
+        for (const Entry& entry : {a, b}) {
+            largest = std::max({largest, std::abs(entry.min[axis]), std::abs(entry.max[axis])});
+        }
+        depths[axis] = slack.depth(axis, largest);
+    }
+    return depths;
+}
+
+/// Pairs that count overlap as entries, and what is certain counts.
+void check_entries(std::span<const Box3d> boxes, double margin) {
+    const Objects objects{boxes, {}};
+    const BoxSource source(objects, nullptr, margin);
+    std::vector<Entry> entries(boxes.size());
+    ASSERT_TRUE(source.load(0, entries));
+    std::size_t counted = 0;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        for (std::uint32_t k = 0; k < boxes.size(); ++k) {
+            const bool counts = source.counts(i, k);
+            counted += counts;
+            ASSERT_TRUE(overlap(entries[i], entries[k]) || !counts) << i << " " << k;
+            ASSERT_TRUE(counts || !deep(entries[i], entries[k], depths(source.slack(), entries[i], entries[k])))
+                << i << " " << k;
+        }
+    }
+    EXPECT_GT(counted, boxes.size());
+}
+
+TEST(BoxSource, EntriesHoldTheirBoxes) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> place(-1, 1);
+    for (const double scale : {1e-30, 1.0, 1e7, 1e30}) {
+        std::vector<Box3d> boxes(500);
+        for (Box3d& box : boxes) {
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                box.min[axis] = (place(random) + 10) * scale;
+                box.max[axis] = box.min[axis] + std::abs(place(random)) * scale;
+            }
+        }
+        for (const double margin : {0.0, 1e-3 * scale}) check_entries(boxes, margin);
+    }
+}
+
+TEST(BoxSource, EntriesHoldBoxesAtTheEndOfTheRange) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-DBL_MAX / 4, DBL_MAX / 4);
+    std::vector<Box3d> boxes(300);
+    for (Box3d& box : boxes) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const auto number = [&] {
+                return random() % 3 == 0 ? std::copysign(DBL_MAX, place(random)) : place(random) * 4;
+            };
+            std::tie(box.min[axis], box.max[axis]) = std::minmax({number(), number()});
+        }
+    }
+    for (const double margin : {0.0, 1e-300, 9.3e299, 1e307}) check_entries(boxes, margin);
+}
+
+}  // namespace
+}  // namespace octopair

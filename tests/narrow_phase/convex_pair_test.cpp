@@ -1,0 +1,321 @@
+// Convex things against each other: random ones by the oracle, and what solvers are known to get wrong.
+#include "narrow_phase/convex/convex_pair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "narrow_phase/convex_oracle.hpp"
+#include "samples/meshes.hpp"
+#include "samples/random.hpp"
+
+namespace octopair::test {
+namespace {
+
+using samples::random_pose;
+using samples::RandomStream;
+using vector::length;
+using vector::minus;
+using vector::times;
+
+constexpr int kinds = 7;
+
+Point3d random_point(RandomStream& random) { return {random.gaussian(), random.gaussian(), random.gaussian()}; }
+
+shape::Any random_shape(int kind, RandomStream& random) {
+    const auto length = [&] { return random.uniform(0.1, 1.1); };
+    switch (kind) {
+        case 0:
+            return shape::Sphere{length()};
+        case 1:
+            return shape::Box{{length(), length(), length()}};
+        case 2:
+            return shape::Capsule{length(), length() - 0.1};
+        case 3:
+            return shape::Cylinder{length(), length()};
+        case 4:
+            return shape::Cone{length(), length()};
+        case 5:
+            return shape::Ellipsoid{{length(), length(), length()}};
+        default:
+            break;
+    }
+    shape::ConvexHull hull;
+    const auto count = 1 + random.below(7);
+    for (std::uint64_t i = 0; i < count; ++i) hull.points.push_back(times(random_point(random), 0.6));
+    return hull;
+}
+
+/// A shape with its solid and its pose.
+struct Thing {
+    PosedShape posed;
+    ConvexSolid solid;
+
+    Thing(shape::Any shape, const Pose& pose) : posed{std::move(shape), pose}, solid(make_convex_solid(posed.shape)) {}
+    explicit Thing(shape::Any shape, const Point3d& place = {0, 0, 0}) : Thing(std::move(shape), make_pose(place)) {}
+
+    PosedConvex convex() const { return {solid, posed.pose}; }
+    Thing moved(const Point3d& by) const {
+        Pose pose = posed.pose;
+        for (std::size_t axis = 0; axis < 3; ++axis) pose.rows[axis][3] += by[axis];
+        return {posed.shape, pose};
+    }
+    double off(const Point3d& point) const { return length(minus(nearest_in(posed, point), point)); }
+};
+
+bool meet(const Thing& a, const Thing& b) {
+    const bool answer = convex_meet(a.convex(), b.convex());
+    EXPECT_EQ(convex_meet(b.convex(), a.convex()), answer);
+    return answer;
+}
+double gap(const Thing& a, const Thing& b) { return convex_gap(a.convex(), b.convex()).distance; }
+ConvexContact contact(const Thing& a, const Thing& b) { return convex_contact(a.convex(), b.convex()); }
+
+void expect_apart(const Thing& a, const Thing& b) {
+    const ConvexGap found = convex_gap(a.convex(), b.convex()), back = convex_gap(b.convex(), a.convex());
+    EXPECT_EQ(back.distance, found.distance);
+    EXPECT_EQ(back.on_a, found.on_b);
+    EXPECT_LT(a.off(found.on_a), 1e-9);
+    EXPECT_LT(b.off(found.on_b), 1e-9);
+    EXPECT_NEAR(length(minus(found.on_b, found.on_a)), found.distance, 1e-9);
+    EXPECT_LE(found.at_least, found.distance);
+    EXPECT_LT(found.distance - found.at_least, 1e-8);
+    const double oracle = distance_by_turns(a.posed, b.posed, 300);
+    EXPECT_LE(found.at_least, oracle + 1e-12);
+    EXPECT_TRUE(convex_within(a.convex(), b.convex(), oracle + 1e-12));
+    EXPECT_FALSE(convex_within(a.convex(), b.convex(), found.at_least * 0.999999 - 1e-9));
+}
+
+void expect_overlap(const Thing& a, const Thing& b, RandomStream& random) {
+    EXPECT_EQ(gap(a, b), 0);
+    const ConvexContact found = contact(a, b);
+    EXPECT_NEAR(length(found.normal), 1, 1e-12);
+    EXPECT_FALSE(meet(a, b.moved(times(found.normal, found.depth + 1e-9))));
+    EXPECT_LT(std::max(a.off(found.point), b.off(found.point)), 1e-9);
+    // No shorter way parts them.
+    for (int i = 0; i < 10; ++i) {
+        const Point3d way = random_point(random);
+        EXPECT_TRUE(meet(a, b.moved(times(way, 0.999 * found.depth / length(way)))));
+    }
+}
+
+TEST(ConvexPair, EveryShapeAgainstEveryShape) {
+    RandomStream random(5, 0);
+    int meeting = 0, apart = 0;
+    for (int kind_a = 0; kind_a < kinds; ++kind_a) {
+        for (int kind_b = 0; kind_b < kinds; ++kind_b) {
+            SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b));
+            for (int i = 0; i < 40 && !::testing::Test::HasFailure(); ++i) {
+                const Thing a(random_shape(kind_a, random), random_pose(random, 1.5));
+                const Thing b(random_shape(kind_b, random), random_pose(random, 1.5));
+                const double oracle = distance_by_turns(a.posed, b.posed, 300);
+                const bool found = meet(a, b);
+                // An oracle that comes close to 0 cannot tell; one that is 0 has a point of both.
+                EXPECT_TRUE(found || oracle >= 1e-12);
+                EXPECT_FALSE(found && oracle > 0.02) << oracle;
+                found ? ++meeting : ++apart;
+                found ? expect_overlap(a, b, random) : expect_apart(a, b);
+            }
+        }
+    }
+    EXPECT_GT(meeting, 400);
+    EXPECT_GT(apart, 400);
+}
+
+TEST(ConvexPair, NearlyTouchingIsToldApart) {
+    RandomStream random(6, 0);
+    for (int kind_a = 0; kind_a < kinds; ++kind_a) {
+        for (int kind_b = 0; kind_b < kinds; ++kind_b) {
+            SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b));
+            const Thing a(random_shape(kind_a, random), random_pose(random, 1));
+            const Thing b = Thing(random_shape(kind_b, random), random_pose(random, 1)).moved({5, 4, 3});
+            const ConvexGap found = convex_gap(a.convex(), b.convex());
+            const Point3d way = times(minus(found.on_a, found.on_b), 1 / found.distance);
+            EXPECT_FALSE(meet(a, b.moved(times(way, found.distance - 1e-7))));
+            EXPECT_LT(gap(a, b.moved(times(way, found.distance))), 1e-8);
+        }
+    }
+}
+
+TEST(ConvexPair, KnownDistancesAndDepths) {
+    const Thing ball(shape::Sphere{1}), box(shape::Box{{1, 2, 3}}), rod(shape::Capsule{0.5, 2});
+    EXPECT_DOUBLE_EQ(gap(ball, ball.moved({3, 4, 0})), 3);
+    EXPECT_DOUBLE_EQ(contact(ball, ball.moved({0, 1.5, 0})).depth, 0.5);
+    EXPECT_DOUBLE_EQ(gap(box, ball.moved({4, 6, 0})), 4);
+    EXPECT_DOUBLE_EQ(gap(rod, ball.moved({3, 0, 0.5})), 1.5);
+    EXPECT_DOUBLE_EQ(contact(box, ball.moved({1.5, 0, 0})).depth, 0.5);
+    // The ball's centre in the box: out by the nearest side.
+    const ConvexContact deep = contact(box, ball.moved({0.75, 0, 0}));
+    EXPECT_DOUBLE_EQ(deep.depth, 1.25);
+    EXPECT_NEAR(deep.normal[0], 1, 1e-12);
+    // Axes that cross.
+    const Thing across(shape::Capsule{0.5, 2}, make_pose({0, 0, 0}, {1, 1, 0, 0}));
+    EXPECT_DOUBLE_EQ(contact(rod, across).depth, 1);
+    EXPECT_DOUBLE_EQ(gap(rod, across.moved({2, 0, 0})), 1);
+}
+
+TEST(ConvexPair, ContactsAreInThinThingsToo) {
+    const Thing ball(shape::Sphere{1}), plate(shape::Box{{0.01, 1, 1}}, Point3d{0.2, 0, 0}),
+        bead(shape::Sphere{0.1}, Point3d{0.05, 0, 0});
+    EXPECT_NEAR(contact(ball, plate).point[0], 0.19, 1e-12);
+    EXPECT_DOUBLE_EQ(contact(ball, plate).depth, 0.81);
+    EXPECT_NEAR(contact(ball, bead).point[0], 0.025, 1e-12);
+}
+
+TEST(ConvexPair, SizesDownToTheLeastNumbers) {
+    for (const double size : {1e-300, 1e-307, 1e-308, 1e-309, 1e-320}) {
+        const shape::Any shapes[] = {
+            shape::Sphere{size},         shape::Box{{size, size, size}},       shape::Capsule{size, size},
+            shape::Cylinder{size, size}, shape::Ellipsoid{{size, size, size}}, shape::Cone{size, size}};
+        for (const auto& shape_a : shapes) {
+            for (const auto& shape_b : shapes) {
+                const Thing a(shape_a), b(shape_b, Point3d{size / 2, 0, 0});
+                EXPECT_TRUE(meet(a, b)) << size;
+                EXPECT_LE(contact(a, b).depth, 4 * size);
+                // Below that numbers have fewer digits than the proof of a gap needs.
+                EXPECT_FALSE(size >= 1e-308 && meet(a, b.moved({10 * size, 0, 0}))) << size;
+            }
+        }
+    }
+}
+
+TEST(ConvexPair, TouchingMeetsAndAHairBeyondDoesNot) {
+    const auto touch_along = [](const Thing& a, const Thing& b, const Point3d& way, double distance) {
+        EXPECT_TRUE(meet(a, b.moved(times(way, distance))));
+        EXPECT_FALSE(meet(a, b.moved(times(way, distance + 1e-7))));
+        EXPECT_LT(contact(a, b.moved(times(way, distance))).depth, 1e-7);
+    };
+    const Thing box(shape::Box{{0.5, 0.5, 0.5}}), cylinder(shape::Cylinder{0.5, 2}), cone(shape::Cone{0.5, 2});
+    const Thing egg(shape::Ellipsoid{{0.3, 0.5, 0.7}}), ball(shape::Sphere{0.25}), rod(shape::Capsule{0.25, 1});
+    touch_along(box, box, {1, 0, 0}, 1);
+    touch_along(cylinder, cylinder, {0, 0, 1}, 2);
+    touch_along(cylinder, cylinder, {0, 1, 0}, 1);
+    touch_along(cylinder, box, {1, 0, 0}, 1);
+    touch_along(cone, cone, {0, 0, 1}, 2);
+    touch_along(cone, egg, {0, 0, 1}, 1.7);
+    touch_along(egg, egg, {1, 0, 0}, 0.6);
+    touch_along(egg, ball, {0, 1, 0}, 0.75);
+    touch_along(rod, rod, {0, 0, 1}, 1.5);
+    touch_along(rod, rod, {1, 0, 0}, 0.5);
+}
+
+TEST(ConvexPair, InEachOtherOrTheSame) {
+    RandomStream random(7, 0);
+    for (int kind = 0; kind < kinds; ++kind) {
+        SCOPED_TRACE("kind " + std::to_string(kind));
+        const Thing thing(random_shape(kind, random), random_pose(random, 2));
+        EXPECT_TRUE(meet(thing, thing));
+        EXPECT_EQ(gap(thing, thing), 0);
+        if (kind == kinds - 1) continue;  // a hull of one point stays in itself wherever the other one goes
+        const ConvexContact found = contact(thing, thing);
+        EXPECT_FALSE(meet(thing, thing.moved(times(found.normal, found.depth + 1e-9))));
+        const Thing grain(shape::Sphere{0.01}, thing.posed.pose);
+        EXPECT_EQ(gap(thing, grain), 0);
+        EXPECT_GT(contact(thing, grain).depth, 0.04);
+        EXPECT_TRUE(convex_holds(thing.convex(), grain.convex()));
+        EXPECT_FALSE(convex_holds(grain.convex(), thing.convex()));
+    }
+}
+
+TEST(ConvexPair, FlatHulls) {
+    const Thing sheet(shape::ConvexHull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 0}}});
+    const Thing stick(shape::ConvexHull{{{0, 0, 0}, {0, 0, 1}}}), dot(shape::ConvexHull{{{0, 0, 0}}});
+    const Thing corner(shape::ConvexHull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+    for (const Thing& thing : {sheet, stick, dot, corner}) {
+        EXPECT_TRUE(meet(thing, thing));
+        EXPECT_EQ(contact(thing, thing).depth, 0) << "flat things are parted by any step across them";
+    }
+    EXPECT_TRUE(meet(sheet, sheet.moved({1, 1, 0})));
+    EXPECT_FALSE(meet(sheet, sheet.moved({1, 1, 1e-9})));
+    EXPECT_NEAR(gap(sheet, sheet.moved({0.5, 0, 1e-9})), 1e-9, 1e-13);
+    EXPECT_TRUE(meet(sheet, stick.moved({0.25, 0.25, -0.5})));
+    EXPECT_TRUE(meet(sheet, dot.moved({0.25, 0.75, 0})));
+    EXPECT_FALSE(meet(corner, dot.moved({0.5, 0.500001, 0})));
+    EXPECT_TRUE(meet(corner, dot.moved({0.5, 0.5, 0})));
+    EXPECT_NEAR(contact(Thing(shape::Box{{1, 1, 1}}), sheet.moved({0, 0, 0.75})).depth, 0.25, 1e-12);
+}
+
+TEST(ConvexPair, HugeAgainstTiny) {
+    const Thing world(shape::Box{{1e6, 1e6, 1e6}}), grain(shape::Sphere{1e-6});
+    EXPECT_TRUE(meet(world, grain.moved({1e6 + 1e-6, 0, 0})));
+    EXPECT_FALSE(meet(world, grain.moved({1e6 + 3e-6, 5, 7})));
+    EXPECT_NEAR(gap(world, grain.moved({1e6 + 3e-6, 5, 7})), 2e-6, 1e-9);
+    const Thing drum(shape::Cylinder{1e6, 1e6}), speck(shape::Ellipsoid{{1e-6, 2e-6, 3e-6}});
+    EXPECT_TRUE(meet(drum, speck.moved({6e5, 8e5 - 1, 0})));
+    EXPECT_FALSE(meet(drum, speck.moved({6e5, 8e5 + 1e-5, 5e5 + 1e-5})));
+    for (const double size : {1e-6, 1e6}) {
+        const Thing one(shape::Cone{size, size}), other(shape::Cylinder{size, size});
+        EXPECT_NEAR(gap(one, other.moved({3 * size, 0, 0})), size, 1e-9 * size);
+        EXPECT_NEAR(contact(one, other.moved({0, 0, -0.75 * size})).depth, 0.25 * size, 1e-9 * size);
+    }
+}
+
+TEST(ConvexPair, FarFromTheOrigin) {
+    RandomStream random(8, 0);
+    for (int kind = 0; kind < kinds; ++kind) {
+        // Places that are the same numbers of 2^-30 there.
+        const auto near = [&](double at) { return std::round(at * 0x1p30) * 0x1p-30; };
+        Thing a(random_shape(kind, random), random_pose(random, 1)), b(random_shape(3, random), random_pose(random, 1));
+        for (Thing* thing : {&a, &b}) {
+            for (auto& row : thing->posed.pose.rows) row[3] = near(row[3]);
+        }
+        b = b.moved({2.5, 2, 1});
+        const Point3d far = {1e6, -1e6, 0.5e6};
+        EXPECT_NEAR(gap(a.moved(far), b.moved(far)), gap(a, b), 1e-12);
+    }
+}
+
+TEST(ConvexPair, HullsMayBeScaledAndMirrored) {
+    const shape::ConvexHull corner = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Pose mirrored, flat;
+    mirrored.rows[0][0] = -2;
+    flat.rows[2][2] = 0;
+    const Thing dot(shape::ConvexHull{{{0, 0, 0}}});
+    EXPECT_TRUE(meet(Thing(corner, mirrored), dot.moved({-1.5, 0.25, 0})));
+    EXPECT_FALSE(meet(Thing(corner, mirrored), dot.moved({0.5, 0.25, 0})));
+    EXPECT_TRUE(meet(Thing(corner, flat), dot.moved({0.25, 0.25, 0})));
+    EXPECT_NEAR(gap(Thing(corner, flat), dot.moved({0.25, 0.25, 0.5})), 0.5, 1e-12);
+}
+
+TEST(ConvexPair, TrianglesAndPoints) {
+    const Thing cylinder(shape::Cylinder{1, 2}, Point3d{1e6, 0, 0});
+    std::array<Point3d, 3> triangle = {{{1e6 + 2, -1, 0}, {1e6 + 2, 1, 0}, {1e6 + 2, 0, 1}}};
+    EXPECT_NEAR(convex_gap(PosedConvex(triangle), cylinder.convex()).distance, 1, 1e-9);
+    EXPECT_FALSE(convex_holds(cylinder.convex(), PosedConvex(triangle)));
+    for (Point3d& corner : triangle) corner[0] = 1e6 + 0.25, corner[1] *= 0.5, corner[2] *= 0.5;
+    EXPECT_TRUE(convex_meet(PosedConvex(triangle), cylinder.convex()));
+    EXPECT_TRUE(convex_holds(cylinder.convex(), PosedConvex(triangle)));
+    EXPECT_TRUE(convex_meet(PosedConvex(Point3d{1e6 + 1, 0, 1}), cylinder.convex()));
+    EXPECT_FALSE(convex_holds(cylinder.convex(), PosedConvex(Point3d{1e6 + 1, 0, 1})));
+    EXPECT_FALSE(convex_meet(PosedConvex(Point3d{1e6 + 1, 0.001, 1}), cylinder.convex()));
+}
+
+TEST(ConvexPair, HoldsWhatStaysBelowItsSurface) {
+    RandomStream random(9, 0);
+    int held = 0;
+    for (int kind_a = 0; kind_a < kinds; ++kind_a) {
+        for (int kind_b = 0; kind_b < kinds; ++kind_b) {
+            for (int i = 0; i < 20; ++i) {
+                const Thing outer(random_shape(kind_a, random), random_pose(random, 0.3));
+                const Thing inner(random_shape(kind_b, random), random_pose(random, 0.3));
+                if (!convex_holds(outer.convex(), inner.convex())) continue;
+                ++held;
+                // No point of the inner one is outside.
+                for (int k = 0; k < 50; ++k) {
+                    const Point3d point = nearest_in(inner.posed, times(random_point(random), 10));
+                    EXPECT_LT(outer.off(point), 1e-12) << kind_a << ", " << kind_b;
+                }
+            }
+        }
+    }
+    EXPECT_GT(held, 30);
+    const Thing box(shape::Box{{1, 1, 1}}), ball(shape::Sphere{0.5});
+    EXPECT_TRUE(convex_holds(box.convex(), ball.moved({0.499, 0, 0}).convex()));
+    EXPECT_FALSE(convex_holds(box.convex(), ball.moved({0.5, 0, 0}).convex()));
+}
+
+}  // namespace
+}  // namespace octopair::test
