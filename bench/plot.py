@@ -3,7 +3,7 @@
 
     bench/plot.py FOLDER [--paper FILE] [--peers FILE...] [--scaling FILE...] [--cluster FILE]
 
-FILE: the JSON of `octopair bench paper`, of octopair_compare, of `octopair bench scaling` and of `octopair bench cluster`.
+FILE: the JSON of `octopair-bench paper`, of octopair_compare, of `octopair-bench scaling` and of `octopair-bench cluster`.
 Written to FOLDER: figure-5.svg and components.svg from the first, peers-1m.svg from the comparisons of a million objects on
 one thread, scaling.svg, cluster-efficiency.svg and cluster-steps.svg. The same files give the same bytes. Needs Matplotlib
 (scripts/setup bench), which Debian has for its own Python.

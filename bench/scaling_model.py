@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A cost model of ranks, fitted to what `octopair bench cluster` measured (docs/scaling.md).
+"""A cost model of ranks, fitted to what `octopair-bench cluster` measured (docs/scaling.md).
 
     scaling_model.py RESULTS > RESULTS/model.json     the tables that bench/page.py puts there
 

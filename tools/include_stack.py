@@ -32,6 +32,8 @@ LAYERS = {
     "service/protocol": ("messages between client and server", []),
     "service/client": ("an engine behind a socket", ["client", "job_client", "remote_scene"]),
     "service/server": ("jobs of many clients", []),
+    "cli/command": ("options, numbers, progress, signals", []),
+    "cli/ranks": ("a program as a rank of MPI", []),
     "cli": ("the program octopair", []),
     "bench/machine": ("what measured", []),
     "bench/baselines": ("the known algorithms", []),
@@ -43,48 +45,50 @@ LAYERS = {
 # Headers that include a whole library: octopair.hpp brings what octopair::octopair holds, version.hpp uses nothing.
 WHOLE = {"octopair": "scene", "version": "base"}
 
-ENGINE = ["base", "parallel", "geometry", "boxes", "octree", "engine"]
-# What each layer may use, beside itself. PUBLIC marks layers of which it may use the public headers only.
+# What each layer may use, beside itself.
 USES = {
-    "base": [], "parallel": ["base"], "geometry": ["base"],
+    "base": [],
+    "parallel": ["base"],
+    "geometry": ["base"],
     "boxes": ["base", "geometry"],
-    "octree": ["base", "geometry", "boxes"],
+    "octree": ["base", "boxes"],
     "verification": ["base", "parallel"],
-    "engine": ENGINE + ["verification"],
-    "engine/threads": ENGINE,
-    "engine/processes": ENGINE + ["engine/threads"],
-    "engine/mpi": ENGINE + ["engine/threads"],
-    "scene": ENGINE + ["engine/threads"],
+    "engine": ["base", "boxes", "verification"],
+    "engine/threads": ["base", "parallel", "octree", "engine"],
+    "engine/processes": ["base", "boxes", "octree", "engine", "engine/threads"],
+    "engine/mpi": ["base", "parallel", "boxes", "octree", "engine", "engine/threads"],
+    "scene": ["base", "parallel", "geometry", "boxes", "octree", "engine", "engine/threads"],
     "narrow_phase": ["base", "geometry"],
     "pipeline": ["base", "parallel", "geometry", "boxes", "narrow_phase"],
     "samples": ["base"],
     "io": ["base", "geometry", "boxes"],
     "service/protocol": ["base", "engine"],
     "service/client": ["base", "engine", "scene", "service/protocol"],
-    "service/server": ["base", "engine", "scene", "service/protocol", "service/client"],
-    "cli": ["base", "parallel", "boxes", "octree", "engine", "engine/mpi", "verification", "scene", "samples", "io",
-            "service/protocol", "service/client", "service/server"],
-    "bench/machine": [],
-    "bench/baselines": ["base", "octree"],
+    "service/server": ["base", "engine", "scene", "service/protocol"],
+    "cli/command": ["base"],
+    "cli/ranks": ["base", "engine/mpi", "cli/command"],
+    "cli": ["base", "parallel", "boxes", "octree", "verification", "engine", "engine/mpi", "scene", "samples", "io",
+            "service/protocol", "service/client", "service/server", "cli/command", "cli/ranks"],
+    "bench/machine": ["base"],
+    "bench/baselines": ["octree"],
     "bench/paper": ["base", "samples", "bench/machine", "bench/baselines"],
-    "bench/cluster": ["base", "engine", "engine/mpi", "samples", "bench/machine", "bench/paper"],
-    "bench/scaling": ["samples", "bench/machine", "bench/cluster"],
-    "bench/program": ["base", "samples", "io", "cli", "bench/machine", "bench/paper", "bench/cluster", "bench/scaling"],
+    "bench/cluster": ["base", "engine/mpi", "samples", "bench/machine", "bench/paper"],
+    "bench/scaling": ["base", "samples", "bench/machine", "bench/cluster"],
+    "bench/program": ["base", "samples", "io", "cli/command", "cli/ranks", "bench/paper", "bench/cluster", "bench/scaling"],
 }
+# Layers of which a layer may use the public headers only.
 PUBLIC = {
     "verification": ["boxes"],  # a check that shares code with what it checks would share its errors
     "narrow_phase": ["boxes"],
     "pipeline": ["engine"],
     "samples": ["geometry", "boxes", "narrow_phase"],
     "io": ["narrow_phase", "pipeline"],
-    "service/protocol": ["boxes"],
-    "service/client": ["boxes"],
     "service/server": ["boxes"],
-    "cli": ["geometry", "narrow_phase", "pipeline", "engine/processes"],
-    "bench/paper": ["boxes", "engine"],
-    "bench/cluster": ["boxes"],
-    "bench/scaling": ["boxes", "engine", "engine/mpi"],
-    "bench/program": ["boxes", "engine", "engine/mpi", "engine/processes"],
+    "cli": ["pipeline", "engine/processes"],
+    "cli/ranks": ["boxes"],
+    "bench/baselines": ["boxes"],
+    "bench/paper": ["engine"],
+    "bench/scaling": ["engine/mpi"],
 }
 
 # First part of a third-party include: the layers that may use it.

@@ -60,7 +60,7 @@ std::vector<Measured> measure(const StudyPlan& plan, const Show& show, const std
         show(fmt::format("on {} rank{}", ranks, ranks == 1 ? "" : "s"), double(i) / double(plan.ranks.size()));
         const TemporaryFile file;
         std::vector<std::string> command = {
-            program, "bench", "cluster", "--on-ranks", file.path(), "--rounds", std::to_string(plan.rounds), "--scene"};
+            program, "cluster", "--on-ranks", file.path(), "--rounds", std::to_string(plan.rounds), "--scene"};
         command.insert(command.end(), plan.scenes.begin(), plan.scenes.end());
         command.emplace_back("--objects");
         for (const std::uint64_t objects : plan.objects) command.push_back(std::to_string(objects));

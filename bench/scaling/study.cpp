@@ -28,7 +28,6 @@ struct Scene {
 Contest measure(const StudyPlan& plan, const Scene& scene, const std::stop_token& stop) {
     const cluster::TemporaryFile file;
     std::vector<std::string> command = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                        "bench",
                                         "scaling",
                                         "--on-ranks",
                                         file.path(),

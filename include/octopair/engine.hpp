@@ -14,64 +14,18 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <string_view>
 #include <vector>
 
 #include "octopair/box_array.hpp"
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
+#include "octopair/options.hpp"
 #include "octopair/pair_list.hpp"
+#include "octopair/summary.hpp"
 
 namespace octopair {
-
-/// `octal`: the order of the linear octree, the cheapest. `ascending`: by a, then b. Both are deterministic.
-enum class Order : std::uint8_t { ascending, octal };
-
-/// Receives how much of a call is done, 0 to 1, never falling; from one thread at a time, which may not be the
-/// caller's.
-using ProgressSink = std::function<void(double)>;
-
-struct Options {
-    Order order = Order::ascending;
-    double margin = 0;                        ///< gap up to which a pair counts, on every axis; finite, >= 0
-    std::optional<std::uint64_t> limit = {};  ///< the first so many pairs of the order
-    std::uint64_t buffer_bytes = 1ull << 30;  ///< bound on pairs held while streaming; at least 1 MiB is used
-    ProgressSink progress = {};               ///< may be empty; what it throws ends the call and reaches the caller
-    /// Checks the result by a second algorithm that shares no code with the octree (docs/design.md, "Certificates").
-    /// A difference throws Error{engine_failed} that names a pair; of a list that failed, no pair is left. A stream fails
-    /// before a pair that does not belong is handed out, and for want of a pair at its end at the latest.
-    /// Time: some microseconds an object, shared by the threads; often ten times the call. Memory, in this process: 33
-    /// bytes an object (64 for float64), 12 more in octal order; the number of pairs does not matter.
-    /// Throws Error{usage} on an engine of MPI ranks, none of which has all objects.
-    bool verify = false;
-};
-
-/// Wall-clock seconds of the steps; a step that was passed over more than once (streaming) is summed.
-struct StepSeconds {
-    double encode = 0, sort = 0, merge = 0, scan = 0;
-};
-
-/// Outcome of Options::verify.
-struct Verification {
-    bool done = false;   ///< the result was checked, and no difference was found
-    double seconds = 0;  ///< wall clock; not part of the seconds of the call
-    /// Static text for users that names the properties which were not checked; empty if all were. Examples: the order of the
-    /// pairs in octal order, which pairs are the first under a limit, which pairs were counted.
-    std::string_view not_checked = {};
-};
-
-/// What a call did, beside its pairs.
-struct Summary {
-    std::uint64_t pairs = 0;
-    bool truncated = false;     ///< `limit` was reached and at least one more pair exists
-    double seconds = 0;         ///< wall clock
-    std::uint64_t entries = 0;  ///< of the linear octree; at most 8 an object
-    StepSeconds steps = {};
-    Verification verification = {};
-};
 
 /// Receives batches in order, on the calling thread; a span is valid during the call only. What it throws ends the
 /// search and reaches the caller.

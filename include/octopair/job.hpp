@@ -22,10 +22,9 @@
 #include "octopair/box_array.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pair_list.hpp"
+#include "octopair/summary.hpp"
 
 namespace octopair {
-
-struct Summary;
 
 /// The last three are for ever.
 enum class JobState : std::uint8_t {

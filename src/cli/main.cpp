@@ -1,12 +1,7 @@
-// The program: parses, runs the chosen subcommand, and turns what it throws into a line and an exit status.
-#include <csignal>
-#include <new>
-#include <system_error>
-
+// The program octopair: parses the command line, and runs the chosen subcommand.
 #include "cli/command/command.hpp"
-#include "cli/command/failure.hpp"
+#include "cli/command/program_main.hpp"
 #include "cli/subcommands.hpp"
-#include "octopair/error.hpp"
 #include "octopair/version.hpp"
 
 namespace octopair::cli {
@@ -30,26 +25,8 @@ int run(int argc, char** argv) {
     add_result(program, action);
     add_cancel(program, action);
 #endif
-    add_bench(program, action);
     if (const auto status = line.parse(argc, argv)) return *status;
     return action();
-}
-
-/// Runs with every exception caught; want of memory must not need memory to be reported.
-int guarded_run(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const Error& error) {
-        return fail(error);
-    } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::resource_limit, "out of memory");
-    } catch (const std::system_error& error) {
-        const bool want = error.code() == std::errc::resource_unavailable_try_again;
-        return fail(want ? ErrorCode::resource_limit : ErrorCode::engine_failed,
-                    want ? "cannot start another thread" : error.what());
-    } catch (const std::exception& error) {
-        return fail(ErrorCode::engine_failed, error.what());
-    }
 }
 
 }  // namespace
@@ -57,8 +34,5 @@ int guarded_run(int argc, char** argv) {
 }  // namespace octopair::cli
 
 int main(int argc, char** argv) {
-    // A closed pipe and a file-size limit are errors of write(), with a message, and not the end.
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);
-    return octopair::cli::guarded_run(argc, argv);
+    return octopair::cli::program_main("octopair", [&] { return octopair::cli::run(argc, argv); });
 }

@@ -22,11 +22,10 @@ _octopair() {
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "bench cancel detect generate info replay result serve status submit --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "cancel detect generate info replay result serve status submit --help --version" -- "$current")
         return
     fi
     case $previous in
-        --scene) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current"); return ;;
         --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects features" -- "$current"); return ;;
         --adjacent) mapfile -t COMPREPLY < <(compgen -W "beyond-shared exclude include" -- "$current"); return ;;
         --same-parent) mapfile -t COMPREPLY < <(compgen -W "include exclude" -- "$current"); return ;;
@@ -38,33 +37,15 @@ _octopair() {
         --index-type) mapfile -t COMPREPLY < <(compgen -W "uint32 uint64" -- "$current"); return ;;
         --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
         --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
-        --arrangement) mapfile -t COMPREPLY < <(compgen -W "shared paper" -- "$current"); return ;;
         --log) mapfile -t COMPREPLY < <(compgen -W "text json" -- "$current"); return ;;
         --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
-        --margin | --limit | --threads | --workers | --seed | --frames | --rounds | --patience | --listen | --metrics) return ;;
-        --machines | --latency | --bandwidth | --ranks | --ranks-per-machine) return ;;
+        --margin | --limit | --threads | --workers | --seed | --frames | --patience | --listen | --metrics) return ;;
         --grace | --stall | --rank-timeout | --max-* | --server | --id | --wait) return ;;
         --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # of result it is no more than a word
-        --json)
-            if [[ $subcommand == bench ]]; then
-                mapfile -t COMPREPLY < <(compgen -f -- "$current")
-                return
-            fi ;;
         --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
         --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
-        bench)
-            if ((COMP_CWORD == 2)); then
-                mapfile -t COMPREPLY < <(compgen -W "paper cluster scaling" -- "$current")
-            elif [ "${COMP_WORDS[2]}" = cluster ]; then
-                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --ranks --arrangement --ranks-per-machine --rounds --mpirun --json --quiet --help" -- "$current")
-            elif [ "${COMP_WORDS[2]}" = scaling ]; then
-                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --weak --cores --threads-per-rank --rounds --mpirun --json
-                    --quiet --help" -- "$current")
-            else
-                mapfile -t COMPREPLY < <(compgen -W "--scene --objects --threads --rounds --machines --latency --bandwidth --mpirun --json --quiet --help" -- "$current")
-            fi ;;
         detect)
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --baseline --report --objects --margin --padding --output --order

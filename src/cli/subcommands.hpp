@@ -2,18 +2,11 @@
 // work after parsing and returns the exit status. Both may throw Error.
 #pragma once
 
-#include <functional>
-
 #include "cli/command/command.hpp"
+#include "cli/command/program_main.hpp"
 
 namespace octopair::cli {
 
-using Action = std::function<int()>;
-
-void add_bench(Command& program, Action& action);
-/// Of `bench`.
-void add_bench_cluster(Command& bench, Action& action);
-void add_bench_scaling(Command& bench, Action& action);
 void add_cancel(Command& program, Action& action);
 void add_detect(Command& program, Action& action);
 void add_generate(Command& program, Action& action);

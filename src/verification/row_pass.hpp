@@ -8,7 +8,7 @@
 #include <span>
 #include <stop_token>
 
-#include "octopair/engine.hpp"
+#include "octopair/options.hpp"
 #include "parallel/team.hpp"
 #include "verification/pair_fault.hpp"
 #include "verification/row_search.hpp"

@@ -6,7 +6,9 @@
 #include <span>
 #include <stop_token>
 
-#include "octopair/engine.hpp"
+#include "octopair/objects.hpp"
+#include "octopair/options.hpp"
+#include "octopair/summary.hpp"
 #include "parallel/team.hpp"
 #include "verification/result_check.hpp"
 #include "verification/row_search.hpp"

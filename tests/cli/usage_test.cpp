@@ -7,8 +7,7 @@ namespace {
 class Usage : public ProgramTest {};
 
 TEST_F(Usage, HelpAndVersionAreAnswers) {
-    for (const std::string what : {"--help", "detect --help", "generate --help", "bench --help", "bench paper --help",
-                                   "replay --help", "--version", "info"}) {
+    for (const std::string what : {"--help", "detect --help", "generate --help", "replay --help", "--version", "info"}) {
         const Outcome outcome = run(what);
         EXPECT_EQ(outcome.status, 0) << what;
         EXPECT_NE(outcome.out, "") << what;
@@ -71,30 +70,6 @@ TEST_F(Usage, WrongOptionsAreRefused) {
         "generate uniform --objects 5 --frames 0 --output p.npy",
         "generate uniform --objects 5 --frames 2 --output p.npy",
         "generate uniform --objects 5 --output p.csv",
-        "bench",
-        "bench nothing",
-        "bench paper --objects",
-        "bench paper --objects 1",
-        "bench paper --objects 1000 many",
-        "bench paper --objects 4294967296",
-        "bench paper --threads 1025",
-        "bench paper --rounds 0",
-        "bench paper --scene nothing",
-        "bench paper a.npy",
-        "bench paper --machines 0",
-        "bench paper --machines 2 --threads 1",
-        "bench paper --machines 2 --bandwidth 0",
-        "bench paper --latency 5",
-        "bench cluster --ranks 0",
-        "bench cluster --scene nothing",
-        "bench cluster --rounds none",
-        "bench cluster a.npy",
-        "bench cluster --arrangement other",
-        "bench cluster --ranks-per-machine 0",
-        "bench scaling --cores 0",
-        "bench scaling --cores 1 1025",
-        "bench scaling --threads-per-rank none",
-        "bench scaling a.npy",
         "replay",
         "replay a.npy b.npy",
         "replay a.npy --threads 1025",

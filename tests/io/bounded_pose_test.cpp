@@ -64,7 +64,7 @@ Rows as_rows(const Integers& integers, int exponent) {
 
 // Numbers of 30 bits, so that exact results have some 95: far more than float64 holds.
 RC_GTEST_PROP(BoundedPose, BoundsHoldTheExactResult, ()) {
-    __extension__ using Wide = __int128;
+    __extension__ using Int128 = __int128;
     const std::int64_t most = std::int64_t(1) << 30;
     const auto a = *rc::gen::resize(1 << 20, integer_rows(most)), b = *rc::gen::resize(1 << 20, integer_rows(most));
     const auto v =
@@ -74,14 +74,14 @@ RC_GTEST_PROP(BoundedPose, BoundsHoldTheExactResult, ()) {
             .apply({std::ldexp(double(v[0]), -30), std::ldexp(double(v[1]), -30), std::ldexp(double(v[2]), -30)});
     for (int row = 0; row < 3; ++row) {
         // In units of 2^-90.
-        Wide exact = Wide(a[row][3]) << 60;
+        Int128 exact = Int128(a[row][3]) << 60;
         for (int k = 0; k < 3; ++k) {
-            Wide inner = Wide(b[k][3]) << 30;
-            for (int j = 0; j < 3; ++j) inner += Wide(b[k][j]) * v[j];
+            Int128 inner = Int128(b[k][3]) << 30;
+            for (int j = 0; j < 3; ++j) inner += Int128(b[k][j]) * v[j];
             exact += inner * a[row][k];
         }
-        RC_ASSERT(Wide(std::floor(std::ldexp(point.low[row], 90))) <= exact);
-        RC_ASSERT(Wide(std::ceil(std::ldexp(point.high[row], 90))) >= exact);
+        RC_ASSERT(Int128(std::floor(std::ldexp(point.low[row], 90))) <= exact);
+        RC_ASSERT(Int128(std::ceil(std::ldexp(point.high[row], 90))) >= exact);
         RC_ASSERT(point.high[row] - point.low[row] < 1e-13);
     }
 }

@@ -8,9 +8,12 @@
 
 namespace octopair::cli {
 
+/// The name that messages begin with. program_main() sets it.
+inline constinit const char* program_name = "octopair";
+
 /// Needs no memory. Returns the exit status.
 inline int fail(ErrorCode code, const char* message) {
-    std::fprintf(stderr, "octopair: %s\n", message);
+    std::fprintf(stderr, "%s: %s\n", program_name, message);
     return exit_status(code);
 }
 

@@ -20,7 +20,7 @@
 #include "io/files/atomic_file.hpp"
 #include "io/results/pair_writer.hpp"
 #ifdef OCTOPAIR_WITH_MPI
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/detect/rank_detection.hpp"
 #endif
 

@@ -3,7 +3,7 @@
 
 #include <stop_token>
 
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/detect/detection.hpp"
 
 namespace octopair::cli {

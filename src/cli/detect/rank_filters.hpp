@@ -4,7 +4,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/detect/filter_row.hpp"
 #include "cli/output/collision_piece.hpp"
 

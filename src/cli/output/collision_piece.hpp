@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/output/found_writer.hpp"
 #include "octopair/pipeline.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <stop_token>
 
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/detect/detection.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/mpi.hpp"

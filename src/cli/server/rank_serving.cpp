@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/error_codes.hpp"
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/command/failure.hpp"
 #include "cli/command/interrupt.hpp"
 #include "cli/server/serving.hpp"

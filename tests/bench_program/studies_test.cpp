@@ -1,4 +1,4 @@
-// octopair bench: a short run of each study.
+// octopair-bench paper: short runs.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -9,7 +9,7 @@ namespace {
 class Bench : public ProgramTest {};
 
 TEST_F(Bench, PaperSaysItInTextAndInJson) {
-    const Outcome outcome = run("bench paper --objects 2000 1000 --rounds 3 --threads 2 --json f");
+    const Outcome outcome = run("paper --objects 2000 1000 --rounds 3 --threads 2 --json f");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     EXPECT_NE(outcome.out.find("Figure 5: run time in milliseconds, uniform"), std::string::npos) << outcome.out;
@@ -31,24 +31,24 @@ TEST_F(Bench, PaperSaysItInTextAndInJson) {
 }
 
 TEST_F(Bench, PaperTakesAnyScene) {
-    const Outcome outcome = run("bench paper --scene clustered --objects 500 --rounds 1 --threads 1 --quiet");
+    const Outcome outcome = run("paper --scene clustered --objects 500 --rounds 1 --threads 1 --quiet");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find(", clustered\n"), std::string::npos) << outcome.out;
     EXPECT_EQ(directory_.names(), std::vector<std::string>{});
 }
 
 TEST_F(Bench, AResultThatCannotBeWrittenIsKnownBefore) {
-    const Outcome outcome = run("bench paper --json none/f");
+    const Outcome outcome = run("paper --json none/f");
     EXPECT_EQ(outcome.status, 4);
     EXPECT_EQ(outcome.out, "");
 }
 
 TEST_F(Bench, Interrupted) {
     const Outcome outcome = shell(
-        "\"$P\" bench paper --objects 100000 --rounds 1000 --threads 1 --json f & child=$!; hears $child; sleep 0.5; "
+        "\"$P\" paper --objects 100000 --rounds 1000 --threads 1 --json f & child=$!; hears $child; sleep 0.5; "
         "kill -INT $child; wait $child");
     EXPECT_EQ(outcome.status, 130) << outcome.err;
-    EXPECT_EQ(outcome.err, "octopair: interrupted\n");
+    EXPECT_EQ(outcome.err, "octopair-bench: interrupted\n");
     EXPECT_EQ(directory_.names(), std::vector<std::string>{});
 }
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# `octopair bench scaling` measures threads and ranks, and leaves nothing where it cannot.
+# `octopair-bench scaling` measures threads and ranks, and leaves nothing where it cannot.
 #
 #     scaling.sh PROGRAM MPIRUN
-source "$(dirname "$(realpath "$0")")/in_folder.sh"
-scaling() { "$program" bench scaling --mpirun "$mpirun" --rounds 3 "$@"; }
+source "$(dirname "$(realpath "$0")")/../mpi/in_folder.sh"
+scaling() { "$program" scaling --mpirun "$mpirun" --rounds 3 "$@"; }
 
 scaling --scene uniform dense --objects 4000 --cores 2 3 --threads-per-rank 2 --json strong.json > table.txt
 scaling --objects 2000 --weak --cores 2 4 --json weak.json >> table.txt
@@ -41,11 +41,11 @@ END
 
 # More ranks than there are to be had, and no ranks at all.
 status=0
-"$program" bench scaling --cores 2 --mpirun no-such-mpirun --json no.json > /dev/null 2> errors.txt || status=$?
+"$program" scaling --cores 2 --mpirun no-such-mpirun --json no.json > /dev/null 2> errors.txt || status=$?
 [ "$status" = 6 ] || fail "exit status $status without an mpirun"
 grep -q 'cannot run no-such-mpirun' errors.txt || fail "not said: $(cat errors.txt)"
 status=0
-"$mpirun" -n 1 "$program" bench scaling --cores 2 --on-ranks no.json 2> errors.txt || status=$?
+"$mpirun" -n 1 "$program" scaling --cores 2 --on-ranks no.json 2> errors.txt || status=$?
 [ "$status" = 2 ] || fail "exit status $status with too few ranks: $(cat errors.txt)"
 [ ! -e no.json ] || fail "a file is left by what failed"
 echo "threads and ranks are measured"

@@ -1,4 +1,4 @@
-// Options that subcommands of `bench` share.
+// Options that subcommands of octopair-bench share.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 
-namespace octopair::cli {
+namespace octopair::bench {
 
-/// From 1 on. Throws Error{usage} that names the option.
+/// Returns a number of at least 1. Throws: Error{usage} that names the option.
 inline std::uint64_t parse_some(const std::string& name, const std::string& text) {
-    const std::uint64_t number = parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
+    const std::uint64_t number = cli::parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
     if (number == 0) throw Error(ErrorCode::usage, name + ": 0 is less than 1");
     return number;
 }
 
-/// Numbers from 1 on, which come to stand in ascending order.
+/// Adds an option that takes numbers of at least 1, and sorts them.
 template <typename Number>
-void add_numbers(Command& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
+void add_numbers(cli::Command& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
     command
         .add_option(
             name,
@@ -36,8 +36,8 @@ void add_numbers(Command& command, const std::string& name, std::vector<Number>&
         .type_name("N");
 }
 
-/// --scene, several times.
-inline void add_scenes(Command& command, std::vector<std::string>& scenes) {
+/// Adds --scene, which takes several kinds.
+inline void add_scenes(cli::Command& command, std::vector<std::string>& scenes) {
     command
         .add_option(
             "--scene",
@@ -49,8 +49,8 @@ inline void add_scenes(Command& command, std::vector<std::string>& scenes) {
         .type_name("KIND");
 }
 
-/// --rounds, of which the median counts.
-inline void add_rounds(Command& command, unsigned& rounds) {
+/// Adds --rounds.
+inline void add_rounds(cli::Command& command, unsigned& rounds) {
     command
         .add_option(
             "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_some("--rounds", text)); },
@@ -58,4 +58,9 @@ inline void add_rounds(Command& command, unsigned& rounds) {
         .type_name("R");
 }
 
-}  // namespace octopair::cli
+/// Adds --mpirun.
+inline cli::Option add_mpirun(cli::Command& command, std::string& mpirun) {
+    return command.add_option("--mpirun", mpirun, "the command that starts ranks (default mpirun)").type_name("COMMAND");
+}
+
+}  // namespace octopair::bench

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# `octopair bench cluster` measures ranks, and leaves nothing where it cannot.
+# `octopair-bench cluster` measures ranks, and leaves nothing where it cannot.
 #
-#     bench.sh PROGRAM MPIRUN
-source "$(dirname "$(realpath "$0")")/in_folder.sh"
+#     cluster.sh PROGRAM MPIRUN
+source "$(dirname "$(realpath "$0")")/../mpi/in_folder.sh"
 
-"$program" bench cluster --scene uniform dense --objects 3000 --ranks 1 3 --rounds 2 --mpirun "$mpirun" --json all.json > table.txt
+"$program" cluster --scene uniform dense --objects 3000 --ranks 1 3 --rounds 2 --mpirun "$mpirun" --json all.json > table.txt
 grep -q '^3000 objects, dense: [1-9][0-9]* pairs$' table.txt || fail "no table of a scene: $(cat table.txt)"
 [ "$(grep -cE '^ +3( +[0-9.]+){3} +[0-9.]+% ' table.txt)" = 2 ] || fail "no row of three ranks: $(cat table.txt)"
 python3 - << 'END'
@@ -22,9 +22,9 @@ assert {run["pairs"] for run in runs if run["scene"] == "dense"} == {runs[1]["pa
 END
 
 # The paper's arrangement: one rank has all objects at first, and scans alone; the first rank of each machine merges.
-"$program" bench cluster --objects 3000 --ranks 1 4 --rounds 1 --arrangement shared paper --mpirun "$mpirun" --json all.json --quiet > table.txt
+"$program" cluster --objects 3000 --ranks 1 4 --rounds 1 --arrangement shared paper --mpirun "$mpirun" --json all.json --quiet > table.txt
 grep -q '^3000 objects, uniform: [1-9][0-9]* pairs, arranged as in the paper, 2 to a machine$' table.txt || fail "$(cat table.txt)"
-"$program" bench paper --machines 1 2 --objects 3000 --rounds 1 --latency 5 --mpirun "$mpirun" --json paper.json --quiet > table.txt
+"$program" paper --machines 1 2 --objects 3000 --rounds 1 --latency 5 --mpirun "$mpirun" --json paper.json --quiet > table.txt
 grep -q '^Run time in microseconds, uniform, 3,000 objects, 2 processors on each machine$' table.txt || fail "$(cat table.txt)"
 python3 - << 'END'
 import json
@@ -46,11 +46,11 @@ assert modelled[4, "paper"] > (3000 / 2 * 24 + 3000 / 2 * 32) / 1e8
 END
 
 status=0
-"$program" bench cluster --ranks 2 --mpirun "no-such-mpirun" --json no.json > /dev/null 2> errors.txt || status=$?
+"$program" cluster --ranks 2 --mpirun "no-such-mpirun" --json no.json > /dev/null 2> errors.txt || status=$?
 [ "$status" = 6 ] || fail "exit status $status without an mpirun"
 grep -q 'cannot run no-such-mpirun' errors.txt || fail "not said: $(cat errors.txt)"
 status=0
-"$program" bench cluster --ranks 2 --mpirun "$mpirun --no-such-option" --json no.json > /dev/null 2>&1 || status=$?
+"$program" cluster --ranks 2 --mpirun "$mpirun --no-such-option" --json no.json > /dev/null 2>&1 || status=$?
 [ "$status" = 6 ] || fail "exit status $status where mpirun fails"
 [ ! -e no.json ] || fail "a file is left by what failed"
 echo "ranks are measured"

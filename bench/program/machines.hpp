@@ -1,4 +1,4 @@
-// octopair bench paper --machines: the paper's tables with several processors on each machine, on ranks.
+// octopair-bench paper --machines: the paper's tables with several processors on each machine, on ranks.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace octopair::cli {
+#include "cli/command/command.hpp"
+#include "program/study_output.hpp"
 
-class Command;
+namespace octopair::bench {
 
 struct MachinesRequest {
     std::vector<unsigned> machines;                           ///< how many, ascending; empty: not asked for
@@ -17,17 +18,16 @@ struct MachinesRequest {
 };
 
 /// --machines, --latency, --bandwidth, --mpirun.
-void add_machines_options(Command& command, MachinesRequest& request);
+void add_machines_options(cli::Command& command, MachinesRequest& request);
 
-/// What else `bench paper` says.
+/// The other options of `octopair-bench paper`.
 struct MachinesScene {
     std::string scene;
     std::vector<std::uint64_t> objects;
     unsigned rounds;
-    std::string json;
-    bool quiet;
+    OutputRequest output;
 };
 /// Returns the exit status. Throws Error.
 int run_machines(const MachinesRequest& request, const MachinesScene& scene);
 
-}  // namespace octopair::cli
+}  // namespace octopair::bench

@@ -1,5 +1,4 @@
-// octopair bench: measurements. `paper` is the paper's section 5 again (bench/paper; on ranks: bench_machines.cpp);
-// bench_cluster.cpp has `cluster`.
+// octopair-bench paper: the figure and the tables of the paper's section 5 (bench/paper; on ranks: machines.cpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,26 +8,25 @@
 
 #include "cli/command/interrupt.hpp"
 #include "cli/command/numbers.hpp"
-#include "cli/study_output.hpp"
-#include "cli/subcommands.hpp"
 #include "octopair/error.hpp"
 #include "paper/json.hpp"
 #include "paper/study.hpp"
 #include "paper/tables.hpp"
+#include "program/study_output.hpp"
+#include "program/subcommands.hpp"
 #include "samples/scenes.hpp"
 
 #ifdef OCTOPAIR_WITH_MPI
-#include "cli/bench_machines.hpp"
+#include "program/machines.hpp"
 #endif
 
-namespace octopair::cli {
+namespace octopair::bench {
 
 namespace {
 
-struct BenchRequest {
+struct PaperRequest {
     paper::StudyPlan plan = {"uniform", {}, 0, 7, 20};  // no objects: the paper's numbers
-    std::string json;                                   // a file, or empty
-    bool quiet = false;
+    OutputRequest output;
 #ifdef OCTOPAIR_WITH_MPI
     MachinesRequest machines;
 #endif
@@ -45,7 +43,7 @@ struct Bounds {
 
 /// A whole number within `bounds`. Throws Error{usage} that names `option`.
 std::uint64_t parse_between(std::string_view option, const std::string& text, const Bounds& bounds) {
-    const std::uint64_t number = parse_count(option, text, bounds.most);
+    const std::uint64_t number = cli::parse_count(option, text, bounds.most);
     if (number >= bounds.least) return number;
     throw Error(ErrorCode::usage, fmt::format("{}: {} is less than {}", option, number, bounds.least));
 }
@@ -61,7 +59,7 @@ std::vector<std::uint64_t> parse_objects(const std::vector<std::string>& texts) 
     return objects;
 }
 
-int run_paper(BenchRequest request) {
+int run_paper(PaperRequest request) {
 #ifdef OCTOPAIR_WITH_MPI
     if (!request.machines.machines.empty()) {
         if (request.plan.threads != 0) {
@@ -69,11 +67,11 @@ int run_paper(BenchRequest request) {
         }
         return run_machines(request.machines,
                             {request.plan.scene, objects_or(request.plan.objects, {1'000'000, 2'000'000}),
-                             request.plan.rounds, request.json, request.quiet});
+                             request.plan.rounds, request.output});
     }
 #endif
-    const Interrupt interrupt;
-    StudyOutput output(request.json, request.quiet);
+    const cli::Interrupt interrupt;
+    StudyOutput output(request.output);
     request.plan.objects =
         objects_or(request.plan.objects, {100'000, 250'000, 500'000, 1'000'000, 1'500'000, 2'000'000});
     if (request.plan.threads == 0) request.plan.threads = std::max(1u, std::thread::hardware_concurrency());
@@ -83,7 +81,7 @@ int run_paper(BenchRequest request) {
     return 0;
 }
 
-void add_numbers(Command& command, BenchRequest& request) {
+void add_numbers(Command& command, PaperRequest& request) {
     constexpr unsigned most_rounds = 1000;
     command
         .add_option(
@@ -95,7 +93,7 @@ void add_numbers(Command& command, BenchRequest& request) {
         .add_option(
             "--threads",
             [&request](const std::string& text) {
-                request.plan.threads = unsigned(parse_count("--threads", text, most_threads));
+                request.plan.threads = unsigned(cli::parse_count("--threads", text, cli::most_threads));
             },
             "on 1 to K processors (default 0: all cores)")
         .type_name("K");
@@ -109,9 +107,11 @@ void add_numbers(Command& command, BenchRequest& request) {
         .type_name("R");
 }
 
-void add_paper(Command& bench, Action& action) {
-    Command command = bench.add_subcommand("paper", "the figure and the tables of the paper's section 5");
-    const auto request = std::make_shared<BenchRequest>();
+}  // namespace
+
+void add_paper(Command& program, Action& action) {
+    Command command = program.add_subcommand("paper", "the figure and the tables of the paper's section 5");
+    const auto request = std::make_shared<PaperRequest>();
     command
         .add_option(
             "--scene",
@@ -125,21 +125,8 @@ void add_paper(Command& bench, Action& action) {
 #ifdef OCTOPAIR_WITH_MPI
     add_machines_options(command, request->machines);
 #endif
-    command.add_option("--json", request->json, "write every time measured as JSON").type_name("FILE");
-    command.add_flag("--quiet", request->quiet, "no progress on standard error");
+    add_output_options(command, request->output, "write every time measured as JSON");
     command.callback([request, &action] { action = [request] { return run_paper(*request); }; });
 }
 
-}  // namespace
-
-void add_bench(Command& program, Action& action) {
-    Command command = program.add_subcommand("bench", "measure");
-    command.require_subcommand();
-    add_paper(command, action);
-#ifdef OCTOPAIR_WITH_MPI
-    add_bench_cluster(command, action);
-    add_bench_scaling(command, action);
-#endif
-}
-
-}  // namespace octopair::cli
+}  // namespace octopair::bench

@@ -1,4 +1,4 @@
-#include "cli/cluster.hpp"
+#include "cli/ranks/cluster.hpp"
 
 #include <mpi.h>
 
@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/error_codes.hpp"
+#include "cli/command/failure.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -23,7 +24,7 @@ Cluster::Run::~Run() {
     if (std::uncaught_exceptions() > 0 && !ends_alike) {
         int rank = 0;
         MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-        std::fprintf(stderr, "octopair: rank %d failed alone\n", rank);
+        std::fprintf(stderr, "%s: rank %d failed alone\n", program_name, rank);
         abort(exit_status(ErrorCode::engine_failed));
     }
     MPI_Finalize();

@@ -1,16 +1,15 @@
-#include "cli/bench_machines.hpp"
+#include "program/machines.hpp"
 
 #include <algorithm>
 
-#include "cli/command/command.hpp"
 #include "cli/command/interrupt.hpp"
 #include "cli/command/numbers.hpp"
-#include "cli/study_output.hpp"
 #include "cluster/machines.hpp"
 #include "cluster/study.hpp"
 #include "octopair/error.hpp"
+#include "program/options.hpp"
 
-namespace octopair::cli {
+namespace octopair::bench {
 
 namespace {
 
@@ -20,7 +19,7 @@ constexpr unsigned ranks_per_machine = 2;  // the paper's
 std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
     std::vector<unsigned> machines;
     for (const std::string& text : texts) {
-        machines.push_back(unsigned(parse_count("--machines", text, most_machines)));
+        machines.push_back(unsigned(cli::parse_count("--machines", text, most_machines)));
         if (machines.back() == 0) throw Error(ErrorCode::usage, "--machines: 0 is less than 1");
     }
     std::ranges::sort(machines);
@@ -31,8 +30,8 @@ std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-void add_machines_options(Command& command, MachinesRequest& request) {
-    const Option machines =
+void add_machines_options(cli::Command& command, MachinesRequest& request) {
+    const cli::Option machines =
         command
             .add_option(
                 "--machines",
@@ -42,7 +41,7 @@ void add_machines_options(Command& command, MachinesRequest& request) {
     command
         .add_option(
             "--latency",
-            [&request](const std::string& text) { request.latency_seconds = parse_length("--latency", text) / 1e6; },
+            [&request](const std::string& text) { request.latency_seconds = cli::parse_length("--latency", text) / 1e6; },
             "of the network's model, with --machines: microseconds a message (default 10)")
         .needs(machines)
         .type_name("US");
@@ -50,20 +49,18 @@ void add_machines_options(Command& command, MachinesRequest& request) {
         .add_option(
             "--bandwidth",
             [&request](const std::string& text) {
-                request.bytes_per_second = parse_length("--bandwidth", text) * 1e6 / 8;
+                request.bytes_per_second = cli::parse_length("--bandwidth", text) * 1e6 / 8;
                 if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
             },
             "of the network's model, with --machines: Mbit/s of each machine (default 800)")
         .needs(machines)
         .type_name("MBIT");
-    command.add_option("--mpirun", request.mpirun, "with --machines: the command that starts ranks (default mpirun)")
-        .needs(machines)
-        .type_name("COMMAND");
+    add_mpirun(command, request.mpirun).needs(machines);
 }
 
 int run_machines(const MachinesRequest& request, const MachinesScene& scene) {
-    const Interrupt interrupt;
-    StudyOutput output(scene.json, scene.quiet);
+    const cli::Interrupt interrupt;
+    StudyOutput output(scene.output);
     cluster::StudyPlan plan;
     plan.scenes = {scene.scene};
     plan.objects = scene.objects;
@@ -82,4 +79,4 @@ int run_machines(const MachinesRequest& request, const MachinesScene& scene) {
     return 0;
 }
 
-}  // namespace octopair::cli
+}  // namespace octopair::bench

@@ -1,0 +1,91 @@
+// octopair-bench cluster: what a call costs each of so many ranks (bench/cluster).
+#include "cluster/study.hpp"
+
+#include <memory>
+
+#include "cli/command/interrupt.hpp"
+#include "cli/command/words.hpp"
+#include "cluster/on_ranks.hpp"
+#include "program/on_ranks.hpp"
+#include "program/options.hpp"
+#include "program/study_output.hpp"
+#include "program/subcommands.hpp"
+
+namespace octopair::bench {
+
+namespace {
+
+struct ClusterRequest {
+    cluster::StudyPlan plan;
+    OutputRequest output;
+    std::string on_ranks;  // a file: measure on the ranks of this program
+};
+
+std::string measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
+    std::vector<cluster::Measured> all;
+    for (const std::string& scene : plan.scenes) {
+        for (const std::uint64_t objects : plan.objects) {
+            for (const Arrangement arrangement : plan.arrangements) {
+                const cluster::Setup setup{scene, objects, 1, arrangement, plan.ranks_per_machine};
+                ranks.joint(
+                    [&] { all.push_back(cluster::measure_on_ranks(MPI_COMM_WORLD, setup, plan.rounds, stop)); });
+            }
+        }
+    }
+    return cluster::measured_json(all);
+}
+
+int run_cluster(const ClusterRequest& request) {
+    const cli::Interrupt interrupt;
+    if (!request.on_ranks.empty()) {
+        return run_on_ranks(request.on_ranks, [&](cli::Cluster& ranks) {
+            return measure_cluster(request.plan, ranks, interrupt.token());
+        });
+    }
+    StudyOutput output(request.output);
+    const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
+    const auto all = cluster::measure(request.plan, show, interrupt.token());
+    output.write(cluster::study_text(all), cluster::study_json(all), interrupt.token());
+    return 0;
+}
+
+void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& request) {
+    command
+        .add_option(
+            "--arrangement",
+            [request](const std::vector<std::string>& names) {
+                request->plan.arrangements.clear();
+                for (const std::string& name : names) {
+                    cli::check_word({"--arrangement", {"shared", "paper"}, {}}, name);
+                    request->plan.arrangements.push_back(cluster::arrangement_of(name));
+                }
+            },
+            "shared (default), or paper: a master deals out, merges and scans; or both")
+        .type_name("WORD");
+    command
+        .add_option(
+            "--ranks-per-machine",
+            [request](const std::string& text) {
+                request->plan.ranks_per_machine = unsigned(parse_some("--ranks-per-machine", text));
+            },
+            "in the paper's arrangement (default 2)")
+        .type_name("N");
+}
+
+}  // namespace
+
+void add_cluster(Command& program, Action& action) {
+    Command command = program.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
+    const auto request = std::make_shared<ClusterRequest>();
+    add_scenes(command, request->plan.scenes);
+    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
+    add_numbers(command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
+    add_arrangement(command, request);
+    add_rounds(command, request->plan.rounds);
+    add_mpirun(command, request->plan.mpirun);
+    add_output_options(command, request->output, "write every rank's costs as JSON");
+    command.add_option("--on-ranks", request->on_ranks).hide();
+    command.callback([request, &action] { action = [request] { return run_cluster(*request); }; });
+}
+
+}  // namespace octopair::bench

@@ -1,0 +1,82 @@
+// octopair-bench scaling: how long a call takes on so many threads, and on so many ranks (bench/scaling).
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "cli/command/interrupt.hpp"
+#include "octopair/error.hpp"
+#include "program/on_ranks.hpp"
+#include "program/options.hpp"
+#include "program/study_output.hpp"
+#include "program/subcommands.hpp"
+#include "scaling/on_ranks.hpp"
+#include "scaling/study.hpp"
+
+namespace octopair::bench {
+
+namespace {
+
+struct ScalingRequest {
+    scaling::StudyPlan plan;
+    OutputRequest output;
+    std::string on_ranks;  // a file: measure on the ranks of this program
+};
+
+/// Measures the first scene of the plan.
+std::string measure_scaling(const scaling::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
+    const scaling::Turns turns{scaling::setups(plan.cores, plan.threads_per_rank), plan.rounds};
+    const auto together = [&](const std::function<void()>& part) { ranks.together(part); };
+    return scaling::contest_json(scaling::hold_on_ranks(
+        MPI_COMM_WORLD, {plan.scenes.front(), plan.objects.front(), plan.weak, {}}, turns, together, stop));
+}
+
+/// Adds 1 to ascending numbers, and removes repeated ones.
+void complete(std::vector<unsigned>& numbers) {
+    numbers.insert(numbers.begin(), 1);
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+int run_scaling(ScalingRequest request) {
+    using cli::most_threads;
+    if (request.plan.cores.empty()) {
+        request.plan.cores = scaling::doubled(std::clamp(std::thread::hardware_concurrency(), 1u, most_threads));
+    }
+    if (const unsigned most = request.plan.cores.back(); most > most_threads) {
+        throw Error(ErrorCode::usage,
+                    "--cores: " + std::to_string(most) + " is more than " + std::to_string(most_threads));
+    }
+    complete(request.plan.cores);
+    complete(request.plan.threads_per_rank);
+    const cli::Interrupt interrupt;
+    if (!request.on_ranks.empty()) {
+        return run_on_ranks(request.on_ranks, [&](cli::Cluster& ranks) {
+            return measure_scaling(request.plan, ranks, interrupt.token());
+        });
+    }
+    StudyOutput output(request.output);
+    const auto show = [&](std::string_view activity, double done) { output.show(activity, done); };
+    const auto all = scaling::measure(request.plan, show, interrupt.token());
+    output.write(scaling::study_text(all), scaling::study_json(all), interrupt.token());
+    return 0;
+}
+
+}  // namespace
+
+void add_scaling(Command& program, Action& action) {
+    Command command =
+        program.add_subcommand("scaling", "how long a call takes on so many threads, and on so many ranks");
+    const auto request = std::make_shared<ScalingRequest>();
+    add_scenes(command, request->plan.scenes);
+    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
+    command.add_flag("--weak", request->plan.weak, "so many objects for each core, not in all");
+    add_numbers(command, "--cores", request->plan.cores, "on how many, several times (default 1 2 4 ... all)");
+    add_numbers(command, "--threads-per-rank", request->plan.threads_per_rank,
+                "also ranks of so many threads, several times (default 1)");
+    add_rounds(command, request->plan.rounds);
+    add_mpirun(command, request->plan.mpirun);
+    add_output_options(command, request->output, "write every time measured as JSON");
+    command.add_option("--on-ranks", request->on_ranks).hide();
+    command.callback([request, &action] { action = [request] { return run_scaling(*request); }; });
+}
+
+}  // namespace octopair::bench

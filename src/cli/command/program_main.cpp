@@ -1,0 +1,33 @@
+#include "cli/command/program_main.hpp"
+
+#include <csignal>
+#include <exception>
+#include <new>
+#include <system_error>
+
+#include "cli/command/failure.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+int program_main(const char* program, const Action& run) {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    program_name = program;
+    // Reporting that memory ran out must not need memory.
+    try {
+        return run();
+    } catch (const Error& error) {
+        return fail(error);
+    } catch (const std::bad_alloc&) {
+        return fail(ErrorCode::resource_limit, "out of memory");
+    } catch (const std::system_error& error) {
+        const bool want = error.code() == std::errc::resource_unavailable_try_again;
+        return fail(want ? ErrorCode::resource_limit : ErrorCode::engine_failed,
+                    want ? "cannot start another thread" : error.what());
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::engine_failed, error.what());
+    }
+}
+
+}  // namespace octopair::cli

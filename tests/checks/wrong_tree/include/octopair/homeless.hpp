@@ -1,0 +1,2 @@
+// A public header without a layer.
+#pragma once

@@ -1,0 +1,4 @@
+// A layer that uses a benchmark.
+#pragma once
+
+#include "paper/study.hpp"
