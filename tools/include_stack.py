@@ -17,7 +17,7 @@ LAYERS = {
     "base": ("errors, buffers, checked casts", ["error"]),
     "parallel": ("threads; the one place that knows oneTBB", []),
     "geometry": ("points, vectors, poses", ["pose"]),
-    "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "objects", "options", "summary"]),
+    "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "summary"]),
     "octree": ("octal codes; encode, sort, merge, scan", ["octal_code"]),
     "verification": ("a second algorithm that checks results", []),
     "engine": ("what all engines share", ["arrangement", "engine", "job", "pair_list"]),

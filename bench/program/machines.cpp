@@ -41,7 +41,9 @@ void add_machines_options(cli::Command& command, MachinesRequest& request) {
     command
         .add_option(
             "--latency",
-            [&request](const std::string& text) { request.latency_seconds = cli::parse_length("--latency", text) / 1e6; },
+            [&request](const std::string& text) {
+                request.latency_seconds = cli::parse_length("--latency", text) / 1e6;
+            },
             "of the network's model, with --machines: microseconds a message (default 10)")
         .needs(machines)
         .type_name("US");

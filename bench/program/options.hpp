@@ -23,7 +23,8 @@ inline std::uint64_t parse_some(const std::string& name, const std::string& text
 
 /// Adds an option that takes numbers of at least 1, and sorts them.
 template <typename Number>
-void add_numbers(cli::Command& command, const std::string& name, std::vector<Number>& numbers, const std::string& what) {
+void add_numbers(cli::Command& command, const std::string& name, std::vector<Number>& numbers,
+                 const std::string& what) {
     command
         .add_option(
             name,
@@ -60,7 +61,8 @@ inline void add_rounds(cli::Command& command, unsigned& rounds) {
 
 /// Adds --mpirun.
 inline cli::Option add_mpirun(cli::Command& command, std::string& mpirun) {
-    return command.add_option("--mpirun", mpirun, "the command that starts ranks (default mpirun)").type_name("COMMAND");
+    return command.add_option("--mpirun", mpirun, "the command that starts ranks (default mpirun)")
+        .type_name("COMMAND");
 }
 
 }  // namespace octopair::bench

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "octopair/box_array.hpp"
+#include "octopair/input.hpp"
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/options.hpp"
@@ -40,30 +41,22 @@ public:
     Engine& operator=(const Engine&) = delete;
     virtual ~Engine() = default;
 
-    /// Throws Error{cancelled} within 200 ms of a stop request, Error{bad_input} with the object's index for a box that
-    /// is not one.
-    Summary find_pairs(const Objects& objects, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
-    Summary find_pairs_between(const Objects& first, const Objects& second, PairList& pairs,
-                               const Options& options = {}, std::stop_token stop = {});
-    /// Hands the pairs to `sink` in order; holds at most `Options::buffer_bytes` of them at a time. An empty `sink` has
-    /// them counted only.
-    Summary stream_pairs(const Objects& objects, const PairSink& sink, const Options& options = {},
+    /// Finds the pairs of one set (`Objects{boxes}`), or of two (`Join{first, second}`), and writes them to `pairs`.
+    /// Throws: Error{bad_input} with the object's index for a box that is not one; Error{cancelled} within 200 ms of a stop
+    /// request; Error{resource_limit}, Error{engine_failed}.
+    Summary find_pairs(const Input& input, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
+    /// Hands the pairs to `sink` in order, and holds at most `Options::buffer_bytes` of them at a time. With an empty `sink`
+    /// the pairs are only counted. Throws: as find_pairs().
+    Summary stream_pairs(const Input& input, const PairSink& sink, const Options& options = {},
                          std::stop_token stop = {});
-    Summary stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
-                                 const Options& options = {}, std::stop_token stop = {});
-    /// The number of pairs (at most `Options::limit`, if given); stores none of them.
-    std::uint64_t count_pairs(const Objects& objects, const Options& options = {}, std::stop_token stop = {});
-    std::uint64_t count_pairs_between(const Objects& first, const Objects& second, const Options& options = {},
-                                      std::stop_token stop = {});
+    /// Returns the number of pairs, at most `Options::limit`, and stores none of them. Throws: as find_pairs().
+    std::uint64_t count_pairs(const Input& input, const Options& options = {}, std::stop_token stop = {});
 
-    /// Jobs (job.hpp): the same calls, made on a thread of the engine's own; collected, or streamed to a `sink` that is
-    /// called there. Return at once. Throw what is wrong with options and sizes, as those calls do, and
-    /// Error{resource_limit} for want of memory or threads; what is wrong with a box or a padding fails the job. The
-    /// engine's end cancels its jobs.
-    Job submit(JobObjects objects, Options options = {});
-    Job submit_between(JobObjects first, JobObjects second, Options options = {});
-    Job submit_stream(JobObjects objects, PairSink sink, Options options = {});
-    Job submit_stream_between(JobObjects first, JobObjects second, PairSink sink, Options options = {});
+    /// Starts a job (job.hpp): find_pairs(), or stream_pairs() for `sink`, on a thread of the engine, which also calls `sink`.
+    /// Returns at once. The end of the engine cancels its jobs. A box or a padding that is wrong fails the job.
+    /// Throws: Error{bad_input} for wrong options or sizes; Error{resource_limit} without memory or threads for a job.
+    Job submit(JobInput input, Options options = {});
+    Job submit_stream(JobInput input, PairSink sink, Options options = {});
 
     /// Room for boxes (Box3f or Box3d) where this engine reads them without copying; waits for no call. Throws
     /// Error{resource_limit} for more than there is room for, or than 2^32 - 1.

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "octopair/box_array.hpp"
+#include "octopair/input.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pair_list.hpp"
 #include "octopair/summary.hpp"
@@ -64,6 +65,10 @@ private:
 inline BorrowedObjects borrowed(const Objects& objects) { return BorrowedObjects(objects); }
 
 using JobObjects = std::variant<OwnedObjects, BorrowedObjects>;
+
+/// What a job searches: JobObjects, or JobJoin{first, second}.
+using JobJoin = JoinOf<JobObjects>;
+using JobInput = InputOf<JobObjects>;
 
 /// The handle of a job. Destroying it or assigning over it cancels the job and waits until the engine has let go of its
 /// input, sink and progress; only within these themselves it does not wait. May outlive the engine, whose end cancels

@@ -61,10 +61,8 @@ public:
     /// Returns the job's id when it is on the server's disk. A job that was submitted under this id before is the same one;
     /// Error{bad_input} if its input or options are others. `Options::progress` is of the upload;
     /// Error{usage} for `Options::verify`: who collects the result need not have the objects.
-    std::string submit(const Objects& objects, const Options& options = {}, const JobTerms& terms = {},
+    std::string submit(const Input& input, const Options& options = {}, const JobTerms& terms = {},
                        std::stop_token stop = {});
-    std::string submit_between(const Objects& first, const Objects& second, const Options& options = {},
-                               const JobTerms& terms = {}, std::stop_token stop = {});
 
     JobStatus status(const std::string& id, std::stop_token stop = {});
     /// Returns when the job has ended, or after the given time.

@@ -62,14 +62,16 @@ struct IndexedObjects {
     std::span<const std::uint64_t> indices = {};
 };
 
+/// One set, or IndexedJoin{first, second}.
+using IndexedJoin = JoinOf<IndexedObjects>;
+using IndexedInput = InputOf<IndexedObjects>;
+
 /// Collective: this rank's piece of the pairs, as find_pairs would give it for all objects in the order of their indices. For
 /// indices of the caller's own, and for more objects than 2^32 - 1, of which a rank may have no more, with those that it
 /// shares. Pairs beyond Options::limit are found and dropped. Throws as Engine::find_pairs; Error{bad_input} for an index that
 /// is given twice; Error{usage} unless make_mpi_engine made the engine, not in the paper's arrangement.
-Summary find_pairs64(Engine& engine, const IndexedObjects& objects, std::vector<Pair64>& pairs,
-                     const Options& options = {}, std::stop_token stop = {});
-Summary find_pairs64_between(Engine& engine, const IndexedObjects& first, const IndexedObjects& second,
-                             std::vector<Pair64>& pairs, const Options& options = {}, std::stop_token stop = {});
+Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair64>& pairs, const Options& options = {},
+                     std::stop_token stop = {});
 
 /// What the last call cost this rank. Seconds are processor time of the calling thread, without what it spent within MPI; so
 /// they leave out waiting, and the other threads of a rank that has several.

@@ -4,6 +4,7 @@
 #include "octopair/box_array.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
+#include "octopair/input.hpp"
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"

@@ -135,10 +135,8 @@ public:
     /// Finds pairs with the engine and filters them; `limit` counts what comes out. An empty sink has it counted only.
     /// `verify` checks the engine's pairs, not the filters; where `limit` ends the search early, no more than those that
     /// were found.
-    PipelineSummary run(Engine& engine, const Objects& objects, const CollisionSink& sink, const Options& options = {},
+    PipelineSummary run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options = {},
                         std::stop_token stop = {});
-    PipelineSummary run_between(Engine& engine, const Objects& first, const Objects& second, const CollisionSink& sink,
-                                const Options& options = {}, std::stop_token stop = {});
     /// Pairs that are there already, in their order; of the options it heeds limit, buffer_bytes and progress.
     PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options = {},
                            std::stop_token stop = {});

@@ -67,34 +67,16 @@ Summary Engine::call(const Request& request, const Output& output, std::stop_tok
     }
 }
 
-Summary Engine::find_pairs(const Objects& objects, PairList& pairs, const Options& options, std::stop_token stop) {
-    return call({objects, nullptr, options}, {.list = &pairs}, stop);
+Summary Engine::find_pairs(const Input& input, PairList& pairs, const Options& options, std::stop_token stop) {
+    return call(request_of(input, options), {.list = &pairs}, stop);
 }
 
-// NOLINTNEXTLINE(readability-function-size): the public face has these five.
-Summary Engine::find_pairs_between(const Objects& first, const Objects& second, PairList& pairs, const Options& options,
-                                   std::stop_token stop) {
-    return call({first, &second, options}, {.list = &pairs}, stop);
+Summary Engine::stream_pairs(const Input& input, const PairSink& sink, const Options& options, std::stop_token stop) {
+    return call(request_of(input, options), {.sink = sink ? &sink : nullptr}, stop);
 }
 
-Summary Engine::stream_pairs(const Objects& objects, const PairSink& sink, const Options& options,
-                             std::stop_token stop) {
-    return call({objects, nullptr, options}, {.sink = sink ? &sink : nullptr}, stop);
-}
-
-// NOLINTNEXTLINE(readability-function-size): the public face has these five.
-Summary Engine::stream_pairs_between(const Objects& first, const Objects& second, const PairSink& sink,
-                                     const Options& options, std::stop_token stop) {
-    return call({first, &second, options}, {.sink = sink ? &sink : nullptr}, stop);
-}
-
-std::uint64_t Engine::count_pairs(const Objects& objects, const Options& options, std::stop_token stop) {
-    return call({objects, nullptr, options}, {}, stop).pairs;
-}
-
-std::uint64_t Engine::count_pairs_between(const Objects& first, const Objects& second, const Options& options,
-                                          std::stop_token stop) {
-    return call({first, &second, options}, {}, stop).pairs;
+std::uint64_t Engine::count_pairs(const Input& input, const Options& options, std::stop_token stop) {
+    return call(request_of(input, options), {}, stop).pairs;
 }
 
 namespace {
@@ -106,9 +88,7 @@ namespace {
 template <typename Work>
 Job Engine::submit_work(Work work) {
     const FloatingPointScope scope;
-    const Objects first = view(work.first);
-    const Objects second = work.second ? view(*work.second) : Objects{};
-    check({first, work.second ? &second : nullptr, work.options});
+    check(request_of(view(work.input), work.options));
     try {
         const auto task = std::make_shared<Job::Task>(std::move(work));
         jobs().add(task);
@@ -118,20 +98,12 @@ Job Engine::submit_work(Work work) {
     }
 }
 
-Job Engine::submit(JobObjects objects, Options options) {
-    return submit_work(Job::Task::Work{std::move(objects), {}, {}, std::move(options)});
+Job Engine::submit(JobInput input, Options options) {
+    return submit_work(Job::Task::Work{std::move(input), {}, std::move(options)});
 }
 
-Job Engine::submit_between(JobObjects first, JobObjects second, Options options) {
-    return submit_work(Job::Task::Work{std::move(first), std::move(second), {}, std::move(options)});
-}
-
-Job Engine::submit_stream(JobObjects objects, PairSink sink, Options options) {
-    return submit_work(Job::Task::Work{std::move(objects), {}, std::move(sink), std::move(options)});
-}
-
-Job Engine::submit_stream_between(JobObjects first, JobObjects second, PairSink sink, Options options) {
-    return submit_work(Job::Task::Work{std::move(first), std::move(second), std::move(sink), std::move(options)});
+Job Engine::submit_stream(JobInput input, PairSink sink, Options options) {
+    return submit_work(Job::Task::Work{std::move(input), std::move(sink), std::move(options)});
 }
 
 std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {

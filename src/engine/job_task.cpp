@@ -25,10 +25,15 @@ Objects objects_of(const OwnedObjects& owned) {
 
 Objects objects_of(const BorrowedObjects& borrowed) { return borrowed.objects(); }
 
-}  // namespace
-
 Objects view(const JobObjects& objects) {
     return std::visit([](const auto& either) { return objects_of(either); }, objects);
+}
+
+}  // namespace
+
+Input view(const JobInput& input) {
+    if (!input.second) return view(input.first);
+    return Join{view(input.first), view(*input.second)};
 }
 
 Job::Task::Task(Work work) : work_(std::move(work)) {
@@ -63,16 +68,10 @@ bool Job::Task::hold(JobState state) {
 }
 
 Summary Job::Task::call(Engine& engine) {
-    const Objects first = view(work_->first);
-    const Options& options = work_->options;
+    const Input input = view(work_->input);
     const std::stop_token stop = stop_.get_token();
-    if (!work_->second) {
-        return pairs_ ? engine.find_pairs(first, *pairs_, options, stop)
-                      : engine.stream_pairs(first, *work_->sink, options, stop);
-    }
-    const Objects second = view(*work_->second);
-    return pairs_ ? engine.find_pairs_between(first, second, *pairs_, options, stop)
-                  : engine.stream_pairs_between(first, second, *work_->sink, options, stop);
+    return pairs_ ? engine.find_pairs(input, *pairs_, work_->options, stop)
+                  : engine.stream_pairs(input, *work_->sink, work_->options, stop);
 }
 
 void Job::Task::tell(double done) {

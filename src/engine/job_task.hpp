@@ -18,15 +18,14 @@
 
 namespace octopair {
 
-/// What a call is given.
-Objects view(const JobObjects& objects);
+/// Returns the input of the call that a job makes. Borrows the argument.
+Input view(const JobInput& input);
 
 class Job::Task {
 public:
     struct Work {
-        JobObjects first;
-        std::optional<JobObjects> second;  ///< of a join
-        std::optional<PairSink> sink;      ///< none: the pairs are collected
+        JobInput input;
+        std::optional<PairSink> sink;  ///< none: the pairs are collected
         Options options;
     };
 

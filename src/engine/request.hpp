@@ -23,6 +23,11 @@ struct Engine::Output {
     const PairSink* sink = nullptr;
 };
 
+/// Returns the request for an input. Borrows both arguments.
+inline Engine::Request request_of(const Input& input, const Options& options) {
+    return {input.first, input.second ? &*input.second : nullptr, options};
+}
+
 /// Options and sizes. Throws Error.
 void check_request(const Engine::Request& request);
 

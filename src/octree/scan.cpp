@@ -84,7 +84,7 @@ private:
 /// The entries of a join as those of a scene: rows, then columns.
 class EntriesOf final : public EntrySource {
 public:
-    explicit EntriesOf(const Join& join) : join_(join) {}
+    explicit EntriesOf(const SweepInput& join) : join_(join) {}
     std::size_t size() const override { return join_.rows.size() + (join_.self ? 0 : join_.columns.size()); }
     bool load(std::size_t begin, std::span<Entry> out) const override {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(begin + i);
@@ -99,7 +99,7 @@ private:
         return i < join_.rows.size() ? join_.rows[i] : join_.columns[i - join_.rows.size()];
     }
 
-    const Join& join_;
+    const SweepInput& join_;
 };
 
 /// Scans single nodes, keeping its memory from node to node. One thread at a time.
@@ -195,7 +195,7 @@ private:
 
     /// A join too costly for the quick way. Parts of one shape are joined on their own: boxes as long as the octant
     /// keep any sweep and any split from thinning the others.
-    void crowded(const Join& join) {
+    void crowded(const SweepInput& join) {
         if (swept(join)) return count_path(Path::crowd_swept);
         count_path(Path::crowd_parted);
         const auto rows = part_by_shape(join.rows);
@@ -213,7 +213,7 @@ private:
         }
     }
 
-    void crowded_part(const Join& join, bool same_shape) {
+    void crowded_part(const SweepInput& join, bool same_shape) {
         if (join.rows.size() == 0 || join.columns.size() == 0) return;
         if (swept(join)) return count_path(Path::part_swept);
         // An octree tells apart the two sets of the caller's join, but not others.
@@ -223,14 +223,14 @@ private:
         recursive_sweep(context_, join, executor_);
     }
 
-    bool swept(const Join& join) {
+    bool swept(const SweepInput& join) {
         const SweepChoice choice = choose_sweep(join, order_, context_.stop);
         if (choice.good) tiled_sweep(context_, join, choice.axis, executor_);
         return choice.good;
     }
 
     /// Scans a nested octree, one of the join's own entries; false, with nothing done, where it would not thin them.
-    bool split_afresh(const Join& join) {
+    bool split_afresh(const SweepInput& join) {
         if (context_.nesting >= tuning().scan.most_nesting) {
             count_path(Path::not_nested_depth);
             return false;

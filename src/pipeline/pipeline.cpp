@@ -264,18 +264,10 @@ void Pipeline::add(std::unique_ptr<Filter> filter) {
 }
 
 // NOLINTNEXTLINE(readability-function-size): the public face has these five.
-PipelineSummary Pipeline::run(Engine& engine, const Objects& objects, const CollisionSink& sink, const Options& options,
+PipelineSummary Pipeline::run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options,
                               std::stop_token stop) {
     return state_->run(sink, options, stop, [&](const PairSink& take, const Options& passed) {
-        return engine.stream_pairs(objects, take, passed, stop);
-    });
-}
-
-// NOLINTNEXTLINE(readability-function-size): the public face has these six.
-PipelineSummary Pipeline::run_between(Engine& engine, const Objects& first, const Objects& second,
-                                      const CollisionSink& sink, const Options& options, std::stop_token stop) {
-    return state_->run(sink, options, stop, [&](const PairSink& take, const Options& passed) {
-        return engine.stream_pairs_between(first, second, take, passed, stop);
+        return engine.stream_pairs(input, take, passed, stop);
     });
 }
 

@@ -2,8 +2,8 @@
 //
 // Result     the pairs that objects.hpp defines, judged in float64 on the caller's numbers. This search and the engines
 //            share no code beyond src/base and src/parallel, so that an error of one is not an error of both.
-// Row        the pairs (a, b) of one object a. Within one set b > a. In a join a is a position in the first set and b a
-//            position in the second set, as in the results of Engine::find_pairs_between.
+// Row        the pairs (a, b) of one object a. Within one set b > a. In a join, a is a position in the first set and b a
+//            position in the second set.
 // Memory     float32: 33 bytes an object of the set that is searched (the second one of a join); float64: 64 bytes. The
 //            number of pairs does not matter.
 #pragma once

@@ -7,7 +7,8 @@ namespace {
 class Usage : public ProgramTest {};
 
 TEST_F(Usage, HelpAndVersionAreAnswers) {
-    for (const std::string what : {"--help", "detect --help", "generate --help", "replay --help", "--version", "info"}) {
+    for (const std::string what :
+         {"--help", "detect --help", "generate --help", "replay --help", "--version", "info"}) {
         const Outcome outcome = run(what);
         EXPECT_EQ(outcome.status, 0) << what;
         EXPECT_NE(outcome.out, "") << what;

@@ -95,8 +95,11 @@ TEST_P(Cancel, InAJoinOfOneCrowd) {
     const auto boxes = samples::make_scene("coincident", 300'000, 1);
     const Objects objects{std::span<const Box3f>(boxes)};
     const auto engine = make_local_engine(GetParam());
-    expect_cancelled([&](std::stop_token stop) { engine->count_pairs_between(objects, objects, {}, stop); },
-                     milliseconds(50), false);
+    expect_cancelled(
+        [&](std::stop_token stop) {
+            engine->count_pairs(Join{objects, objects}, {}, stop);
+        },
+        milliseconds(50), false);
 }
 
 TEST_P(Cancel, AtAnyMomentOfALargeScene) {

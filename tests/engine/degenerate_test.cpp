@@ -264,7 +264,7 @@ TEST(DegenerateMixed, PrecisionsMeetInAJoin) {
     const std::vector<Box3d> doubles = {{{0.1, 0, 0}, {0.2, 1, 1}}, {{0, 0, 0}, {0.1, 1, 1}}};
     const Objects first{std::span<const Box3f>(floats)}, second{std::span<const Box3d>(doubles)};
     PairList list;
-    make_local_engine(2)->find_pairs_between(first, second, list);
+    make_local_engine(2)->find_pairs(Join{first, second}, list);
     EXPECT_EQ(list.to_vector(), (Pairs{{0, 0}, {0, 1}, {1, 0}}));
 }
 
@@ -273,16 +273,16 @@ TEST(DegenerateMixed, JoinWithAnEmptySet) {
     const Objects some{std::span<const Box3f>(boxes)}, none{std::span<const Box3d>()};
     PairList list;
     const auto engine = make_local_engine(2);
-    EXPECT_EQ(engine->find_pairs_between(some, none, list).pairs, 0u);
-    EXPECT_EQ(engine->find_pairs_between(none, some, list).pairs, 0u);
-    EXPECT_EQ(engine->count_pairs_between(none, none), 0u);
+    EXPECT_EQ(engine->find_pairs(Join{some, none}, list).pairs, 0u);
+    EXPECT_EQ(engine->find_pairs(Join{none, some}, list).pairs, 0u);
+    EXPECT_EQ(engine->count_pairs(Join{none, none}), 0u);
 }
 
 TEST(DegenerateMixed, JoinOfASetWithItself) {
     const auto boxes = testing::make_boxes("dense", 500, 1);
     const Objects objects{std::span<const Box3f>(boxes)};
     PairList list;
-    make_local_engine(2)->find_pairs_between(objects, objects, list);
+    make_local_engine(2)->find_pairs(Join{objects, objects}, list);
     EXPECT_TRUE(same_pairs(list.to_vector(), baselines::oracle_pairs_between(objects, objects), {objects, &objects}));
     EXPECT_EQ(list.size(), 2 * baselines::oracle_pairs(objects).size() + 500);
 }

@@ -44,8 +44,8 @@ protected:
             expect_refused([&] { engine_->find_pairs(objects, list_, used); }, words);
             EXPECT_EQ(list_.size(), 0u);
             EXPECT_TRUE(list_.chunks().empty());
-            expect_refused([&] { engine_->find_pairs_between(good, objects, list_, used); }, words);
-            expect_refused([&] { engine_->find_pairs_between(objects, good, list_, used); }, words);
+            expect_refused([&] { engine_->find_pairs(Join{good, objects}, list_, used); }, words);
+            expect_refused([&] { engine_->find_pairs(Join{objects, good}, list_, used); }, words);
             expect_refused([&] { engine_->stream_pairs(objects, sink, used); }, words);
             expect_refused([&] { engine_->count_pairs(objects, used); }, words);
         }

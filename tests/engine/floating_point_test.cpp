@@ -80,7 +80,7 @@ Found find_all(const Asked& asked, unsigned threads) {
     options.margin = asked.margin;
     PairList list, octal, between;
     engine->find_pairs(objects, list, options);
-    engine->find_pairs_between(objects, objects, between, options);
+    engine->find_pairs(Join{objects, objects}, between, options);
     engine->stream_pairs(
         objects, [&](auto batch) { found.streamed.insert(found.streamed.end(), batch.begin(), batch.end()); }, options);
     found.counted = engine->count_pairs(objects, options);

@@ -159,7 +159,7 @@ TEST(JobEnds, ManyCancelledJobsDoNotStayInTheQueue) {
     std::vector<Job> kept;
     std::vector<std::weak_ptr<Job::Task>> cancelled;
     for (int i = 0; i < 4000; ++i) {
-        const auto task = std::make_shared<Job::Task>(Job::Task::Work{touching_boxes, {}, {}, {}});
+        const auto task = std::make_shared<Job::Task>(Job::Task::Work{touching_boxes, {}, {}});
         queue.add(task);
         Job job(task);
         if (i % 40 == 0) {

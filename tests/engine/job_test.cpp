@@ -82,9 +82,9 @@ TEST(Jobs, JoinWhatDirectCallsJoin) {
     const auto engine = make_local_engine(2);
     for (const Order order : {Order::ascending, Order::octal}) {
         PairList list;
-        const Summary direct = engine->find_pairs_between({first}, {second}, list, {.order = order});
+        const Summary direct = engine->find_pairs(Join{{first}, {second}}, list, {.order = order});
         ASSERT_GT(direct.pairs, 0u);
-        Job collected = engine->submit_between(first, borrowed({second}), {.order = order});
+        Job collected = engine->submit(JobJoin{first, borrowed({second})}, {.order = order});
         expect_same_summary(collected.summary(), direct);
         EXPECT_TRUE(same_bytes(collected.take_pairs().to_vector(), list.to_vector()));
 
@@ -92,7 +92,7 @@ TEST(Jobs, JoinWhatDirectCallsJoin) {
         const PairSink sink = [&](std::span<const Pair> batch) {
             received.insert(received.end(), batch.begin(), batch.end());
         };
-        expect_same_summary(engine->submit_stream_between(borrowed({first}), second, sink, {.order = order}).summary(),
+        expect_same_summary(engine->submit_stream(JobJoin{borrowed({first}), second}, sink, {.order = order}).summary(),
                             direct);
         EXPECT_TRUE(same_bytes(received, list.to_vector()));
     }
@@ -225,7 +225,7 @@ TEST(Jobs, BadBoxesFailThem) {
     boxes[777].max[1] = std::numeric_limits<float>::quiet_NaN();
     expect_failed(*engine, engine->submit(boxes), ErrorCode::bad_input, "777");
     expect_failed(*engine, engine->submit_stream(boxes, {}), ErrorCode::bad_input, "777");
-    expect_failed(*engine, engine->submit_between(touching_boxes, boxes), ErrorCode::bad_input, "777");
+    expect_failed(*engine, engine->submit(JobJoin{touching_boxes, boxes}), ErrorCode::bad_input, "777");
     expect_failed(*engine, engine->submit(OwnedObjects{touching_boxes, {0.5, -1}}), ErrorCode::bad_input, "padding");
 }
 
@@ -233,8 +233,8 @@ TEST(Jobs, WrongOptionsAndSizesAreRefusedAtOnce) {
     const auto engine = make_local_engine(1);
     for (const bool join : {false, true}) {
         const auto with = [&](const Options& options) {
-            return join ? engine->submit_between(touching_boxes, touching_boxes, options)
-                        : engine->submit(touching_boxes, options);
+            return engine->submit({touching_boxes, join ? std::optional<JobObjects>(touching_boxes) : std::nullopt},
+                                  options);
         };
         EXPECT_EQ(code_of([&] { with({.margin = -1}); }), ErrorCode::bad_input);
         EXPECT_EQ(code_of([&] { with({}); }), std::nullopt);
@@ -242,9 +242,9 @@ TEST(Jobs, WrongOptionsAndSizesAreRefusedAtOnce) {
     const std::vector<double> three = {1, 2, 3};
     const auto bad = [&] { return borrowed({touching_boxes, three}); };
     EXPECT_EQ(code_of([&] { engine->submit(bad()); }), ErrorCode::bad_input);
-    EXPECT_EQ(code_of([&] { engine->submit_between(touching_boxes, bad()); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([&] { engine->submit(JobJoin{touching_boxes, bad()}); }), ErrorCode::bad_input);
     EXPECT_EQ(code_of([&] { engine->submit_stream(bad(), {}); }), ErrorCode::bad_input);
-    EXPECT_EQ(code_of([&] { engine->submit_stream_between(touching_boxes, bad(), {}); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([&] { engine->submit_stream(JobJoin{touching_boxes, bad()}, {}); }), ErrorCode::bad_input);
     EXPECT_EQ(code_of([&] { engine->submit(OwnedObjects(touching_boxes, three)); }), ErrorCode::bad_input);
 }
 

@@ -50,8 +50,7 @@ public:
 
     Summary find(unsigned threads, const Options& options, std::vector<Pair>& found) {
         Engine& engine = engine_of(threads);
-        const Summary summary = second_ ? engine.find_pairs_between(first_, *second_, list_, options)
-                                        : engine.find_pairs(first_, list_, options);
+        const Summary summary = engine.find_pairs(case_.input(), list_, options);
         found = list_.to_vector();
         EXPECT_EQ(summary.pairs, found.size());
         EXPECT_EQ(list_.size(), found.size());
@@ -66,13 +65,12 @@ public:
             EXPECT_LE(batch.size_bytes(), bound);
             found.insert(found.end(), batch.begin(), batch.end());
         };
-        return second_ ? engine.stream_pairs_between(first_, *second_, sink, options)
-                       : engine.stream_pairs(first_, sink, options);
+        return engine.stream_pairs(case_.input(), sink, options);
     }
 
     std::uint64_t count(unsigned threads, const Options& options) {
         Engine& engine = engine_of(threads);
-        return second_ ? engine.count_pairs_between(first_, *second_, options) : engine.count_pairs(first_, options);
+        return engine.count_pairs(case_.input(), options);
     }
 
 private:

@@ -37,8 +37,7 @@ struct Call {
 
     Summary find(Engine& engine, std::vector<Pair>& found) const {
         PairList list;
-        const Summary summary = asked.second ? engine.find_pairs_between(first, second, list, options)
-                                             : engine.find_pairs(first, list, options);
+        const Summary summary = engine.find_pairs(asked.input(), list, options);
         found = list.to_vector();
         return summary;
     }
@@ -48,12 +47,9 @@ struct Call {
         const PairSink sink = [&](std::span<const Pair> batch) {
             found.insert(found.end(), batch.begin(), batch.end());
         };
-        return asked.second ? engine.stream_pairs_between(first, second, sink, options)
-                            : engine.stream_pairs(first, sink, options);
+        return engine.stream_pairs(asked.input(), sink, options);
     }
-    std::uint64_t count(Engine& engine) const {
-        return asked.second ? engine.count_pairs_between(first, second, options) : engine.count_pairs(first, options);
-    }
+    std::uint64_t count(Engine& engine) const { return engine.count_pairs(asked.input(), options); }
 };
 
 /// Goes through the calls on one case; throws the first Finding.

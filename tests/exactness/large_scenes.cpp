@@ -14,9 +14,7 @@ std::uint64_t pairs_of(const Case& a_case, Engine& engine) {
     Options options;
     options.margin = a_case.margin;
     options.limit = most_pairs_an_object * 1'000'000;
-    const Objects first = a_case.first.view();
-    return a_case.second ? engine.count_pairs_between(first, a_case.second->view(), options)
-                         : engine.count_pairs(first, options);
+    return engine.count_pairs(a_case.input(), options);
 }
 
 std::uint64_t object_count_of(const Case& a_case) {

@@ -142,7 +142,7 @@ TEST_P(Metamorphic, PermutedMirroredScaledAndCut) {
     });
     const SetOfPairs between = part(
         [&](const PairSink& sink) {
-            (void)engine_->stream_pairs_between(Objects{first, {}}, Objects{second, {}}, sink);
+            (void)engine_->stream_pairs(Join{Objects{first, {}}, Objects{second, {}}}, sink);
         },
         std::uint32_t(half));
     sum.count += within_second.count + between.count;

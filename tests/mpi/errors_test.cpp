@@ -68,7 +68,7 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
         (void)engine_->count_pairs({std::span<const Box3f>(some), {}});
     });
     expect_on_all(ErrorCode::bad_input, "of the second set object " + std::to_string(of_last) + ": min x", [&] {
-        (void)engine_->count_pairs_between(own(), {std::span<const Box3f>(some), {}});
+        (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
     });
 }
 
@@ -101,7 +101,7 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
     if (last()) options.buffer_bytes = 1 << 20;
     expect_on_all(ErrorCode::usage, "the size of the buffer", [&] { (void)engine_->count_pairs(own(), options); });
     expect_on_all(ErrorCode::usage, "a second set", [&] {
-        last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs_between(own(), own());
+        last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs(Join{own(), own()});
     });
     expect_on_all(ErrorCode::usage, "counted, listed or streamed", [&] {
         PairList list;
@@ -172,7 +172,7 @@ TEST_F(RankErrors, AreNoneWhereThereAreFewObjectsOrNone) {
     EXPECT_EQ(testing::all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
     const std::vector<Box3d> none;
     EXPECT_EQ(
-        engine_->find_pairs_between({std::span<const Box3f>(one), {}}, {std::span<const Box3d>(none), {}}, list).pairs,
+        engine_->find_pairs(Join{{std::span<const Box3f>(one), {}}, {std::span<const Box3d>(none), {}}}, list).pairs,
         0u);
 }
 

@@ -72,17 +72,13 @@ protected:
                 const Spread spread = testing::spreads[seed % std::size(testing::spreads)];
                 SCOPED_TRACE(whole.describe() + ", " + name_of(spread));
                 PairList expected;
-                Summary summary, found_summary;
                 std::vector<Pair64> found;
                 const Called first = scattered(whole.first, spread, seed);
-                if (whole.second) {
-                    const Called second = scattered(*whole.second, Spread::even, seed + 1);
-                    summary = local_->find_pairs_between(whole.first.view(), whole.second->view(), expected, options);
-                    found_summary = find_pairs64_between(*ranks_, first.view(), second.view(), found, options);
-                } else {
-                    summary = local_->find_pairs(whole.first.view(), expected, options);
-                    found_summary = find_pairs64(*ranks_, first.view(), found, options);
-                }
+                std::optional<Called> second;
+                if (whole.second) second = scattered(*whole.second, Spread::even, seed + 1);
+                const Summary summary = local_->find_pairs(whole.input(), expected, options);
+                const Summary found_summary = find_pairs64(
+                    *ranks_, {first.view(), second ? std::optional(second->view()) : std::nullopt}, found, options);
                 EXPECT_EQ(testing::all_pieces(found), called(expected.to_vector()));
                 EXPECT_EQ(found_summary.pairs, summary.pairs);
                 EXPECT_EQ(found_summary.truncated, summary.truncated);
@@ -121,7 +117,7 @@ TEST_F(RankIndices, AreRefusedOnAllRanks) {
         std::vector<Pair64> found(1);
         std::optional<Error> refused;
         try {
-            (void)find_pairs64(*ranks_, {{std::span(own), {}}, given}, found);
+            (void)find_pairs64(*ranks_, IndexedObjects{{std::span(own), {}}, given}, found);
         } catch (const Error& error) {
             refused = error;
         }
@@ -146,8 +142,8 @@ TEST_F(RankIndices, AreRefusedOnAllRanks) {
 TEST_F(RankIndices, NeedRanksThatShareTheWork) {
     const auto master = make_mpi_engine(MPI_COMM_WORLD, {.arrangement = Arrangement::paper});
     std::vector<Pair64> found;
-    EXPECT_THROW((void)find_pairs64(*master, {}, found), Error);
-    EXPECT_THROW((void)find_pairs64(*local_, {}, found), Error);
+    EXPECT_THROW((void)find_pairs64(*master, IndexedObjects{}, found), Error);
+    EXPECT_THROW((void)find_pairs64(*local_, IndexedObjects{}, found), Error);
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(RankLeading, TellsErrorsInTheWordsOfThreads) {
         bad[4'000].max[2] = std::numeric_limits<float>::quiet_NaN();
         const Objects bad_boxes{std::span<const Box3f>(bad), {}};
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(bad_boxes); });
-        expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs_between(objects(), bad_boxes); });
+        expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(Join{objects(), bad_boxes}); });
         std::vector<double> padding(boxes_.size(), 0.1);
         padding[4'500] = -1;
         const Objects bad_padding{std::span<const Box3f>(boxes_), padding};

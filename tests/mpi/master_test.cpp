@@ -166,9 +166,11 @@ TEST(RankMaster, NamesTheFirstBadBox) {
         EXPECT_EQ(testing::message_of(ErrorCode::bad_input, [&] { (void)engine->find_pairs(view(own), list); }),
                   testing::message_of(ErrorCode::bad_input, [&] { (void)find_pairs(boxes); }));
         EXPECT_EQ(testing::message_of(ErrorCode::bad_input,
-                                      [&] { (void)engine->count_pairs_between(view(well), view(own)); }),
+                                      [&] {
+                                          (void)engine->count_pairs(Join{view(well), view(own)});
+                                      }),
                   testing::message_of(ErrorCode::bad_input, [&] {
-                      (void)make_local_engine(1)->count_pairs_between(view(good), view(boxes));
+                      (void)make_local_engine(1)->count_pairs(Join{view(good), view(boxes)});
                   }));
     }
     EXPECT_EQ(engine->count_pairs(view(testing::slice(good, Spread::even))), find_pairs(good).size());
@@ -219,7 +221,7 @@ TEST(RankMaster, HasFewObjectsOrNone) {
     EXPECT_EQ(engine->count_pairs(view(none)), 0u);
     const std::size_t found = listed(*engine, view(one_each), Order::octal).size();
     EXPECT_EQ(found, own_rank() == 0 ? ranks * (ranks - 1) / 2 : 0);
-    EXPECT_EQ(engine->count_pairs_between(view(one_each), {std::span<const Box3d>(), {}}), 0u);
+    EXPECT_EQ(engine->count_pairs(Join{view(one_each), {std::span<const Box3d>(), {}}}), 0u);
 }
 
 TEST(RankMaster, NeedsTheSameArrangementOnAllRanks) {

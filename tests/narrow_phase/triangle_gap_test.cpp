@@ -8,10 +8,10 @@
 #include <random>
 #include <string>
 
-#include "narrow_phase/exact_oracle.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
+#include "narrow_phase/exact_oracle.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {

@@ -9,9 +9,9 @@
 #include <random>
 #include <string>
 
-#include "narrow_phase/exact_oracle.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/exact/pair_look.hpp"
+#include "narrow_phase/exact_oracle.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {

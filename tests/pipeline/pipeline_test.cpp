@@ -121,12 +121,12 @@ TEST_P(AnyPipeline, JoinsTwoSets) {
     asked.margin = 0.01;
     PairList list;
     const auto engine = make_local_engine(2);
-    engine->find_pairs_between(all_of(first), all_of(second), list, asked);
+    engine->find_pairs(Join{all_of(first), all_of(second)}, list, asked);
     const Outcome expected = expected_of(list.to_vector());
     ASSERT_GT(expected.pairs.size(), 1000u);
     Outcome found;
     Pipeline pipeline = two_filters(GetParam().threads);
-    pipeline.run_between(*engine, all_of(first), all_of(second), into(found), asked);
+    pipeline.run(*engine, Join{all_of(first), all_of(second)}, into(found), asked);
     EXPECT_TRUE(found == expected);
 }
 

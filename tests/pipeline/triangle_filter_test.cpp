@@ -56,7 +56,7 @@ Outcome run(const Soup& first, const TriangleOptions& options, const Soup* secon
     search.margin = options.margin;
     if (second != nullptr) {
         const auto second_boxes = boxes_of(second->triangles);
-        pipeline.run_between(*engine, {std::span(boxes)}, {std::span(second_boxes)}, sink, search);
+        pipeline.run(*engine, Join{{std::span(boxes)}, {std::span(second_boxes)}}, sink, search);
     } else {
         pipeline.run(*engine, {std::span(boxes)}, sink, search);
     }

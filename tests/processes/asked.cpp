@@ -90,24 +90,21 @@ Objects Scene::others(const Asked& asked) const {
 
 Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_token stop) {
     const Options options = options_of(asked);
-    const Objects objects = scene.objects(asked), others = scene.others(asked);
+    const Input input(scene.objects(asked), asked.join ? std::optional(scene.others(asked)) : std::nullopt);
     Answer answer;
     if (asked.how == How::list) {
         PairList list;
-        const Summary summary = asked.join ? engine.find_pairs_between(objects, others, list, options, stop)
-                                           : engine.find_pairs(objects, list, options, stop);
+        const Summary summary = engine.find_pairs(input, list, options, stop);
         answer = {list.to_vector(), summary.pairs, summary.truncated};
     } else if (asked.how == How::stream) {
         const PairSink sink = [&](std::span<const Pair> batch) {
             answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end());
         };
-        const Summary summary = asked.join ? engine.stream_pairs_between(objects, others, sink, options, stop)
-                                           : engine.stream_pairs(objects, sink, options, stop);
+        const Summary summary = engine.stream_pairs(input, sink, options, stop);
         answer.count = summary.pairs;
         answer.truncated = summary.truncated;
     } else {
-        answer.count = asked.join ? engine.count_pairs_between(objects, others, options, stop)
-                                  : engine.count_pairs(objects, options, stop);
+        answer.count = engine.count_pairs(input, options, stop);
     }
     return answer;
 }

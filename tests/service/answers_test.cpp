@@ -94,20 +94,17 @@ Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
     options.margin = a_case.margin;
     options.limit = asked.limit;
     options.buffer_bytes = a_case.buffer_bytes;
-    const Objects first = a_case.first.view();
-    const Objects second = a_case.second ? a_case.second->view() : Objects{};
+    const Input input = a_case.input();
     Answer answer;
     Summary summary;
     if (asked.how == testing::How::list) {
         PairList list;
-        summary = a_case.second ? engine.find_pairs_between(first, second, list, options)
-                                : engine.find_pairs(first, list, options);
+        summary = engine.find_pairs(input, list, options);
         answer.pairs = list.to_vector();
     } else {
         const PairSink keep = [&](auto batch) { answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end()); };
         const PairSink sink = asked.how == testing::How::stream ? keep : PairSink();
-        summary = a_case.second ? engine.stream_pairs_between(first, second, sink, options)
-                                : engine.stream_pairs(first, sink, options);
+        summary = engine.stream_pairs(input, sink, options);
     }
     answer.count = summary.pairs;
     answer.truncated = summary.truncated;
@@ -142,11 +139,11 @@ TEST(ServedJobs, AreThoseOfThreads) {
     const Objects first = scene.objects({}), second = scene.others({});
     PairList expected, expected_between;
     (void)local->find_pairs(first, expected);
-    (void)local->find_pairs_between(first, second, expected_between);
+    (void)local->find_pairs(Join{first, second}, expected_between);
     std::vector<Pair> streamed;
     const PairSink sink = [&](auto batch) { streamed.insert(streamed.end(), batch.begin(), batch.end()); };
     Job listed = remote->submit(scene.first);
-    Job between = remote->submit_between(borrowed(first), scene.second);
+    Job between = remote->submit(JobJoin{borrowed(first), scene.second});
     Job stream = remote->submit_stream(borrowed(first), sink);
     EXPECT_EQ(listed.take_pairs().to_vector(), expected.to_vector());
     EXPECT_EQ(between.take_pairs().to_vector(), expected_between.to_vector());

@@ -19,8 +19,8 @@ private:
     Summary run(const Request& request, const Output& output, const Control& control) override {
         gate_.pass(control.stop);
         const PairSink sink = output.sink != nullptr ? *output.sink : PairSink();
-        if (request.second == nullptr) return inner_->stream_pairs(request.first, sink, request.options, control.stop);
-        return inner_->stream_pairs_between(request.first, *request.second, sink, request.options, control.stop);
+        const Input input(request.first, request.second != nullptr ? std::optional(*request.second) : std::nullopt);
+        return inner_->stream_pairs(input, sink, request.options, control.stop);
     }
     JobQueue& jobs() override { return jobs_; }
 

@@ -34,7 +34,7 @@ TEST(ServedLimits, OfObjects) {
     const Served served(limited([](auto& limits) { limits.objects = 100; }));
     const std::vector<Box3f> few(100), many(101), half(51);
     expect_refused("objects", 100, [&] { (void)count(served, many); });
-    const auto join = [&] { (void)served.client()->count_pairs_between({std::span(half), {}}, {std::span(half), {}}); };
+    const auto join = [&] { (void)served.client()->count_pairs(Join{{std::span(half), {}}, {std::span(half), {}}}); };
     expect_refused("objects", 100, join);
     EXPECT_EQ(count(served, few), 4950u);
     EXPECT_TRUE(served.comes_to_rest());

@@ -90,11 +90,11 @@ TEST(ServedSizes, OfJoinsWithAnEmptySet) {
     const std::vector<Box3d> wide = {{{0, 0, 0}, {1, 1, 1}}};
     const std::vector<double> padding = {0.5};
     PairList list;
-    EXPECT_EQ(remote->find_pairs_between({std::span(boxes), {}}, {std::span(none), {}}, list).pairs, 0u);
-    EXPECT_EQ(remote->find_pairs_between({std::span(none), {}}, {std::span(boxes), {}}, list).pairs, 0u);
-    EXPECT_EQ(remote->find_pairs_between({std::span(none), {}}, {std::span(none), {}}, list).pairs, 0u);
-    EXPECT_EQ(remote->find_pairs_between({std::span(boxes), {}}, {std::span(wide), padding}, list).pairs, 50u);
-    EXPECT_EQ(remote->find_pairs_between({std::span(wide), padding}, {std::span(boxes), {}}, list).pairs, 50u);
+    EXPECT_EQ(remote->find_pairs(Join{{std::span(boxes), {}}, {std::span(none), {}}}, list).pairs, 0u);
+    EXPECT_EQ(remote->find_pairs(Join{{std::span(none), {}}, {std::span(boxes), {}}}, list).pairs, 0u);
+    EXPECT_EQ(remote->find_pairs(Join{{std::span(none), {}}, {std::span(none), {}}}, list).pairs, 0u);
+    EXPECT_EQ(remote->find_pairs(Join{{std::span(boxes), {}}, {std::span(wide), padding}}, list).pairs, 50u);
+    EXPECT_EQ(remote->find_pairs(Join{{std::span(wide), padding}, {std::span(boxes), {}}}, list).pairs, 50u);
 }
 
 }  // namespace

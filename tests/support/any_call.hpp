@@ -24,16 +24,13 @@ struct AnyCall {
         options.buffer_bytes = asked.buffer_bytes;
         options.verify = verify;
         if (limited) options.limit = asked.limit;
-        const Objects first = asked.first.view();
         std::vector<Pair> found;
         if (streamed) {
             const PairSink sink = [&](auto batch) { found.insert(found.end(), batch.begin(), batch.end()); };
-            asked.second ? engine.stream_pairs_between(first, asked.second->view(), sink, options)
-                         : engine.stream_pairs(first, sink, options);
+            engine.stream_pairs(asked.input(), sink, options);
         } else {
             PairList list;
-            asked.second ? engine.find_pairs_between(first, asked.second->view(), list, options)
-                         : engine.find_pairs(first, list, options);
+            engine.find_pairs(asked.input(), list, options);
             found = list.to_vector();
         }
         return found;
@@ -43,9 +40,7 @@ struct AnyCall {
         options.margin = asked.margin;
         options.verify = verify;
         if (limited) options.limit = asked.limit;
-        const Objects first = asked.first.view();
-        return asked.second ? engine.count_pairs_between(first, asked.second->view(), options)
-                            : engine.count_pairs(first, options);
+        return engine.count_pairs(asked.input(), options);
     }
 };
 

@@ -79,6 +79,8 @@ Objects OwnedObjects::view() const {
     return objects;
 }
 
+Input Case::input() const { return {first.view(), second ? std::optional(second->view()) : std::nullopt}; }
+
 std::string Case::describe() const {
     std::ostringstream text;
     const auto write = [&](const OwnedObjects& objects) {

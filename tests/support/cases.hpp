@@ -33,6 +33,8 @@ struct Case {
     unsigned threads[3] = {};        ///< 1 to 8
 
     std::string describe() const;
+    /// Returns what a call is given. Borrows the objects.
+    Input input() const;
 };
 
 /// Objects 0 to 3,000, mostly few; kinds whose pairs are many get fewer.

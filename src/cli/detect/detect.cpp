@@ -20,8 +20,8 @@
 #include "io/files/atomic_file.hpp"
 #include "io/results/pair_writer.hpp"
 #ifdef OCTOPAIR_WITH_MPI
-#include "cli/ranks/cluster.hpp"
 #include "cli/detect/rank_detection.hpp"
+#include "cli/ranks/cluster.hpp"
 #endif
 
 namespace octopair::cli {

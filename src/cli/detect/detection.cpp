@@ -80,9 +80,8 @@ private:
         }
         const PairSink pairs = [&](std::span<const Pair> batch) { timed_write([&] { writer->write(batch, {}); }); };
         const PairSink sink = writer != nullptr ? pairs : PairSink();
-        const Objects first = first_.frame(frame), second = second_.frame(frame);
-        const Summary summary = join() ? engine.stream_pairs_between(first, second, sink, options, stop_)
-                                       : engine.stream_pairs(first, sink, options, stop_);
+        const Input input(first_.frame(frame), join() ? std::optional(second_.frame(frame)) : std::nullopt);
+        const Summary summary = engine.stream_pairs(input, sink, options, stop_);
         report_.add(summary, written());
     }
 

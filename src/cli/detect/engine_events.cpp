@@ -67,11 +67,8 @@ public:
 
     FrameEvents find(const std::stop_token& stop) override {
         std::swap(now_, before_);
-        if (against_) {
-            engine_->find_pairs_between(inputs_.objects(), against_->objects(), now_, options_, stop);
-        } else {
-            engine_->find_pairs(inputs_.objects(), now_, options_, stop);
-        }
+        const Input input(inputs_.objects(), against_ ? std::optional(against_->objects()) : std::nullopt);
+        engine_->find_pairs(input, now_, options_, stop);
         compare();
         return {ended_, began_, now_.size()};
     }

@@ -24,10 +24,9 @@ public:
 
     PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                         const Options& options) override {
-        const Objects first = sets_.first.frame(frame);
-        return sets_.second != nullptr
-                   ? pipeline_.run_between(engine, first, sets_.second->frame(frame), sink, options, stop_)
-                   : pipeline_.run(engine, first, sink, options, stop_);
+        const Input input(sets_.first.frame(frame),
+                          sets_.second != nullptr ? std::optional(sets_.second->frame(frame)) : std::nullopt);
+        return pipeline_.run(engine, input, sink, options, stop_);
     }
 
     PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) override {

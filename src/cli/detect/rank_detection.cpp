@@ -25,6 +25,13 @@ namespace octopair::cli {
 
 namespace {
 
+/// Returns the same objects, numbered from rank to rank.
+IndexedInput unindexed(const Input& input) {
+    std::optional<IndexedObjects> second;
+    if (input.second) second = {*input.second, {}};
+    return {IndexedObjects{input.first, {}}, second};
+}
+
 class RankDetection {
 public:
     RankDetection(const DetectRequest& request, Cluster& cluster, std::stop_token stop)
@@ -212,21 +219,19 @@ private:
     }
 
     Summary search_pieces(std::uint64_t frame, PairList* piece) {
-        const Objects first = own_objects(first_, frame), second = own_objects(second_, frame);
+        const Input input(own_objects(first_, frame),
+                          join() ? std::optional(own_objects(second_, frame)) : std::nullopt);
         Options options = call_options(request_, report_, frame, progress_);
         options.verify = false;  // ranks have slices: verify() does it
         if (has_filters(request_)) options.limit.reset();
         Summary summary;
         cluster_.joint([&] {
             if (wide()) {
-                summary = join() ? find_pairs64_between(*engine_, {first}, {second}, wide_piece_, options, stop_)
-                                 : find_pairs64(*engine_, {first}, wide_piece_, options, stop_);
+                summary = find_pairs64(*engine_, unindexed(input), wide_piece_, options, stop_);
             } else if (piece == nullptr) {
-                summary = join() ? engine_->stream_pairs_between(first, second, {}, options, stop_)
-                                 : engine_->stream_pairs(first, {}, options, stop_);
+                summary = engine_->stream_pairs(input, {}, options, stop_);
             } else {
-                summary = join() ? engine_->find_pairs_between(first, second, *piece, options, stop_)
-                                 : engine_->find_pairs(first, *piece, options, stop_);
+                summary = engine_->find_pairs(input, *piece, options, stop_);
             }
         });
         return summary;

@@ -3,8 +3,8 @@
 
 #include <stop_token>
 
-#include "cli/ranks/cluster.hpp"
 #include "cli/detect/detection.hpp"
+#include "cli/ranks/cluster.hpp"
 
 namespace octopair::cli {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <stop_token>
 
-#include "cli/ranks/cluster.hpp"
 #include "cli/detect/filter_row.hpp"
 #include "cli/output/collision_piece.hpp"
+#include "cli/ranks/cluster.hpp"
 
 namespace octopair::cli {
 

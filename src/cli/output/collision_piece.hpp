@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "cli/ranks/cluster.hpp"
 #include "cli/output/found_writer.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "octopair/pipeline.hpp"
 
 namespace octopair::cli {

@@ -7,8 +7,8 @@
 #include <span>
 #include <stop_token>
 
-#include "cli/ranks/cluster.hpp"
 #include "cli/detect/detection.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/mpi.hpp"
 

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "base/error_codes.hpp"
-#include "cli/ranks/cluster.hpp"
 #include "cli/command/failure.hpp"
 #include "cli/command/interrupt.hpp"
+#include "cli/ranks/cluster.hpp"
 #include "cli/server/serving.hpp"
 #include "engine/mpi/leading/leading.hpp"
 

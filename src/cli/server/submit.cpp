@@ -55,9 +55,8 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     options.limit = what.limit;
     options.progress = [&progress](double done) { progress.show("sending", done); };
     const JobTerms terms = {request.id, what.count_only};
-    const Objects first = inputs.frame(0), second = against.frame(0);
-    return what.against.empty() ? client.submit(first, options, terms, stop)
-                                : client.submit_between(first, second, options, terms, stop);
+    const Input input(inputs.frame(0), what.against.empty() ? std::nullopt : std::optional(against.frame(0)));
+    return client.submit(input, options, terms, stop);
 }
 
 int run_submit(const SubmitRequest& request) {

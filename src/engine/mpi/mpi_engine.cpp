@@ -116,16 +116,12 @@ Summary find_indexed(Engine& engine, const Engine::Request& request, const Index
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): as find_pairs.
-Summary find_pairs64(Engine& engine, const IndexedObjects& objects, std::vector<Pair64>& pairs, const Options& options,
+// NOLINTNEXTLINE(readability-function-size): as Engine::find_pairs, on an engine.
+Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair64>& pairs, const Options& options,
                      std::stop_token stop) {
-    return find_indexed(engine, {objects.objects, nullptr, options}, {{objects.indices, {}}, pairs}, std::move(stop));
-}
-
-// NOLINTNEXTLINE(readability-function-size): as find_pairs_between.
-Summary find_pairs64_between(Engine& engine, const IndexedObjects& first, const IndexedObjects& second,
-                             std::vector<Pair64>& pairs, const Options& options, std::stop_token stop) {
-    return find_indexed(engine, {first.objects, &second.objects, options}, {{first.indices, second.indices}, pairs},
+    const Objects* const second = input.second ? &input.second->objects : nullptr;
+    const auto second_indices = input.second ? input.second->indices : std::span<const std::uint64_t>();
+    return find_indexed(engine, {input.first.objects, second, options}, {{input.first.indices, second_indices}, pairs},
                         std::move(stop));
 }
 

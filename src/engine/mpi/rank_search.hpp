@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "engine/mpi/comm/communicator.hpp"
-#include "engine/mpi/master_search.hpp"
+#include "engine/mpi/paper/master_search.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_passes.hpp"

@@ -9,7 +9,7 @@
 #include "engine/processes/client/crew.hpp"
 #include "engine/processes/client/process_passes.hpp"
 #include "engine/processes/client/worker_program.hpp"
-#include "engine/processes/paper_passes.hpp"
+#include "engine/processes/paper/paper_passes.hpp"
 #include "engine/search.hpp"
 #include "engine/turns.hpp"
 #include "octopair/error.hpp"

@@ -75,7 +75,9 @@ struct OwnedJoin {
     unsigned settled = 0;               // axes whose orientation is given and that need no more splitting
     std::array<unsigned, 3> axes = {};  // in the order in which they are settled
 
-    Join join() const { return {{row_entries, *rows, false}, {column_entries, *columns, false}, false, orientation}; }
+    SweepInput join() const {
+        return {{row_entries, *rows, false}, {column_entries, *columns, false}, false, orientation};
+    }
     std::size_t size() const { return rows->size() + columns->size(); }
 };
 
@@ -162,7 +164,7 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
 }
 
 /// choose_sweep among some axes.
-SweepChoice choose_sweep_of(const Join& join, SweepOrder& order, const std::stop_token& stop,
+SweepChoice choose_sweep_of(const SweepInput& join, SweepOrder& order, const std::stop_token& stop,
                             std::span<const unsigned> axes) {
     const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
     SweepChoice choice;
@@ -251,12 +253,12 @@ std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list) {
     return shapes;
 }
 
-SweepChoice choose_sweep(const Join& join, SweepOrder& order, const std::stop_token& stop) {
+SweepChoice choose_sweep(const SweepInput& join, SweepOrder& order, const std::stop_token& stop) {
     constexpr std::array<unsigned, 3> all = {0, 1, 2};
     return choose_sweep_of(join, order, stop, all);
 }
 
-void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor) {
+void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor) {
     SweepOrder row_order(context.stop);
     const auto rows = row_order.sort(join.rows, axis, executor);
     count_path(tile_count(rows.size()) > 1 ? Path::tiles : Path::one_tile);
@@ -285,7 +287,7 @@ void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Ex
                               [&](std::size_t t, PairWriter& writer) { back.run(t, writer); });
 }
 
-void recursive_sweep(const ScanContext& context, const Join& join, Executor& executor) {
+void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor) {
     SweepOrder order(context.stop);
     std::array<std::pair<std::uint64_t, unsigned>, 3> costs;
     for (unsigned axis = 0; axis < 3; ++axis) costs[axis] = {order.windows(join.rows, join.columns, axis), axis};

@@ -3,7 +3,7 @@
 // part_by_shape parts boxes by the axes on which they are long: two families of rods that defeat every sweep of the
 // whole are joined by one along the axis on which both are thin.
 //
-// A Join asks for the overlapping pairs within a set (self), or between rows and columns.
+// A SweepInput asks for the overlapping pairs within a set (self), or between rows and columns.
 //
 // tiled_sweep runs one sweep along an axis whose sets may be large: shares of 4,096 rows, each passing over tiles of
 // columns, so scratch memory does not grow with the set and one crowded octant occupies all threads.
@@ -25,7 +25,7 @@
 
 namespace octopair {
 
-struct Join {
+struct SweepInput {
     EntryList rows;
     EntryList columns;  ///< self: the same list
     bool self = false;
@@ -39,14 +39,14 @@ struct SweepChoice {
 };
 
 /// Throws Error{cancelled}.
-SweepChoice choose_sweep(const Join& join, SweepOrder& order, const std::stop_token& stop);
+SweepChoice choose_sweep(const SweepInput& join, SweepOrder& order, const std::stop_token& stop);
 
-void tiled_sweep(const ScanContext& context, const Join& join, unsigned axis, Executor& executor);
+void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor);
 
 /// The positions of a list by the axes (as bits) on which a box is longer than a quarter of the list's reach.
 std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list);
 
 /// `join` has no orientation yet.
-void recursive_sweep(const ScanContext& context, const Join& join, Executor& executor);
+void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor);
 
 }  // namespace octopair

@@ -139,17 +139,9 @@ JobClient::JobClient(std::string_view address, const ClientOptions& options)
 
 JobClient::~JobClient() = default;
 
-std::string JobClient::submit(const Objects& objects, const Options& options, const JobTerms& terms,
-                              std::stop_token stop) {
+std::string JobClient::submit(const Input& input, const Options& options, const JobTerms& terms, std::stop_token stop) {
     const FloatingPointScope scope;
-    return state_->submit({objects, nullptr, options}, terms, stop);
-}
-
-// NOLINTNEXTLINE(readability-function-size): as those of Engine.
-std::string JobClient::submit_between(const Objects& first, const Objects& second, const Options& options,
-                                      const JobTerms& terms, std::stop_token stop) {
-    const FloatingPointScope scope;
-    return state_->submit({first, &second, options}, terms, stop);
+    return state_->submit(request_of(input, options), terms, stop);
 }
 
 JobStatus JobClient::status(const std::string& id, std::stop_token stop) {

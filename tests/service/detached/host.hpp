@@ -101,17 +101,13 @@ struct Work {
 };
 
 inline std::string submit(JobClient& client, const Work& work) {
-    return work.second ? client.submit_between(work.first, *work.second, work.options, work.terms)
-                       : client.submit(work.first, work.options, work.terms);
+    return client.submit({work.first, work.second}, work.options, work.terms);
 }
 
 inline std::vector<Pair> pairs_here(const Work& work) {
     PairList pairs;
     const auto engine = make_local_engine(1);
-    if (!work.second)
-        engine->find_pairs(work.first, pairs, work.options);
-    else
-        engine->find_pairs_between(work.first, *work.second, pairs, work.options);
+    engine->find_pairs({work.first, work.second}, pairs, work.options);
     return pairs.to_vector();
 }
 

@@ -10,7 +10,7 @@
 #include "base/test_hooks.hpp"
 #include "base/timed.hpp"
 #include "base/tuning.hpp"
-#include "engine/processes/sorted_lists.hpp"
+#include "engine/processes/paper/sorted_lists.hpp"
 #include "engine/processes/worker/shared_buckets.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan.hpp"

@@ -31,8 +31,8 @@ public:
     void append(std::span<const std::byte> data) override;
     std::uint64_t missing() const override { return missing_; }
 
-    const Objects& first() const { return sets_[0].objects; }
-    const Objects* second() const { return joined_ ? &sets_[1].objects : nullptr; }
+    /// Borrows the boxes and paddings.
+    Input objects() const { return {sets_[0].objects, joined_ ? std::optional(sets_[1].objects) : std::nullopt}; }
     /// Of a complete input and its options.
     std::string hash() const { return hash_.digest(); }
 

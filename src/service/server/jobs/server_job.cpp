@@ -127,15 +127,12 @@ void ServerJob::end_by(v1::Failure failure) noexcept {
 }
 
 Summary ServerJob::find(Engine& engine, const Options& options) {
-    const Objects& first = parts_.input->first();
-    const Objects* const second = parts_.input->second();
     const PairSink sink = parts_.spec.count_only() ? PairSink() : [this](std::span<const Pair> pairs) {
         const std::uint64_t before = parts_.pairs->ready();
         parts_.pairs->append(pairs);
         if (parts_.pairs->ready() > before) tell();
     };
-    return second == nullptr ? engine.stream_pairs(first, sink, options, stop_.get_token())
-                             : engine.stream_pairs_between(first, *second, sink, options, stop_.get_token());
+    return engine.stream_pairs(parts_.input->objects(), sink, options, stop_.get_token());
 }
 
 Options ServerJob::options() {

@@ -1,4 +1,4 @@
-#include "engine/mpi/master_passes.hpp"
+#include "engine/mpi/paper/master_passes.hpp"
 
 #include "engine/mpi/comm/cost_meter.hpp"
 

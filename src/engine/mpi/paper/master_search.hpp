@@ -19,9 +19,9 @@
 
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/joint_call.hpp"
-#include "engine/mpi/list_exchange.hpp"
-#include "engine/mpi/list_maker.hpp"
-#include "engine/mpi/master_passes.hpp"
+#include "engine/mpi/paper/list_exchange.hpp"
+#include "engine/mpi/paper/list_maker.hpp"
+#include "engine/mpi/paper/master_passes.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/search.hpp"
 

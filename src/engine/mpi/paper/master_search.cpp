@@ -1,4 +1,4 @@
-#include "engine/mpi/master_search.hpp"
+#include "engine/mpi/paper/master_search.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "engine/mpi/list_exchange.hpp"
+#include "engine/mpi/paper/list_exchange.hpp"
 
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/cost_meter.hpp"

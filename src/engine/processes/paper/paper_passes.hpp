@@ -6,7 +6,7 @@
 
 #include "engine/processes/client/crew.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
-#include "engine/processes/sorted_lists.hpp"
+#include "engine/processes/paper/sorted_lists.hpp"
 #include "engine/threads/thread_passes.hpp"
 
 namespace octopair {

@@ -1,4 +1,4 @@
-#include "engine/processes/sorted_lists.hpp"
+#include "engine/processes/paper/sorted_lists.hpp"
 
 #include <algorithm>
 #include <array>

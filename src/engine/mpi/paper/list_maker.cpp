@@ -1,4 +1,4 @@
-#include "engine/mpi/list_maker.hpp"
+#include "engine/mpi/paper/list_maker.hpp"
 
 #include <array>
 #include <utility>

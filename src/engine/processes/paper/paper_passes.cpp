@@ -1,4 +1,4 @@
-#include "engine/processes/paper_passes.hpp"
+#include "engine/processes/paper/paper_passes.hpp"
 
 #include <algorithm>
 #include <utility>
