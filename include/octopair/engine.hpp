@@ -28,11 +28,16 @@
 
 namespace octopair {
 
+namespace detail {  // not for users
+class JobQueue;
+struct Control;
+struct Output;
+struct Request;
+}  // namespace detail
+
 /// Receives batches in order, on the calling thread; a span is valid during the call only. What it throws ends the
 /// search and reaches the caller.
 using PairSink = std::function<void(std::span<const Pair>)>;
-
-class JobQueue;  // internal
 
 class Engine {
 public:
@@ -65,21 +70,18 @@ public:
         return BoxArray<Element>(allocate_array(count, sizeof(Element)), count);
     }
 
-    struct Request;  ///< objects, the second set of a join, options: what every call above becomes (internal)
-    struct Output;   ///< a list, a sink, or neither to count (internal)
-    struct Control;  ///< stop token and progress (internal)
-
 private:
-    Summary call(const Request& request, const Output& output, std::stop_token stop);
+    Summary call(const detail::Request& request, const detail::Output& output, std::stop_token stop);
     template <typename Work>
     Job submit_work(Work work);
     std::shared_ptr<void> allocate_array(std::uint64_t count, std::size_t element_bytes);
 
     /// Before run(), of options and sizes. Throws Error.
-    virtual void check(const Request& request) const;
-    virtual Summary run(const Request& request, const Output& output, const Control& control) = 0;
+    virtual void check(const detail::Request& request) const;
+    virtual Summary run(const detail::Request& request, const detail::Output& output,
+                        const detail::Control& control) = 0;
     /// Every engine has one, as its last member: it ends the jobs before what they use goes.
-    virtual JobQueue& jobs() = 0;
+    virtual detail::JobQueue& jobs() = 0;
     /// Aligned to 64 bytes; freed by the last who holds it, which may be after the engine. May throw std::bad_alloc.
     virtual std::shared_ptr<void> allocate(std::size_t bytes);
     /// Threads of this process that check a result (Options::verify); 0: one per core.

@@ -27,6 +27,13 @@
 
 namespace octopair {
 
+class Job;
+
+namespace detail {  // not for users
+class JobTask;
+Job make_job(std::shared_ptr<JobTask> task) noexcept;
+}  // namespace detail
+
 /// The last three are for ever.
 enum class JobState : std::uint8_t {
     queued,     ///< others are before it
@@ -105,14 +112,13 @@ public:
     /// Waits, throws as summary(); and Error{usage} the second time, or if the pairs went to a sink.
     PairList take_pairs();
 
-    class Task;  ///< what handle and engine share (internal)
-    explicit Job(std::shared_ptr<Task> task) noexcept;
-
 private:
+    friend Job detail::make_job(std::shared_ptr<detail::JobTask> task) noexcept;
+    explicit Job(std::shared_ptr<detail::JobTask> task) noexcept;
     bool wait_at_most(std::chrono::nanoseconds time) const;
     void let_go() noexcept;
 
-    std::shared_ptr<Task> task_;
+    std::shared_ptr<detail::JobTask> task_;
 };
 
 template <typename Rep, typename Period>

@@ -10,6 +10,13 @@
 
 namespace octopair {
 
+class PairList;
+
+namespace detail {  // not for users
+struct PairStorage;
+PairStorage& storage_of(PairList& list);
+}  // namespace detail
+
 /// Pairs in order, owned, in one or more chunks. Reuse it from call to call: it keeps its memory.
 /// Not thread-safe; chunks() is valid until the list is next written to or destroyed.
 class PairList {
@@ -23,11 +30,9 @@ public:
     std::span<const std::span<const Pair>> chunks() const;
     std::vector<Pair> to_vector() const;  ///< a copy
 
-    struct Storage;  ///< what engines write to; its type is internal
-    Storage& storage() { return *storage_; }
-
 private:
-    std::unique_ptr<Storage> storage_;
+    friend detail::PairStorage& detail::storage_of(PairList& list);
+    std::unique_ptr<detail::PairStorage> storage_;
 };
 
 }  // namespace octopair

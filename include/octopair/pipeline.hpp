@@ -27,6 +27,10 @@
 
 namespace octopair {
 
+namespace detail {  // not for users
+struct BatchAccess;
+}
+
 /// Some pairs on their way through the filters, in order.
 class Batch {
 public:
@@ -74,9 +78,8 @@ public:
     /// For filters that take long over one pair.
     const std::stop_token& stop() const { return stop_; }
 
-    struct Access;  ///< what fills and empties batches (internal)
-
 private:
+    friend struct detail::BatchAccess;
     [[noreturn]] static void cancel();
 
     std::vector<Pair> pairs_;

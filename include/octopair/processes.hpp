@@ -37,12 +37,20 @@ struct ProcessOptions {
     std::string worker_program = {};
 };
 
-/// Starts the workers. Throws Error{engine_failed} if they cannot be started, Error{resource_limit} if the system has no
-/// processes, descriptors or memory to give. Leave `packaged_worker` to the package.
+namespace detail {  // not for users
+/// The worker program of the package that the calling program is built with.
+struct PackagedWorker {
+    const char* path;
+};
+}  // namespace detail
+
+/// Starts the workers. Leave `package` to its default.
+/// Throws: Error{engine_failed} if they cannot be started; Error{resource_limit} if the system has no processes, descriptors
+/// or memory to give.
 std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options,
-                                            const char* packaged_worker = OCTOPAIR_WORKER_PROGRAM);
+                                            detail::PackagedWorker package = {OCTOPAIR_WORKER_PROGRAM});
 std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,
-                                            const char* packaged_worker = OCTOPAIR_WORKER_PROGRAM);
+                                            detail::PackagedWorker package = {OCTOPAIR_WORKER_PROGRAM});
 
 /// What has happened to the workers of an engine since it was made.
 struct WorkerFaults {

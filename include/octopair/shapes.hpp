@@ -64,6 +64,13 @@ using Any = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Ellipsoid, Plane,
 
 }  // namespace shape
 
+class Geometry;
+
+namespace detail {  // not for users
+struct PreparedShape;
+const PreparedShape& prepared(const Geometry& geometry);
+}  // namespace detail
+
 /// A shape, made ready to be tested: a mesh with its bounding hierarchy. Objects that look alike share one.
 class Geometry {
 public:
@@ -71,11 +78,9 @@ public:
 
     const shape::Any& shape() const;
 
-    struct Prepared;  ///< internal
-    const Prepared& prepared() const { return *prepared_; }
-
 private:
-    std::shared_ptr<const Prepared> prepared_;
+    friend const detail::PreparedShape& detail::prepared(const Geometry& geometry);
+    std::shared_ptr<const detail::PreparedShape> prepared_;
 };
 
 /// Objects with shapes, borrowed: object i has the geometry geometries[geometry[i]], posed by poses[i].

@@ -28,7 +28,7 @@ void check_set(const Objects& set, const char* name) {
 
 }  // namespace
 
-void check_request(const Engine::Request& request) {
+void detail::check_request(const detail::Request& request) {
     const double margin = request.options.margin;
     if (!(margin >= 0 && std::isfinite(margin))) {
         throw Error(ErrorCode::bad_input, "margin is " + std::to_string(margin) + ", not a finite number >= 0");
@@ -42,41 +42,41 @@ void check_request(const Engine::Request& request) {
     }
 }
 
-void Engine::check(const Request& request) const { check_request(request); }
+void Engine::check(const detail::Request& request) const { detail::check_request(request); }
 
 unsigned Engine::verification_threads() const { return 0; }
 
 /// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
 /// after. Sinks and progress are called in the default floating-point state, too.
-Summary Engine::call(const Request& request, const Output& output, std::stop_token stop) {
+Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
     const FloatingPointScope scope;
-    if (output.list != nullptr) output.list->storage().reset();
+    if (output.list != nullptr) detail::storage_of(*output.list).reset();
     check(request);
     try {
-        const Control control{stop, request.options.progress};
+        const detail::Control control{stop, request.options.progress};
         if (!request.options.verify) return run(request, output, control);
         return VerifiedCall(request, output, control).run(verification_threads(), [this](const auto&... call) {
             return run(call...);
         });
     } catch (const std::bad_alloc&) {
-        if (output.list != nullptr) output.list->storage().reset();
+        if (output.list != nullptr) detail::storage_of(*output.list).reset();
         throw Error(ErrorCode::resource_limit, "out of memory");
     } catch (...) {
-        if (output.list != nullptr) output.list->storage().reset();
+        if (output.list != nullptr) detail::storage_of(*output.list).reset();
         throw;
     }
 }
 
 Summary Engine::find_pairs(const Input& input, PairList& pairs, const Options& options, std::stop_token stop) {
-    return call(request_of(input, options), {.list = &pairs}, stop);
+    return call(detail::request_of(input, options), {.list = &pairs}, stop);
 }
 
 Summary Engine::stream_pairs(const Input& input, const PairSink& sink, const Options& options, std::stop_token stop) {
-    return call(request_of(input, options), {.sink = sink ? &sink : nullptr}, stop);
+    return call(detail::request_of(input, options), {.sink = sink ? &sink : nullptr}, stop);
 }
 
 std::uint64_t Engine::count_pairs(const Input& input, const Options& options, std::stop_token stop) {
-    return call(request_of(input, options), {}, stop).pairs;
+    return call(detail::request_of(input, options), {}, stop).pairs;
 }
 
 namespace {
@@ -88,22 +88,22 @@ namespace {
 template <typename Work>
 Job Engine::submit_work(Work work) {
     const FloatingPointScope scope;
-    check(request_of(view(work.input), work.options));
+    check(detail::request_of(detail::view(work.input), work.options));
     try {
-        const auto task = std::make_shared<Job::Task>(std::move(work));
+        const auto task = std::make_shared<detail::JobTask>(std::move(work));
         jobs().add(task);
-        return Job(task);
+        return detail::make_job(task);
     } catch (const std::bad_alloc&) {
         throw_out_of_memory();
     }
 }
 
 Job Engine::submit(JobInput input, Options options) {
-    return submit_work(Job::Task::Work{std::move(input), {}, std::move(options)});
+    return submit_work(detail::JobTask::Work{std::move(input), {}, std::move(options)});
 }
 
 Job Engine::submit_stream(JobInput input, PairSink sink, Options options) {
-    return submit_work(Job::Task::Work{std::move(input), std::move(sink), std::move(options)});
+    return submit_work(detail::JobTask::Work{std::move(input), std::move(sink), std::move(options)});
 }
 
 std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {

@@ -1,4 +1,4 @@
-// Job, the handle: every call goes to the Task that it shares with the queue.
+// Job, the handle: every call goes to the JobTask that it shares with the queue.
 #include "octopair/job.hpp"
 
 #include <utility>
@@ -7,10 +7,12 @@
 
 namespace octopair {
 
-Job::Job(std::shared_ptr<Task> task) noexcept : task_(std::move(task)) {}
+Job::Job(std::shared_ptr<detail::JobTask> task) noexcept : task_(std::move(task)) {}
+
+Job detail::make_job(std::shared_ptr<JobTask> task) noexcept { return Job(std::move(task)); }
 
 Job& Job::operator=(Job&& other) noexcept {
-    const std::shared_ptr<Task> next = std::move(other.task_);
+    const std::shared_ptr<detail::JobTask> next = std::move(other.task_);
     if (next != task_) let_go();
     task_ = next;
     return *this;
@@ -36,7 +38,7 @@ bool Job::wait_at_most(std::chrono::nanoseconds time) const { return task_ == nu
 
 void Job::cancel() noexcept {
     // What the task lets go of may be this handle.
-    if (const std::shared_ptr<Task> task = task_) task->cancel();
+    if (const std::shared_ptr<detail::JobTask> task = task_) task->cancel();
 }
 
 namespace {

@@ -10,7 +10,7 @@
 #include "engine/job_task.hpp"
 #include "octopair/error.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
 JobQueue::~JobQueue() {
     {
@@ -19,7 +19,7 @@ JobQueue::~JobQueue() {
         changed_.notify_all();
     }
     // Nobody submits to an engine that goes.
-    std::vector<std::shared_ptr<Job::Task>> left;
+    std::vector<std::shared_ptr<JobTask>> left;
     {
         const std::lock_guard lock(mutex_);
         left.assign(waiting_.begin(), waiting_.end());
@@ -29,7 +29,7 @@ JobQueue::~JobQueue() {
     if (thread_.joinable()) thread_.join();
 }
 
-void JobQueue::add(const std::shared_ptr<Job::Task>& task) {
+void JobQueue::add(const std::shared_ptr<JobTask>& task) {
     const std::lock_guard lock(mutex_);
     if (!thread_.joinable()) start_thread();
     if (waiting_.size() >= drop_from_ && !skipped_) drop_ended();
@@ -54,7 +54,7 @@ void JobQueue::run_jobs() {
 }
 
 /// The job whose turn it is; null at the end.
-std::shared_ptr<Job::Task> JobQueue::next() {
+std::shared_ptr<JobTask> JobQueue::next() {
     std::unique_lock lock(mutex_);
     running_ = nullptr;
     if (waiting_.empty()) idle_.notify_all();
@@ -76,4 +76,4 @@ void JobQueue::drop_ended() {
     drop_from_ = std::max<std::size_t>(64, 2 * waiting_.size());
 }
 
-}  // namespace octopair
+}  // namespace octopair::detail

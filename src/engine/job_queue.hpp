@@ -17,7 +17,7 @@
 
 #include "octopair/engine.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
 class JobQueue {
 public:
@@ -30,25 +30,25 @@ public:
     ~JobQueue();
 
     /// Throws Error{resource_limit} where no thread can be started. Thread-safe.
-    void add(const std::shared_ptr<Job::Task>& task);
+    void add(const std::shared_ptr<JobTask>& task);
     /// Returns when all jobs that were added have had their turn; at once on the thread of the queue. Thread-safe.
     void wait_for_all();
 
 private:
     void start_thread();
     void run_jobs();
-    std::shared_ptr<Job::Task> next();
+    std::shared_ptr<JobTask> next();
     void drop_ended();
 
     Engine& engine_;
     std::function<void()> skipped_;
     std::mutex mutex_;
     std::condition_variable changed_, idle_;
-    std::deque<std::shared_ptr<Job::Task>> waiting_;
-    std::shared_ptr<Job::Task> running_;
+    std::deque<std::shared_ptr<JobTask>> waiting_;
+    std::shared_ptr<JobTask> running_;
     std::size_t drop_from_ = 64;  // waiting jobs
     bool ending_ = false;
     std::thread thread_;
 };
 
-}  // namespace octopair
+}  // namespace octopair::detail

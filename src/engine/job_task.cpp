@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-namespace octopair {
+namespace octopair::detail {
 
 namespace {
 
@@ -36,17 +36,17 @@ Input view(const JobInput& input) {
     return Join{view(input.first), view(*input.second)};
 }
 
-Job::Task::Task(Work work) : work_(std::move(work)) {
+JobTask::JobTask(Work work) : work_(std::move(work)) {
     told_ = std::exchange(work_->options.progress, [this](double done) { tell(done); });
     if (!work_->sink) pairs_.emplace();
 }
 
-void Job::Task::belong_to(std::thread::id thread) {
+void JobTask::belong_to(std::thread::id thread) {
     const std::lock_guard lock(mutex_);
     queue_thread_ = thread;
 }
 
-bool Job::Task::run(Engine& engine) noexcept {
+bool JobTask::run(Engine& engine) noexcept {
     if (!hold(JobState::running)) return false;
     try {
         const Summary summary = call(engine);
@@ -59,7 +59,7 @@ bool Job::Task::run(Engine& engine) noexcept {
 }
 
 /// Makes this thread the one that holds the task, unless there is one.
-bool Job::Task::hold(JobState state) {
+bool JobTask::hold(JobState state) {
     const std::lock_guard lock(mutex_);
     if (holder_ != std::thread::id()) return false;
     holder_ = std::this_thread::get_id();
@@ -67,20 +67,20 @@ bool Job::Task::hold(JobState state) {
     return true;
 }
 
-Summary Job::Task::call(Engine& engine) {
+Summary JobTask::call(Engine& engine) {
     const Input input = view(work_->input);
     const std::stop_token stop = stop_.get_token();
     return pairs_ ? engine.find_pairs(input, *pairs_, work_->options, stop)
                   : engine.stream_pairs(input, *work_->sink, work_->options, stop);
 }
 
-void Job::Task::tell(double done) {
+void JobTask::tell(double done) {
     progress_.store(done, std::memory_order_relaxed);
     if (told_) told_(done);
 }
 
 /// What the exception under way makes of a job.
-Job::Task::Ending Job::Task::failure() noexcept {
+JobTask::Ending JobTask::failure() noexcept {
     try {
         try {
             throw;
@@ -99,7 +99,7 @@ Job::Task::Ending Job::Task::failure() noexcept {
 }
 
 /// By the holder. The state changes last: whoever sees it finds the input let go of.
-void Job::Task::end(Ending ending) noexcept {
+void JobTask::end(Ending ending) noexcept {
     if (ending.state != JobState::done) pairs_.reset();
     work_.reset();
     told_ = nullptr;
@@ -109,17 +109,17 @@ void Job::Task::end(Ending ending) noexcept {
     ended_.notify_all();
 }
 
-JobState Job::Task::state() const {
+JobState JobTask::state() const {
     const std::lock_guard lock(mutex_);
     return state_;
 }
 
-bool Job::Task::ended() const {
+bool JobTask::ended() const {
     const std::lock_guard lock(mutex_);
     return is_last();
 }
 
-void Job::Task::cancel() noexcept {
+void JobTask::cancel() noexcept {
     if (hold(JobState::queued)) {
         end({JobState::cancelled});
     } else {
@@ -127,7 +127,7 @@ void Job::Task::cancel() noexcept {
     }
 }
 
-void Job::Task::wait() const {
+void JobTask::wait() const {
     std::unique_lock lock(mutex_);
     const std::thread::id here = std::this_thread::get_id();
     if (!is_last() && (here == queue_thread_ || here == holder_)) {
@@ -136,31 +136,31 @@ void Job::Task::wait() const {
     ended_.wait(lock, [&] { return is_last(); });
 }
 
-bool Job::Task::wait_at_most(std::chrono::nanoseconds time) const {
+bool JobTask::wait_at_most(std::chrono::nanoseconds time) const {
     std::unique_lock lock(mutex_);
     return ended_.wait_for(lock, time, [&] { return is_last(); });
 }
 
-void Job::Task::wait_elsewhere() const {
+void JobTask::wait_elsewhere() const {
     std::unique_lock lock(mutex_);
     if (holder_ != std::this_thread::get_id()) ended_.wait(lock, [&] { return is_last(); });
 }
 
-void Job::Task::throw_unless_done() const {
+void JobTask::throw_unless_done() const {
     if (state_ == JobState::done) return;
     if (ending_.error) throw Error(*ending_.error);
     if (state_ == JobState::cancelled) throw Error(ErrorCode::cancelled, "cancelled");
     throw Error(ErrorCode::resource_limit, "out of memory");
 }
 
-Summary Job::Task::summary() const {
+Summary JobTask::summary() const {
     wait();
     const std::lock_guard lock(mutex_);
     throw_unless_done();
     return ending_.summary;
 }
 
-PairList Job::Task::take_pairs() {
+PairList JobTask::take_pairs() {
     wait();
     const std::lock_guard lock(mutex_);
     throw_unless_done();
@@ -170,4 +170,4 @@ PairList Job::Task::take_pairs() {
     return pairs;
 }
 
-}  // namespace octopair
+}  // namespace octopair::detail

@@ -1,4 +1,4 @@
-// Job::Task: what the handle of a job and the queue share: its input, its state, its result.
+// JobTask: what the handle of a job and the queue share: its input, its state, its result.
 //
 // Exactly one thread *holds* a task: the queue's, to run it, or the one that cancelled it while it waited. The holder
 // alone touches input, sink and progress, frees them, and then, once, gives the task its last state. All others see
@@ -16,12 +16,12 @@
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
 /// Returns the input of the call that a job makes. Borrows the argument.
 Input view(const JobInput& input);
 
-class Job::Task {
+class JobTask {
 public:
     struct Work {
         JobInput input;
@@ -29,10 +29,10 @@ public:
         Options options;
     };
 
-    explicit Task(Work work);
-    Task(const Task&) = delete;
-    Task& operator=(const Task&) = delete;
-    ~Task() = default;
+    explicit JobTask(Work work);
+    JobTask(const JobTask&) = delete;
+    JobTask& operator=(const JobTask&) = delete;
+    ~JobTask() = default;
 
     /// For the queue: its thread, before that gets the task; and the task's turn, on that thread.
     void belong_to(std::thread::id thread);
@@ -80,4 +80,4 @@ private:
     std::thread::id holder_;
 };
 
-}  // namespace octopair
+}  // namespace octopair::detail

@@ -6,10 +6,12 @@
 
 namespace octopair {
 
-PairList::PairList() : storage_(std::make_unique<Storage>()) {}
+PairList::PairList() : storage_(std::make_unique<detail::PairStorage>()) {}
 PairList::PairList(PairList&&) noexcept = default;
 PairList& PairList::operator=(PairList&&) noexcept = default;
 PairList::~PairList() = default;
+
+detail::PairStorage& detail::storage_of(PairList& list) { return *list.storage_; }
 
 std::uint64_t PairList::size() const { return storage_->size; }
 
@@ -22,7 +24,7 @@ std::vector<Pair> PairList::to_vector() const {
     return copy;
 }
 
-void PairList::Storage::reset() {
+void detail::PairStorage::reset() {
     chunks.clear();
     size = 0;
     taken_ = 0;
@@ -30,7 +32,7 @@ void PairList::Storage::reset() {
     free_ = {};
 }
 
-std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
+std::span<Pair> detail::PairStorage::take_block(std::size_t pairs) {
     const std::size_t block_pairs = tuning().output.list_block;
     const std::lock_guard lock(mutex_);
     const auto free = blocks_.begin() + std::ptrdiff_t(taken_);
@@ -48,7 +50,7 @@ std::span<Pair> PairList::Storage::take_block(std::size_t pairs) {
     return blocks_[taken_++].span();
 }
 
-std::span<const Pair> PairList::Storage::copy(std::span<const Pair> pairs) {
+std::span<const Pair> detail::PairStorage::copy(std::span<const Pair> pairs) {
     if (free_.size() < pairs.size()) free_ = take_block(pairs.size());
     std::copy(pairs.begin(), pairs.end(), free_.begin());
     const std::span<const Pair> copied = free_.first(pairs.size());
@@ -56,7 +58,7 @@ std::span<const Pair> PairList::Storage::copy(std::span<const Pair> pairs) {
     return copied;
 }
 
-void PairList::Storage::append(std::span<const Pair> pairs) {
+void detail::PairStorage::append(std::span<const Pair> pairs) {
     if (pairs.empty()) return;
     size += pairs.size();
     if (!chunks.empty() && chunks.back().data() + chunks.back().size() == pairs.data()) {

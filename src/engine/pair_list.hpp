@@ -14,9 +14,9 @@
 #include "base/memory.hpp"
 #include "octopair/pair_list.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
-struct PairList::Storage {
+struct PairStorage {
     std::vector<std::span<const Pair>> chunks;
     std::uint64_t size = 0;
 
@@ -42,4 +42,4 @@ private:
     std::size_t taken_ = 0;  // blocks_[0, taken_) are in writers' hands
 };
 
-}  // namespace octopair
+}  // namespace octopair::detail

@@ -41,7 +41,7 @@ void Receiver::give(std::span<const Pair> pairs) {
 }
 
 void Receiver::keep(std::span<const Pair> pairs) {
-    PairList::Storage& list = output_.list->storage();
+    detail::PairStorage& list = detail::storage_of(*output_.list);
     list.append(list.copy(pairs));
 }
 

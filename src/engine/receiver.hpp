@@ -12,7 +12,7 @@ namespace octopair {
 
 class Receiver {
 public:
-    Receiver(const Engine::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
+    Receiver(const detail::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
 
     struct LimitReached {};
 
@@ -29,7 +29,7 @@ private:
     void give(std::span<const Pair> pairs);
     void keep(std::span<const Pair> pairs);
 
-    const Engine::Output& output_;
+    const detail::Output& output_;
     std::optional<std::uint64_t> limit_;
     std::uint64_t pairs_ = 0;
     bool truncated_ = false;

@@ -9,31 +9,31 @@
 
 #include "octopair/engine.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
-struct Engine::Request {
+struct Request {
     const Objects& first;
     const Objects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
     const Options& options;
 };
 
 /// Where pairs go: exactly one of the two is set; neither: they are counted only.
-struct Engine::Output {
+struct Output {
     PairList* list = nullptr;
     const PairSink* sink = nullptr;
 };
 
 /// Returns the request for an input. Borrows both arguments.
-inline Engine::Request request_of(const Input& input, const Options& options) {
+inline Request request_of(const Input& input, const Options& options) {
     return {input.first, input.second ? &*input.second : nullptr, options};
 }
 
 /// Options and sizes. Throws Error.
-void check_request(const Engine::Request& request);
+void check_request(const Request& request);
 
-struct Engine::Control {
+struct Control {
     std::stop_token stop;
     const ProgressSink& progress;
 };
 
-}  // namespace octopair
+}  // namespace octopair::detail

@@ -31,14 +31,14 @@ struct Ending {
     Passes& passes;
     PairList& held;
     ~Ending() {
-        held.storage().reset();
+        detail::storage_of(held).reset();
         passes.end();
     }
 };
 
 }  // namespace
 
-Summary Search::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
+Summary Search::run(const detail::Request& request, const detail::Output& output, const detail::Control& control) {
     const BoxSource source(request.first, request.second, request.options.margin);
     Progress progress(control.progress);
     Call call{request, output, source, {}, progress, {}};
@@ -70,7 +70,7 @@ void Search::count(Call& call) {
 
 void Search::find_octal(Call& call) {
     if (call.output.list != nullptr && !call.request.options.limit) {
-        PairList::Storage& list = call.output.list->storage();
+        detail::PairStorage& list = detail::storage_of(*call.output.list);
         passes_.list_octal(call, list, 1);
         call.summary.pairs = list.size;
         return;
@@ -86,15 +86,15 @@ void Search::find_octal(Call& call) {
 void Search::find_ascending(Call& call) {
     const ObjectRange all{0, call.source.size()};
     if (call.output.list != nullptr && !call.request.options.limit) {
-        PairList::Storage& list = call.output.list->storage();
+        detail::PairStorage& list = detail::storage_of(*call.output.list);
         passes_.list_ascending(call, list, {all, all.end}, 1);
         call.summary.pairs = list.size;
         return;
     }
     Receiver receiver(call.output, call.request.options.limit);
-    held_.storage().reset();
+    detail::storage_of(held_).reset();
     try {
-        passes_.list_ascending(call, held_.storage(), {all, all.end, call.buffer_pairs()}, collected);
+        passes_.list_ascending(call, detail::storage_of(held_), {all, all.end, call.buffer_pairs()}, collected);
     } catch (const OverBudget&) {
         count_path(Path::buffer_over);
         return find_windows(call, receiver);
@@ -104,18 +104,18 @@ void Search::find_ascending(Call& call) {
 
 /// To `held_`, with room for pairs that were counted.
 void Search::collect_counted(Call& call, const AscendingBounds& bounds, double progress) {
-    held_.storage().reset();
+    detail::storage_of(held_).reset();
     try {
-        passes_.list_ascending(call, held_.storage(), bounds, progress);
+        passes_.list_ascending(call, detail::storage_of(held_), bounds, progress);
     } catch (const OverBudget&) {
         throw Error(ErrorCode::engine_failed, "more pairs were found than had been counted");
     }
 }
 
 void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
-    call.progress.stage(progress, held_.storage().size);
+    call.progress.stage(progress, detail::storage_of(held_).size);
     receive(call, receiver, [&] {
-        for (auto chunk : held_.storage().chunks) {
+        for (auto chunk : detail::storage_of(held_).chunks) {
             while (!chunk.empty()) {
                 const auto some = chunk.first(std::min(chunk.size(), tuning().output.handed_out));
                 receiver.take(some);

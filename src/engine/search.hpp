@@ -24,8 +24,8 @@ class Receiver;
 
 /// What one call needs, beside the engine's own memory.
 struct Call {
-    const Engine::Request& request;
-    const Engine::Output& output;
+    const detail::Request& request;
+    const detail::Output& output;
     const BoxSource& source;
     std::stop_source stop;  ///< asked to stop by the caller, and where a pass fails or is abandoned
     Progress& progress;
@@ -52,18 +52,18 @@ public:
     /// The pairs of each object as `a`.
     virtual void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) = 0;
     /// Appends to an empty list.
-    virtual void list_octal(Call& call, PairList::Storage& list, double progress) = 0;
+    virtual void list_octal(Call& call, detail::PairStorage& list, double progress) = 0;
     /// Holds at most call.buffer_pairs(). What `deliver` throws ends the pass and is passed on.
     virtual void stream_octal(Call& call, const Deliver& deliver, double progress) = 0;
     /// Appends to an empty list; throws OverBudget where the bounds say so.
-    virtual void list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds,
+    virtual void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
                                 double progress) = 0;
 };
 
 class Search {
 public:
     explicit Search(Passes& passes) : passes_(passes) {}
-    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control);
 
 private:
     void find(Call& call);

@@ -39,7 +39,7 @@ Summary VerifiedCall::run(unsigned threads, const Run& run) {
     };
     const double half = is_stream() && kind() == ResultKind::ascending ? streamed : found;
     const ProgressSink progress = part(0, half);
-    Engine::Output output = output_;
+    detail::Output output = output_;
     if (is_stream()) output.sink = &checked;
     Summary summary = run(request_, output, {control_.stop, progress});
     summary.seconds = std::max(0.0, summary.seconds - verifier.seconds());

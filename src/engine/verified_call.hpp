@@ -13,9 +13,9 @@ namespace octopair {
 
 class VerifiedCall {
 public:
-    using Run = std::function<Summary(const Engine::Request&, const Engine::Output&, const Engine::Control&)>;
+    using Run = std::function<Summary(const detail::Request&, const detail::Output&, const detail::Control&)>;
 
-    VerifiedCall(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control)
+    VerifiedCall(const detail::Request& request, const detail::Output& output, const detail::Control& control)
         : request_(request), output_(output), control_(control) {}
 
     /// Calls `run` once. `threads` of this process check; 0: one per core. Throws what `run` throws, and
@@ -28,9 +28,9 @@ private:
     ProgressSink part(double begin, double end) const;
     Verification check_list(Verifier& verifier, const Summary& summary);
 
-    const Engine::Request& request_;
-    const Engine::Output& output_;
-    const Engine::Control& control_;
+    const detail::Request& request_;
+    const detail::Output& output_;
+    const detail::Control& control_;
 };
 
 }  // namespace octopair

@@ -131,7 +131,7 @@ double reach(const ConvexSolid& solid) {
     }
 }
 
-ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>& vertices) {
+ShapeBounds bounds_of(const detail::PreparedShape& made, const std::vector<Point3d>& vertices) {
     const ConvexSolid& solid = made.convex;
     if (vertices.empty() && !solid.exists()) return {};
     ShapeBounds bounds;
@@ -154,7 +154,7 @@ ShapeBounds bounds_of(const Geometry::Prepared& made, const std::vector<Point3d>
 Geometry::Geometry(shape::Any shape) {
     const FloatingPointScope scope;
     std::visit([](const auto& one) { check_shape(one); }, shape);
-    auto made = std::make_shared<Prepared>();
+    auto made = std::make_shared<detail::PreparedShape>();
     made->shape = std::move(shape);
     made->convex = make_convex_solid(made->shape);
     const std::vector<Point3d> vertices = vertices_of(made->shape);
@@ -169,5 +169,7 @@ Geometry::Geometry(shape::Any shape) {
 }
 
 const shape::Any& Geometry::shape() const { return prepared_->shape; }
+
+const detail::PreparedShape& detail::prepared(const Geometry& geometry) { return *geometry.prepared_; }
 
 }  // namespace octopair

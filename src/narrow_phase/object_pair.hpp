@@ -14,7 +14,7 @@
 namespace octopair {
 
 struct PosedObject {
-    const Geometry::Prepared& geometry;
+    const detail::PreparedShape& geometry;
     const Pose& pose;
 };
 

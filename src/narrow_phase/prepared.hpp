@@ -1,4 +1,4 @@
-// Geometry::Prepared: a shape with all that the exact stages make of it once, to be shared by its objects.
+// PreparedShape: a shape with all that the exact stages make of it once, to be shared by its objects.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct ShapeBounds {
     bool bounded = false;
 };
 
-struct Geometry::Prepared {
+struct detail::PreparedShape {
     shape::Any shape;
     ShapeBounds bounds;
     ConvexSolid convex;     ///< exists for all but planes and meshes

@@ -39,7 +39,7 @@ void widen(Box3d& box, int axis, double by) {
     box.max[axis] = std::nextafter(box.max[axis] + by, infinity);
 }
 
-Box3d box_by_support(const Geometry::Prepared& shape, const Pose& pose) {
+Box3d box_by_support(const detail::PreparedShape& shape, const Pose& pose) {
     const Box3d& local = shape.bounds.box;
     Box3d box = shape.vertices.empty() ? Box3d{} : shape.vertices.world_box(pose);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -59,12 +59,12 @@ Box3d box_by_support(const Geometry::Prepared& shape, const Pose& pose) {
     return box;
 }
 
-Box3d box_at(const Geometry::Prepared& shape, const Pose& pose) {
+Box3d box_at(const detail::PreparedShape& shape, const Pose& pose) {
     if (shape.convex.exists()) return box_by_support(shape, pose);
     return shape.vertices.empty() ? around(vector::place(pose)) : shape.vertices.world_box(pose);
 }
 
-Box3d swept_box(const Geometry::Prepared& shape, const Motion& motion) {
+Box3d swept_box(const detail::PreparedShape& shape, const Motion& motion) {
     Box3d box = box_at(shape, motion.at(0));
     unite(box, box_at(shape, motion.at(1)));
     const int steps = 1 + int(motion.angle() * 8);
@@ -89,7 +89,7 @@ std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<
     std::vector<Box3d> boxes(objects.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (plane_of(objects, i)) continue;
-        const Geometry::Prepared& shape = objects.geometries[objects.geometry[i]].prepared();
+        const detail::PreparedShape& shape = detail::prepared(objects.geometries[objects.geometry[i]]);
         boxes[i] = objects.end_poses.empty()
                        ? box_at(shape, objects.poses[i])
                        : swept_box(shape, *Motion::between(objects.poses[i], objects.end_poses[i]));

@@ -6,9 +6,9 @@
 
 #include "octopair/pipeline.hpp"
 
-namespace octopair {
+namespace octopair::detail {
 
-struct Batch::Access {
+struct BatchAccess {
     /// Empties it for other pairs; its memory is kept.
     static void restart(Batch& batch, const std::stop_token& stop) {
         batch.pairs_.clear();
@@ -27,4 +27,4 @@ struct Batch::Access {
     }
 };
 
-}  // namespace octopair
+}  // namespace octopair::detail

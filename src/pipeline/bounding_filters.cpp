@@ -38,7 +38,7 @@ struct Ball {
     double slack;  ///< what rounding may add to how far things reach
 };
 
-Ball ball_of(const Geometry::Prepared& shape, const Pose& pose) {
+Ball ball_of(const detail::PreparedShape& shape, const Pose& pose) {
     const ShapeBounds& bounds = shape.bounds;
     const double stretch = std::max(stretch_of(pose), shape.convex.radius > 0 ? 1.0 : 0.0);
     Ball ball = {vector::posed(pose, bounds.centre), stretch * bounds.radius, 0};
@@ -48,7 +48,7 @@ Ball ball_of(const Geometry::Prepared& shape, const Pose& pose) {
 }
 
 /// Half the edges of a posed box.
-std::array<Point3d, 3> half_edges(const Geometry::Prepared& shape, const Pose& pose) {
+std::array<Point3d, 3> half_edges(const detail::PreparedShape& shape, const Pose& pose) {
     const Box3d& box = shape.bounds.box;
     // Radii are not posed, so a pose that is a turn but for 1e-6 makes them no smaller.
     constexpr double off_turn = 4e-6;
@@ -67,13 +67,13 @@ double reach_along(const std::array<Point3d, 3>& edges, const Point3d& unit) {
 
 /// Both objects of a pair.
 struct Couple {
-    const Geometry::Prepared &a, &b;
+    const detail::PreparedShape &a, &b;
     const Pose &pose_a, &pose_b;
     const Pose *end_a, *end_b;  ///< or null
     double reach;               ///< margin and paddings
 };
 
-const shape::Plane* plane_of(const Geometry::Prepared& shape) { return std::get_if<shape::Plane>(&shape.shape); }
+const shape::Plane* plane_of(const detail::PreparedShape& shape) { return std::get_if<shape::Plane>(&shape.shape); }
 
 /// Whether a plane is further than `reach` from a ball, or from a box at its centre.
 bool plane_apart(const PosedPlane& plane, const Ball& ball, double thick, double reach) {
@@ -138,7 +138,7 @@ enum class Hull : std::uint8_t { ball, box };
 
 bool with_plane_apart(const Couple& couple, Hull hull) {
     const bool first = plane_of(couple.a) != nullptr;
-    const Geometry::Prepared& other = first ? couple.b : couple.a;
+    const detail::PreparedShape& other = first ? couple.b : couple.a;
     const Pose& pose = first ? couple.pose_b : couple.pose_a;
     const PosedPlane plane = posed_plane(*plane_of(first ? couple.a : couple.b), first ? couple.pose_a : couple.pose_b);
     const Ball ball = ball_of(other, pose);
@@ -174,8 +174,8 @@ public:
     }
 
 private:
-    static const Geometry::Prepared& shape_of(const ShapedObjects& objects, std::uint32_t i) {
-        return objects.geometries[objects.geometry[i]].prepared();
+    static const detail::PreparedShape& shape_of(const ShapedObjects& objects, std::uint32_t i) {
+        return detail::prepared(objects.geometries[objects.geometry[i]]);
     }
     static const Pose* end_of(const ShapedObjects& objects, std::uint32_t i) {
         return objects.end_poses.empty() ? nullptr : &objects.end_poses[i];

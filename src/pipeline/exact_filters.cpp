@@ -35,8 +35,8 @@ public:
     double padding(const Pair& pair) const { return padding_of(first_, pair.a) + padding_of(second_, pair.b); }
 
 private:
-    static const Geometry::Prepared& prepared(const ShapedObjects& objects, std::uint32_t i) {
-        return objects.geometries[objects.geometry[i]].prepared();
+    static const detail::PreparedShape& prepared(const ShapedObjects& objects, std::uint32_t i) {
+        return detail::prepared(objects.geometries[objects.geometry[i]]);
     }
     static MovingObject moving(const ShapedObjects& objects, std::uint32_t i) {
         const Pose& begin = objects.poses[i];
@@ -65,7 +65,7 @@ struct Moment {
 
     double time;
     Pose pose_a, pose_b;
-    const Geometry::Prepared &geometry_a, &geometry_b;
+    const detail::PreparedShape &geometry_a, &geometry_b;
 };
 
 struct MovingPair {

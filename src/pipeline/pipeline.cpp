@@ -82,7 +82,7 @@ public:
             if (filling_ == nullptr) begin_block();
             const std::size_t held = filling_->batch.pairs().size();
             const auto some = pairs.first(std::min(pairs.size(), goal_ - held));
-            Batch::Access::append(filling_->batch, some);
+            detail::BatchAccess::append(filling_->batch, some);
             pairs = pairs.subspan(some.size());
             if (held + some.size() == goal_) end_block();
         }
@@ -111,7 +111,7 @@ private:
 
     void begin_block() {
         filling_ = &row_.room();
-        Batch::Access::restart(filling_->batch, abandon_.get_token());
+        detail::BatchAccess::restart(filling_->batch, abandon_.get_token());
         goal_ = size_.pairs();
     }
 
@@ -139,7 +139,7 @@ private:
         count(block);
         Batch& batch = block.batch;
         const bool too_many = batch.pairs().size() > left_;
-        if (too_many) Batch::Access::cut(batch, std::size_t(left_));
+        if (too_many) detail::BatchAccess::cut(batch, std::size_t(left_));
         left_ -= batch.pairs().size();
         summary_.collisions += batch.pairs().size();
         if (sink_ && !batch.pairs().empty()) sink_(batch);

@@ -56,7 +56,7 @@ private:
 /// Fills a list, in blocks of the memory that it has.
 class Writer {
 public:
-    explicit Writer(PairList& list) : storage_(list.storage()) { storage_.reset(); }
+    explicit Writer(PairList& list) : storage_(detail::storage_of(list)) { storage_.reset(); }
 
     void add(std::span<const Pair> pairs) {
         while (!pairs.empty()) {
@@ -77,7 +77,7 @@ private:
         used_ = 0;
     }
 
-    PairList::Storage& storage_;
+    detail::PairStorage& storage_;
     std::span<Pair> block_;
     std::size_t used_ = 0;
 };
@@ -151,8 +151,8 @@ private:
 }  // namespace
 
 PairHistory::PairHistory(Room room) : room_(std::move(room)) {
-    list_.storage().ask(room_);
-    other_.storage().ask(room_);
+    detail::storage_of(list_).ask(room_);
+    detail::storage_of(other_).ask(room_);
 }
 
 void PairHistory::note(std::vector<Pair>& changes, const Pair& pair) const {

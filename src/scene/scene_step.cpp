@@ -88,7 +88,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     planted_ = fresh_ = false;
     const SceneSource source(objects_.table(), margin_);
     build(source, stop);
-    PairList::Storage& fresh = history_.fresh().storage();
+    detail::PairStorage& fresh = detail::storage_of(history_.fresh());
     fresh.reset();
     AscendingExecutor ascending(team_, fresh, {{0, objects_.table().indices()}, objects_.table().indices()});
     scan(linear_, {source, stop}, ascending, {});

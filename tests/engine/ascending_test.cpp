@@ -31,7 +31,7 @@ std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::si
 std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingBounds& bounds) {
     Team team(threads);
     PairList list;
-    AscendingExecutor executor(team, list.storage(), bounds);
+    AscendingExecutor executor(team, detail::storage_of(list), bounds);
     executor.for_each_writing(100, [&](std::size_t i, PairWriter& writer) {
         const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
         writer.write(std::span(pairs).subspan(begin, end - begin));

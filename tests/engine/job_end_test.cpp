@@ -155,13 +155,13 @@ TEST(JobEnds, SeveralCancelAtOnceWhileOthersWait) {
 TEST(JobEnds, ManyCancelledJobsDoNotStayInTheQueue) {
     const auto engine = make_local_engine(1);
     HeldJob held(*engine);  // keeps the first of the following from its turn
-    JobQueue queue(*engine);
+    detail::JobQueue queue(*engine);
     std::vector<Job> kept;
-    std::vector<std::weak_ptr<Job::Task>> cancelled;
+    std::vector<std::weak_ptr<detail::JobTask>> cancelled;
     for (int i = 0; i < 4000; ++i) {
-        const auto task = std::make_shared<Job::Task>(Job::Task::Work{touching_boxes, {}, {}});
+        const auto task = std::make_shared<detail::JobTask>(detail::JobTask::Work{touching_boxes, {}, {}});
         queue.add(task);
-        Job job(task);
+        Job job = detail::make_job(task);
         if (i % 40 == 0) {
             kept.push_back(std::move(job));
         } else {

@@ -290,12 +290,14 @@ public:
     explicit FailingEngine(std::exception_ptr what) : what_(what) {}
 
 private:
-    Summary run(const Request&, const Output&, const Control&) override { std::rethrow_exception(what_); }
-    JobQueue& jobs() override { return jobs_; }
+    Summary run(const detail::Request&, const detail::Output&, const detail::Control&) override {
+        std::rethrow_exception(what_);
+    }
+    detail::JobQueue& jobs() override { return jobs_; }
     std::shared_ptr<void> allocate(std::size_t) override { std::rethrow_exception(what_); }
 
     std::exception_ptr what_;
-    JobQueue jobs_{*this};
+    detail::JobQueue jobs_{*this};
 };
 
 TEST(Jobs, WhatAnEngineThrowsFailsThem) {

@@ -43,7 +43,7 @@ public:
     Pair named = {};  ///< that is given twice or is missing
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         Options options = request.options;
         options.verify = false;
         PairList found;
@@ -55,16 +55,16 @@ private:
         if (wrong == Wrong::missing) pairs.erase(place);
         summary.pairs = pairs.size() + (wrong == Wrong::counted ? 1 : 0);
         if (output.list != nullptr) {
-            PairList::Storage& list = output.list->storage();
+            detail::PairStorage& list = detail::storage_of(*output.list);
             list.append(list.copy(pairs));
         }
         if (output.sink != nullptr) (*output.sink)(pairs);
         return summary;
     }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
 
     std::unique_ptr<Engine> inner_ = make_local_engine(1);
-    JobQueue jobs_{*this};
+    detail::JobQueue jobs_{*this};
 };
 
 class VerifiedWrongEngine : public ::testing::TestWithParam<Order> {

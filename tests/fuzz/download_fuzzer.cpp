@@ -52,14 +52,14 @@ void feed(std::string_view input, Received& received) {
     }
 }
 
-Outcome outcome_of(std::string_view input, const Engine::Output& output) {
+Outcome outcome_of(std::string_view input, const detail::Output& output) {
     const std::string server = "server";
     double last = 0;
     const ProgressSink progress = [&](double done) {
         require(done >= last && done <= 1);
         last = done;
     };
-    const Engine::Control control{{}, progress};
+    const detail::Control control{{}, progress};
     Received received(server, output, control);
     Outcome outcome;
     try {

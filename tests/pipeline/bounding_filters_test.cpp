@@ -38,7 +38,7 @@ struct Crowd {
         }
     }
     ShapedObjects all() const { return {geometries, geometry, poses, end_poses, padding}; }
-    const ConvexSolid& solid(std::size_t i) const { return geometries[geometry[i]].prepared().convex; }
+    const ConvexSolid& solid(std::size_t i) const { return detail::prepared(geometries[geometry[i]]).convex; }
 };
 
 std::vector<Pair> left_by(std::unique_ptr<Filter> filter, const Crowd& crowd) {

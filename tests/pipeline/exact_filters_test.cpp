@@ -35,7 +35,7 @@ struct Scene {
         poses.push_back(pose);
     }
     ShapedObjects objects() const { return {geometries, geometry, poses, end_poses, padding}; }
-    PosedObject object(std::uint32_t i) const { return {geometries[geometry[i]].prepared(), poses[i]}; }
+    PosedObject object(std::uint32_t i) const { return {detail::prepared(geometries[geometry[i]]), poses[i]}; }
 };
 
 struct Collision {

@@ -31,7 +31,7 @@ std::vector<Pair> all_pairs(bool join) {
 
 std::vector<Pair> through(const Filter& filter, bool join) {
     Batch batch;
-    Batch::Access::append(batch, all_pairs(join));
+    detail::BatchAccess::append(batch, all_pairs(join));
     filter.apply(batch);
     return {batch.pairs().begin(), batch.pairs().end()};
 }

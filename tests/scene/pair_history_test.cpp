@@ -16,7 +16,7 @@ namespace {
 using Pairs = std::vector<Pair>;
 
 void set_fresh(PairHistory& history, const Pairs& pairs) {
-    PairList::Storage& storage = history.fresh().storage();
+    detail::PairStorage& storage = detail::storage_of(history.fresh());
     storage.reset();
     storage.append(storage.copy(pairs));
 }

@@ -16,17 +16,17 @@ public:
     explicit GatedEngine(Gate& gate) : gate_(gate) {}
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         gate_.pass(control.stop);
         const PairSink sink = output.sink != nullptr ? *output.sink : PairSink();
         const Input input(request.first, request.second != nullptr ? std::optional(*request.second) : std::nullopt);
         return inner_->stream_pairs(input, sink, request.options, control.stop);
     }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
 
     Gate& gate_;
     std::unique_ptr<Engine> inner_ = make_local_engine(1);
-    JobQueue jobs_{*this};
+    detail::JobQueue jobs_{*this};
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ ToldSlice told_of(const Objects* set) {
     return {set->size(), std::holds_alternative<std::span<const Box3d>>(set->boxes), !set->padding.empty()};
 }
 
-ToldCall told_of(const Engine::Request& request, Outlet outlet) {
+ToldCall told_of(const detail::Request& request, Outlet outlet) {
     const Options& options = request.options;
     return {.outlet = outlet,
             .order = options.order,
@@ -88,7 +88,7 @@ void check_likeness(const std::vector<ToldCall>& all) {
 }
 
 /// The median of the same corners that the local engine would take.
-void choose_origin(Communicator& comm, const Engine::Request& request, JointCall& call) {
+void choose_origin(Communicator& comm, const detail::Request& request, JointCall& call) {
     const BoxSource own(request.first, request.second, call.form);
     const OriginSample sample{std::size_t(call.objects())};
     std::vector<OriginSample::Corner> corners;
@@ -107,8 +107,8 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
         [&](std::size_t number) { return named_from(number); });
 }
 
-JointCall join_call(Communicator& comm, const Engine::Request& request, Outlet outlet, std::uint64_t most_objects) {
-    Agreement(comm).together([&] { check_request(request); });
+JointCall join_call(Communicator& comm, const detail::Request& request, Outlet outlet, std::uint64_t most_objects) {
+    Agreement(comm).together([&] { detail::check_request(request); });
     const std::vector<ToldCall> all = comm.all_gather(told_of(request, outlet));
     check_likeness(all);
     JointCall call;

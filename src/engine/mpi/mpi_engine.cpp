@@ -42,12 +42,12 @@ public:
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         PairList all;
-        search_.gather(pairs, all.storage());
+        search_.gather(pairs, detail::storage_of(all));
         pairs = std::move(all);
     }
 
     // NOLINTNEXTLINE(readability-function-size): what, where to, until when.
-    Summary find(const Request& request, const IndexedCall& indexed, const Control& control) {
+    Summary find(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         return search_.run(request, indexed, control);
@@ -58,14 +58,14 @@ public:
 
 private:
     /// Jobs that were submitted before come first, on all ranks.
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         return search_.run(request, output, control);
     }
     /// All ranks must hear of it: run() does that.
-    void check(const Request&) const override {}
-    JobQueue& jobs() override {
+    void check(const detail::Request&) const override {}
+    detail::JobQueue& jobs() override {
         if (!comm_.any_thread()) {
             throw Error(ErrorCode::usage, "jobs of an MPI engine need MPI_Init_thread with MPI_THREAD_MULTIPLE");
         }
@@ -75,7 +75,7 @@ private:
     Communicator comm_;
     RankSearch search_;
     std::mutex calls_;
-    JobQueue jobs_{*this, [this] { search_.skip(); }};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this, [this] { search_.skip(); }};  // the last, so that it ends first
 };
 
 }  // namespace
@@ -99,7 +99,7 @@ void gather_pairs(Engine& engine, PairList& pairs) { as_ranks(dynamic_cast<MpiEn
 namespace {
 
 /// With no half-filled list after a failure, and running out of memory an Error like any other.
-Summary find_indexed(Engine& engine, const Engine::Request& request, const IndexedCall& indexed, std::stop_token stop) {
+Summary find_indexed(Engine& engine, const detail::Request& request, const IndexedCall& indexed, std::stop_token stop) {
     const FloatingPointScope scope;
     MpiEngine& ranks = as_ranks(dynamic_cast<MpiEngine*>(&engine));
     indexed.pairs.clear();

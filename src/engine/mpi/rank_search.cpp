@@ -36,7 +36,7 @@ RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::funct
     if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
 }
 
-Summary RankSearch::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
+Summary RankSearch::run(const detail::Request& request, const detail::Output& output, const detail::Control& control,
                         Recipients recipients) {
     Task task(*this, request, output, control.progress);
     task.recipients = recipients;
@@ -44,17 +44,17 @@ Summary RankSearch::run(const Engine::Request& request, const Engine::Output& ou
     return run(task, control);
 }
 
-Summary RankSearch::run(const Engine::Request& request, const IndexedCall& indexed, const Engine::Control& control) {
-    const Engine::Output none;
+Summary RankSearch::run(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
+    const detail::Output none;
     Task task(*this, request, none, control.progress);
     task.indexed = &indexed;
     return run(task, control);
 }
 
-Summary RankSearch::run(Task& task, const Engine::Control& control) {
+Summary RankSearch::run(Task& task, const detail::Control& control) {
     const std::stop_callback forward(control.stop, [&] { task.stop.request_stop(); });
     const auto end = [&] {
-        found_.storage().reset();
+        detail::storage_of(found_).reset();
         task.stops.end();
     };
     try {
@@ -64,7 +64,7 @@ Summary RankSearch::run(Task& task, const Engine::Control& control) {
         find(task);
         if (task.recipients == Recipients::first && task.output.list != nullptr) {
             PairList all;
-            gather(*task.output.list, all.storage());
+            gather(*task.output.list, detail::storage_of(all));
             *task.output.list = std::move(all);
         }
         const Traffic& after = comm_.traffic();
@@ -97,7 +97,7 @@ void RankSearch::join(Task& task) {
     if (task.indexed != nullptr && master_)
         throw Error(ErrorCode::usage, "no pairs of 64 bits in the paper's arrangement");
     const Metered metered(comm_, costs_.join);
-    const Engine::Request& asked = task.request;
+    const detail::Request& asked = task.request;
     const Outlet outlet = task.indexed != nullptr ? Outlet::list : outlet_of(task.output);
     const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : most_objects;
     task.joint = join_call(comm_, asked, outlet, most);
@@ -115,7 +115,7 @@ void RankSearch::join(Task& task) {
 }
 
 void RankSearch::find(Task& task) {
-    const Engine::Request& asked = task.request;
+    const detail::Request& asked = task.request;
     join(task);
     costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
     if (master_) return find_at_master(task);
@@ -204,7 +204,7 @@ void RankSearch::exchange_objects(Task& task, const Routing& routing) {
     }
 }
 
-void RankSearch::search(Task& task, const Engine::Request& own_octants) {
+void RankSearch::search(Task& task, const detail::Request& own_octants) {
     const BoxSource source(own_octants.first, own_octants.second, task.joint.form);
     // Its own stop: where this rank's part of a pass is abandoned, as at a limit, the others' are not.
     Call call{own_octants, task.output, source, {}, task.progress, {}};
@@ -237,7 +237,7 @@ std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, c
 
 /// What `give` hands over, up to so many pairs; returns how many.
 template <typename Give>
-std::uint64_t receive(const Engine::Output& output, std::uint64_t allowance, const Give& give) {
+std::uint64_t receive(const detail::Output& output, std::uint64_t allowance, const Give& give) {
     Receiver receiver(output, allowance);
     try {
         give(receiver);
@@ -268,12 +268,12 @@ void RankSearch::find_indexed(Task& task, Call& call) {
     task.agreement.together([&] {
         build(task, call);
         const Metered metered(comm_, costs_.scan);
-        passes_.list_octal(call, found_.storage(), 1);
+        passes_.list_octal(call, detail::storage_of(found_), 1);
         const auto indices = [&](unsigned set) {
             return comm_.size() == 1 ? task.joint.indices[set] : std::as_const(received_[set].indices).span();
         };
         name_pairs(found_, indices(0), indices(task.joint.join ? 1 : 0), pairs);
-        found_.storage().reset();
+        detail::storage_of(found_).reset();
     });
     if (options.order == Order::ascending) {
         const Metered metered(comm_, costs_.order);
@@ -291,7 +291,7 @@ void RankSearch::deliver(Task& task, std::uint64_t allowance, const Give& give) 
     }
 }
 
-void RankSearch::gather(PairList& piece, PairList::Storage& all) {
+void RankSearch::gather(PairList& piece, detail::PairStorage& all) {
     RankCounts to_first(comm_.size(), 0);
     to_first[0] = piece.size();
     const Exchange counts = comm_.plan_exchange(std::move(to_first));
@@ -365,7 +365,7 @@ void RankSearch::find_octal(Task& task, Call& call) {
             build_first();
             const Metered metered(comm_, costs_.scan);
             if (task.output.list != nullptr && !limit) {
-                passes_.list_octal(call, task.output.list->storage(), 1);
+                passes_.list_octal(call, detail::storage_of(*task.output.list), 1);
                 pairs = task.output.list->size();
             } else {
                 pairs = receive(task.output, allowance, stream);
@@ -405,7 +405,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     if (comm_.size() == 1 && whole) {
         task.agreement.together([&] { build(task, call); });
         const Metered metered(comm_, costs_.scan);
-        PairList::Storage& list = task.output.list->storage();
+        detail::PairStorage& list = detail::storage_of(*task.output.list);
         const std::uint64_t rows = task.joint.totals[0];
         passes_.list_ascending(call, list, {{0, rows}, task.joint.columns()}, 1);
         (void)octopair::allowed({list.size}, 0, task.request.options, task.summary);
@@ -425,7 +425,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     const std::uint64_t allowance = allowed(task, plan);
     PairList sorted;
     PairList& piece = whole ? *task.output.list : sorted;
-    pieces.bring_together(found_, plan, 0, piece.storage(), task.stop.get_token());
+    pieces.bring_together(found_, plan, 0, detail::storage_of(piece), task.stop.get_token());
     if (!whole) deliver(task, allowance, hand_out(piece));
 }
 
@@ -433,7 +433,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
 bool RankSearch::list_octal(Call& call, std::uint64_t most) {
     // A list that keeps memory from an earlier call fills it unasked, so its size would not be bounded.
     if (most < ~std::uint64_t(0)) found_ = PairList();
-    PairList::Storage& list = found_.storage();
+    detail::PairStorage& list = detail::storage_of(found_);
     std::uint64_t bytes = 0;
     list.ask([&](std::uint64_t more) {
         bytes += more;
@@ -454,7 +454,7 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
 void RankSearch::find_windows(Task& task, Call& call) {
     const RowBins bins(task.joint.totals[0]);
     std::vector<std::uint64_t> counts;
-    found_.storage().reset();  // on this rank they may have fitted
+    detail::storage_of(found_).reset();  // on this rank they may have fitted
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.scan);
         counts.resize(bins.size(), 0);
@@ -478,9 +478,9 @@ void RankSearch::find_windows(Task& task, Call& call) {
             const Metered metered(comm_, costs_.scan);
             marks = plan.marks(window);
             passes_.want({bins, marks});
-            passes_.list_octal(call, found_.storage(), 0.5 + 0.5 * double(window + 1) / double(windows));
+            passes_.list_octal(call, detail::storage_of(found_), 0.5 + 0.5 * double(window + 1) / double(windows));
         });
-        pieces.bring_together(found_, plan, window, sorted.storage(), task.stop.get_token());
+        pieces.bring_together(found_, plan, window, detail::storage_of(sorted), task.stop.get_token());
         deliver(task, plan.allowed(comm_.rank(), window, limit), hand_out(sorted));
     }
 }

@@ -49,14 +49,14 @@ public:
 
     /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. Of the recipients that a list
     /// or a sink is given on all ranks for, the first rank alone may get pairs.
-    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control,
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control,
                 Recipients recipients = Recipients::all);
     /// The same of an indexed call, whose `pairs` are the output of all ranks.
-    Summary run(const Engine::Request& request, const IndexedCall& indexed, const Engine::Control& control);
+    Summary run(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control);
     /// In place of run() on a rank whose call was cancelled before it began: ends it on all. Does not throw.
     void skip() noexcept;
     /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
-    void gather(PairList& piece, PairList::Storage& all);
+    void gather(PairList& piece, detail::PairStorage& all);
     /// Of the last run().
     const RankCosts& costs() const { return costs_; }
 
@@ -65,14 +65,14 @@ private:
     /// Hands this rank's pairs to a receiver.
     using Give = std::function<void(Receiver&)>;
     struct OctalPairs;
-    Summary run(Task& task, const Engine::Control& control);
+    Summary run(Task& task, const detail::Control& control);
     void find(Task& task);
     void join(Task& task);
     void find_at_master(Task& task);
     PlantedOctants plant(Task& task, const BoxSource& own);
     RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
     void exchange_objects(Task& task, const Routing& routing);
-    void search(Task& task, const Engine::Request& own_octants);
+    void search(Task& task, const detail::Request& own_octants);
     void build(Task& task, Call& call);
     void count(Task& task, Call& call);
     void find_octal(Task& task, Call& call);

@@ -15,7 +15,7 @@
 namespace octopair {
 
 struct RankSearch::Task {
-    Task(RankSearch& search, const Engine::Request& asked, const Engine::Output& out, const ProgressSink& sink)
+    Task(RankSearch& search, const detail::Request& asked, const detail::Output& out, const ProgressSink& sink)
         : request(asked),
           output(out),
           told(sink),
@@ -24,8 +24,8 @@ struct RankSearch::Task {
           progress(sink),
           order(search.comm_) {}
 
-    const Engine::Request& request;
-    const Engine::Output& output;
+    const detail::Request& request;
+    const detail::Output& output;
     const IndexedCall* indexed = nullptr;
     Recipients recipients = Recipients::all;
     const ProgressSink& told;

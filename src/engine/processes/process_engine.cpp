@@ -41,12 +41,12 @@ public:
     WorkerFaults faults() const { return crew_.faults(); }
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         const Turns::Turn turn(turns_, control.stop);
         return search_.run(request, output, control);
     }
     std::shared_ptr<void> allocate(std::size_t bytes) override { return SharedArrays::allocate(arrays_, bytes); }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
     unsigned verification_threads() const override { return passes_->width(); }
 
     Turns turns_;
@@ -54,18 +54,18 @@ private:
     Crew crew_;
     std::unique_ptr<Passes> passes_;
     Search search_;
-    JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options, const char* packaged_worker) {
+std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options, detail::PackagedWorker package) {
     const FloatingPointScope scope;
-    return std::make_unique<ProcessEngine>(options, packaged_worker);
+    return std::make_unique<ProcessEngine>(options, package.path);
 }
 
-std::unique_ptr<Engine> make_process_engine(unsigned workers, const char* packaged_worker) {
-    return make_process_engine(ProcessOptions{.workers = workers}, packaged_worker);
+std::unique_ptr<Engine> make_process_engine(unsigned workers, detail::PackagedWorker package) {
+    return make_process_engine(ProcessOptions{.workers = workers}, package);
 }
 
 WorkerFaults worker_faults(const Engine& engine) {

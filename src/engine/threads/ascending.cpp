@@ -15,7 +15,7 @@ namespace {
 class ListPages final : public Pages {
 public:
     /// `left` is how many pages all threads together may still take from the list.
-    ListPages(PairList::Storage& list, std::atomic<std::int64_t>& left) : list_(list), left_(left) {}
+    ListPages(detail::PairStorage& list, std::atomic<std::int64_t>& left) : list_(list), left_(left) {}
 
 private:
     Pair* fresh() override {
@@ -27,14 +27,14 @@ private:
         return page;
     }
 
-    PairList::Storage& list_;
+    detail::PairStorage& list_;
     std::atomic<std::int64_t>& left_;
     std::span<Pair> block_;
 };
 
 /// What one thread needs.
 struct Worker {
-    Worker(const BucketPlan& plan, PairList::Storage& list, std::atomic<std::int64_t>& pages_left)
+    Worker(const BucketPlan& plan, detail::PairStorage& list, std::atomic<std::int64_t>& pages_left)
         : pages(list, pages_left), found(plan.buckets()), sort(plan, pages) {}
 
     ListPages pages;
@@ -57,7 +57,7 @@ private:
 
 class AscendingExecutor::Buckets {
 public:
-    Buckets(unsigned threads, PairList::Storage& list, const AscendingBounds& bounds)
+    Buckets(unsigned threads, detail::PairStorage& list, const AscendingBounds& bounds)
         : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.most / page_pairs())) {
         for (unsigned i = 0; i < threads; ++i) workers_.push_back(std::make_unique<Worker>(plan_, list, pages_left_));
     }
@@ -79,13 +79,13 @@ public:
     }
 
 private:
-    PairList::Storage& list_;
+    detail::PairStorage& list_;
     const BucketPlan plan_;
     std::atomic<std::int64_t> pages_left_;
     std::vector<std::unique_ptr<Worker>> workers_;
 };
 
-AscendingExecutor::AscendingExecutor(Team& team, PairList::Storage& list, const AscendingBounds& bounds)
+AscendingExecutor::AscendingExecutor(Team& team, detail::PairStorage& list, const AscendingBounds& bounds)
     : TeamExecutor(team), buckets_(std::make_unique<Buckets>(team.threads(), list, bounds)) {}
 
 AscendingExecutor::~AscendingExecutor() = default;

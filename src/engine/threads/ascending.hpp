@@ -17,7 +17,7 @@ namespace octopair {
 /// Appends the pairs whose `a` is in a range to a list, in ascending order.
 class AscendingExecutor final : public TeamExecutor {
 public:
-    AscendingExecutor(Team& team, PairList::Storage& list, const AscendingBounds& bounds);
+    AscendingExecutor(Team& team, detail::PairStorage& list, const AscendingBounds& bounds);
     ~AscendingExecutor() override;
 
     /// Throws OverBudget.

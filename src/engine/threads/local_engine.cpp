@@ -34,17 +34,17 @@ public:
     explicit LocalEngine(unsigned threads) : passes_(threads) {}
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         const Turns::Turn turn(turns_, control.stop);
         return search_.run(request, output, control);
     }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
     unsigned verification_threads() const override { return passes_.width(); }
 
     Turns turns_;
     LocalPasses passes_;
     Search search_{passes_};
-    JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ void ThreadPasses::count_by_object(Call& call, std::span<std::uint32_t> counts, 
     scan_into(call, executor, progress);
 }
 
-void ThreadPasses::list_octal(Call& call, PairList::Storage& list, double progress) {
+void ThreadPasses::list_octal(Call& call, detail::PairStorage& list, double progress) {
     ListExecutor executor(team_, list);
     scan_into(call, executor, progress);
 }
@@ -38,7 +38,8 @@ void ThreadPasses::stream_octal(Call& call, const Deliver& deliver, double progr
     scan_into(call, executor, progress);
 }
 
-void ThreadPasses::list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) {
+void ThreadPasses::list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
+                                  double progress) {
     AscendingExecutor executor(team_, list, bounds);
     scan_into(call, executor, progress);
     const Timed timed(call.summary.steps.scan);

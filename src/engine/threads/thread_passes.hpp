@@ -15,9 +15,9 @@ public:
     unsigned width() const override { return team_.threads(); }
     std::uint64_t count(Call& call, double progress) override;
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
-    void list_octal(Call& call, PairList::Storage& list, double progress) override;
+    void list_octal(Call& call, detail::PairStorage& list, double progress) override;
     void stream_octal(Call& call, const Deliver& deliver, double progress) override;
-    void list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) override;
+    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
 
 protected:
     Team& team() { return team_; }

@@ -63,7 +63,7 @@ void CountByObjectExecutor::for_each_writing(std::size_t count,
 /// Writes one share into its worker's block, and into further ones; remembers the runs that it wrote.
 class ListExecutor::Writer final : public FullWriter {
 public:
-    Writer(PairList::Storage& list, std::span<Pair>& block, std::vector<std::span<const Pair>>& runs)
+    Writer(detail::PairStorage& list, std::span<Pair>& block, std::vector<std::span<const Pair>>& runs)
         : list_(list), block_(block), runs_(runs) {}
 
     void write(std::span<const Pair> pairs) override {
@@ -82,12 +82,12 @@ public:
     }
 
 private:
-    PairList::Storage& list_;
+    detail::PairStorage& list_;
     std::span<Pair>& block_;
     std::vector<std::span<const Pair>>& runs_;
 };
 
-ListExecutor::ListExecutor(Team& team, PairList::Storage& list)
+ListExecutor::ListExecutor(Team& team, detail::PairStorage& list)
     : TeamExecutor(team), list_(list), blocks_(team.threads()) {}
 
 void ListExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {

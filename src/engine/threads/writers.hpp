@@ -72,12 +72,12 @@ private:
 /// Appends the pairs to a list as they come.
 class ListExecutor final : public TeamExecutor {
 public:
-    ListExecutor(Team& team, PairList::Storage& list);
+    ListExecutor(Team& team, detail::PairStorage& list);
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
 
 private:
     class Writer;
-    PairList::Storage& list_;
+    detail::PairStorage& list_;
     std::vector<std::span<Pair>> blocks_;  // each worker's: what is free of the block in its hands
 };
 

@@ -15,7 +15,7 @@
 namespace octopair {
 
 struct MovingObject {
-    const Geometry::Prepared& geometry;
+    const detail::PreparedShape& geometry;
     Motion motion;
 };
 

@@ -18,15 +18,15 @@ public:
     }
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         const Turns::Turn turn(turns_, control.stop);
         return service::find_remotely(connection_, request, output, control);
     }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
 
     Turns turns_;
     service::Connection connection_;
-    JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 }  // namespace

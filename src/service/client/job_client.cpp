@@ -82,8 +82,8 @@ public:
         });
     }
 
-    std::string submit(const Engine::Request& request, const JobTerms& terms, const std::stop_token& stop) {
-        check_request(request);
+    std::string submit(const detail::Request& request, const JobTerms& terms, const std::stop_token& stop) {
+        detail::check_request(request);
         if (request.options.verify) {
             throw Error(ErrorCode::usage, "verify: not for a job that outlives the call; Engine::submit verifies");
         }
@@ -110,7 +110,7 @@ public:
         return report.id();
     }
 
-    Summary result(const std::string& id, const Engine::Output& output, const Engine::Control& control) {
+    Summary result(const std::string& id, const detail::Output& output, const detail::Control& control) {
         service::Received received(connection_.server(), output, control);
         const auto take = [&](grpc::ByteBuffer& message) { received.take(message); };
         connection_.persist(control.stop, [&] {
@@ -141,7 +141,7 @@ JobClient::~JobClient() = default;
 
 std::string JobClient::submit(const Input& input, const Options& options, const JobTerms& terms, std::stop_token stop) {
     const FloatingPointScope scope;
-    return state_->submit(request_of(input, options), terms, stop);
+    return state_->submit(detail::request_of(input, options), terms, stop);
 }
 
 JobStatus JobClient::status(const std::string& id, std::stop_token stop) {
@@ -196,19 +196,19 @@ std::vector<JobStatus> JobClient::list(std::stop_token stop) {
 }
 
 Summary JobClient::result(const std::string& id, PairList& pairs, const ProgressSink& progress, std::stop_token stop) {
-    pairs.storage().reset();
-    const Engine::Output output = {.list = status(id, stop).count_only ? nullptr : &pairs};
+    detail::storage_of(pairs).reset();
+    const detail::Output output = {.list = status(id, stop).count_only ? nullptr : &pairs};
     try {
         return state_->result(id, output, {stop, progress});
     } catch (...) {
-        pairs.storage().reset();
+        detail::storage_of(pairs).reset();
         throw;
     }
 }
 
 Summary JobClient::result(const std::string& id, const PairSink& sink, const ProgressSink& progress,
                           std::stop_token stop) {
-    const Engine::Output output = {.sink = status(id, stop).count_only || !sink ? nullptr : &sink};
+    const detail::Output output = {.sink = status(id, stop).count_only || !sink ? nullptr : &sink};
     return state_->result(id, output, {stop, progress});
 }
 

@@ -19,7 +19,7 @@ void Received::take(grpc::ByteBuffer& message) {
     if (small.has_head()) check_head(small.head());
     headed_ = true;
     if (output_.list != nullptr) {
-        output_.list->storage().append(room_.first(pairs));
+        detail::storage_of(*output_.list).append(room_.first(pairs));
         room_ = room_.subspan(pairs);
     } else if (output_.sink != nullptr && pairs > 0) {
         (*output_.sink)(std::span(held_).first(pairs));
@@ -38,7 +38,8 @@ std::size_t Received::unpack_pairs(grpc::ByteBuffer& message, v1::Download& smal
     std::size_t bytes = 0;
     // Pairs may lie across the borders of what the network delivered.
     if (output_.list != nullptr && room_.size() < most) {
-        room_ = output_.list->storage().take_block(std::clamp<std::size_t>(pairs_, most, std::size_t(1) << 20));
+        room_ =
+            detail::storage_of(*output_.list).take_block(std::clamp<std::size_t>(pairs_, most, std::size_t(1) << 20));
     } else if (output_.list == nullptr) {
         held_.resize(most);
     }

@@ -17,7 +17,7 @@ namespace octopair::service {
 class Received {
 public:
     /// All are borrowed. `server` is its name in messages.
-    Received(const std::string& server, const Engine::Output& output, const Engine::Control& control)
+    Received(const std::string& server, const detail::Output& output, const detail::Control& control)
         : server_(server), output_(output), control_(control) {}
 
     /// What comes from here on is another answer, which has a head of its own.
@@ -39,8 +39,8 @@ private:
     void check_head(const v1::ResultHead& head);
 
     const std::string& server_;
-    const Engine::Output& output_;
-    const Engine::Control& control_;
+    const detail::Output& output_;
+    const detail::Control& control_;
     std::string hash_;
     std::uint64_t pairs_ = 0;
     bool headed_ = false;  // this answer has begun

@@ -24,12 +24,12 @@ namespace {
 /// Of input that goes in one message.
 constexpr std::uint64_t most_small_bytes = piece_bytes;
 
-bool is_pairs_wanted(const Engine::Output& output) { return output.list != nullptr || output.sink != nullptr; }
+bool is_pairs_wanted(const detail::Output& output) { return output.list != nullptr || output.sink != nullptr; }
 
 class RemoteJob {
 public:
-    RemoteJob(Connection& connection, const Engine::Request& request, const Engine::Output& output,
-              const Engine::Control& control);
+    RemoteJob(Connection& connection, const detail::Request& request, const detail::Output& output,
+              const detail::Control& control);
 
     Summary run();
 
@@ -47,8 +47,8 @@ private:
     Received received_;
 };
 
-RemoteJob::RemoteJob(Connection& connection, const Engine::Request& request, const Engine::Output& output,
-                     const Engine::Control& control)
+RemoteJob::RemoteJob(Connection& connection, const detail::Request& request, const detail::Output& output,
+                     const detail::Control& control)
     : connection_(connection),
       stop_(control.stop),
       pairs_wanted_(is_pairs_wanted(output)),
@@ -129,8 +129,8 @@ Summary RemoteJob::run() {
 
 }  // namespace
 
-Summary find_remotely(Connection& connection, const Engine::Request& request, const Engine::Output& output,
-                      const Engine::Control& control) {
+Summary find_remotely(Connection& connection, const detail::Request& request, const detail::Output& output,
+                      const detail::Control& control) {
     return RemoteJob(connection, request, output, control).run();
 }
 

@@ -11,7 +11,7 @@ namespace octopair::service {
 class Connection;
 
 /// Throws Error, and what a sink or a progress throws.
-Summary find_remotely(Connection& connection, const Engine::Request& request, const Engine::Output& output,
-                      const Engine::Control& control);
+Summary find_remotely(Connection& connection, const detail::Request& request, const detail::Output& output,
+                      const detail::Control& control);
 
 }  // namespace octopair::service

@@ -177,7 +177,7 @@ void RemoteScene::State::take() {
         history_.apply(found_);
         return;
     }
-    PairList::Storage& fresh = history_.fresh().storage();
+    detail::PairStorage& fresh = detail::storage_of(history_.fresh());
     fresh.reset();
     fresh.append(fresh.copy(answer_.pairs));
     history_.take_over(found_);

@@ -39,7 +39,7 @@ void check_precision(const v1::ObjectSet& set) {
 
 }  // namespace
 
-v1::JobSpec spec_of(const Engine::Request& request, bool pairs) {
+v1::JobSpec spec_of(const detail::Request& request, bool pairs) {
     v1::JobSpec spec;
     *spec.mutable_first() = set_of(request.first);
     if (request.second != nullptr) *spec.mutable_second() = set_of(*request.second);
@@ -110,7 +110,7 @@ std::span<const std::byte> bytes_of(const Boxes& boxes) {
 
 }  // namespace
 
-InputArrays arrays_of(const Engine::Request& request) {
+InputArrays arrays_of(const detail::Request& request) {
     InputArrays arrays = {bytes_of(request.first.boxes), std::as_bytes(request.first.padding)};
     if (request.second != nullptr) {
         arrays[2] = bytes_of(request.second->boxes);

@@ -17,7 +17,7 @@ class Summary;
 namespace octopair::service {
 
 /// Without an id. `pairs`: they are wanted, not their number alone.
-v1::JobSpec spec_of(const Engine::Request& request, bool pairs);
+v1::JobSpec spec_of(const detail::Request& request, bool pairs);
 
 /// The options that a spec says, but for progress.
 Options options_of(const v1::JobSpec& spec);
@@ -36,7 +36,7 @@ std::uint64_t input_bytes(const v1::JobSpec& spec);
 
 /// The arrays that the data of a job are, one after the other; those that are not there are empty.
 using InputArrays = std::array<std::span<const std::byte>, 4>;
-InputArrays arrays_of(const Engine::Request& request);
+InputArrays arrays_of(const detail::Request& request);
 
 v1::Summary message_of(const Summary& summary);
 Summary summary_of(const v1::Summary& message);

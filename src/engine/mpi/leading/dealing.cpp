@@ -17,7 +17,7 @@ Assignment::Set set_of(const Objects* objects) {
 
 }  // namespace
 
-Assignment Assignment::of(const Engine::Request& request, Outlet outlet) {
+Assignment Assignment::of(const detail::Request& request, Outlet outlet) {
     const Options& options = request.options;
     return {.end = false,
             .join = request.second != nullptr,
@@ -39,7 +39,7 @@ Options Assignment::options() const {
     return options;
 }
 
-void Deal::make(const Assignment& assignment, const Engine::Request* request, const std::stop_token& stop) {
+void Deal::make(const Assignment& assignment, const detail::Request* request, const std::stop_token& stop) {
     stop_ = stop;
     assignment_ = &assignment;
     for (unsigned set = 0; set < (assignment.join ? 2 : 1); ++set) {

@@ -29,7 +29,7 @@ struct Assignment {
     std::uint64_t limit = 0, buffer_bytes = 0;
     std::array<Set, 2> sets = {};
 
-    static Assignment of(const Engine::Request& request, Outlet outlet);
+    static Assignment of(const detail::Request& request, Outlet outlet);
     /// Without a progress.
     Options options() const;
 };
@@ -41,7 +41,7 @@ public:
 
     /// Collective. On rank 0 with the call's objects, which are borrowed until the next one. Throws as
     /// Agreement::together: where there is no memory on a rank, Error{cancelled} on a stop.
-    void make(const Assignment& assignment, const Engine::Request* request, const std::stop_token& stop);
+    void make(const Assignment& assignment, const detail::Request* request, const std::stop_token& stop);
     const Objects& slice(unsigned set) const { return slices_[set]; }
 
 private:

@@ -40,8 +40,8 @@ public:
         told_.set_meanwhile([this] { pulse_.beat(); });
     }
     /// Collective. `request`: on rank 0, null on the others.
-    Summary find(const Assignment& assignment, const Engine::Request* request, const Engine::Output& output,
-                 const Engine::Control& control);
+    Summary find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
+                 const detail::Control& control);
 
 private:
     Communicator told_, searched_;  // of what is told and dealt out, and of the search
@@ -50,8 +50,8 @@ private:
     RankSearch search_;
 };
 
-Summary Company::find(const Assignment& assignment, const Engine::Request* request, const Engine::Output& output,
-                      const Engine::Control& control) {
+Summary Company::find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
+                      const detail::Control& control) {
     deal_.make(assignment, request, control.stop);
     const Options options = assignment.options();
     const Objects* const second = assignment.join ? &deal_.slice(1) : nullptr;
@@ -99,7 +99,7 @@ public:
     Leader& operator=(const Leader&) = delete;
     ~Leader();
 
-    Summary run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control);
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control);
 
 private:
     void look_for_lost();
@@ -125,7 +125,7 @@ void Leader::look_for_lost() {
     if (company_.pulse().lost() && lost_) lost_(*company_.pulse().lost());
 }
 
-Summary Leader::run(const Engine::Request& request, const Engine::Output& output, const Engine::Control& control) {
+Summary Leader::run(const detail::Request& request, const detail::Output& output, const detail::Control& control) {
     if (company_.pulse().lost()) wait_for_stop(control.stop);
     Summary summary;
     Captured captured;
@@ -150,7 +150,7 @@ public:
     LeadingEngine(MPI_Comm comm, const LeadingOptions& options) : leader_(comm, options) {}
 
 private:
-    Summary run(const Request& request, const Output& output, const Control& control) override {
+    Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         const Turns::Turn turn(turns_, control.stop);
         double seconds = 0;
         Summary summary;
@@ -161,11 +161,11 @@ private:
         summary.seconds = seconds;
         return summary;
     }
-    JobQueue& jobs() override { return jobs_; }
+    detail::JobQueue& jobs() override { return jobs_; }
 
     Turns turns_;
     Leader leader_;
-    JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 /// Whoever waits for long sleeps for long, but no longer than a person notices.
@@ -203,7 +203,7 @@ private:
     void take_part(const Assignment& assignment) {
         PairList list;
         const PairSink nothing = [](std::span<const Pair>) {};
-        const Engine::Output output = {assignment.outlet == Outlet::list ? &list : nullptr,
+        const detail::Output output = {assignment.outlet == Outlet::list ? &list : nullptr,
                                        assignment.outlet == Outlet::sink ? &nothing : nullptr};
         const ProgressSink nobody;
         try {

@@ -69,12 +69,12 @@ PiecePlan AscendingPieces::plan(const PairList& found, const RowBins& bins) {
 }
 
 // NOLINTNEXTLINE(readability-function-size): what, by which plan, which part of it, where to, and until when.
-void AscendingPieces::bring_together(PairList& found, const PiecePlan& plan, unsigned window, PairList::Storage& piece,
-                                     const std::stop_token& stop) {
+void AscendingPieces::bring_together(PairList& found, const PiecePlan& plan, unsigned window,
+                                     detail::PairStorage& piece, const std::stop_token& stop) {
     Agreement agreement(comm_);
     RankCounts to_each;
     agreement.together([&] { to_each = pack(found, plan); });
-    found.storage().reset();
+    detail::storage_of(found).reset();
     const Exchange counts = comm_.plan_exchange(std::move(to_each));
     agreement.together([&] { received_.resize_discard(counts.incoming()); });
     comm_.exchange(sent_.data(), received_.data(), counts);
@@ -95,7 +95,7 @@ RankCounts AscendingPieces::pack(const PairList& found, const PiecePlan& plan) {
     return counts;
 }
 
-void AscendingPieces::sort_received(PairList::Storage& piece, const ObjectRange& rows, const std::stop_token& stop) {
+void AscendingPieces::sort_received(detail::PairStorage& piece, const ObjectRange& rows, const std::stop_token& stop) {
     const std::span<const Pair> all = received_.span();
     AscendingBounds bounds{rows, columns_};
     bounds.expected = all.size();

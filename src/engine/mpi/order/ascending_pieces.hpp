@@ -70,12 +70,12 @@ public:
     PiecePlan plan(const PairList& found, const RowBins& bins);
     /// Collective: appends this rank's pairs of a window, of what all ranks found of it, to `piece`. Empties `found`. Throws
     /// as Agreement::together.
-    void bring_together(PairList& found, const PiecePlan& plan, unsigned window, PairList::Storage& piece,
+    void bring_together(PairList& found, const PiecePlan& plan, unsigned window, detail::PairStorage& piece,
                         const std::stop_token& stop);
 
 private:
     RankCounts pack(const PairList& found, const PiecePlan& plan);
-    void sort_received(PairList::Storage& piece, const ObjectRange& rows, const std::stop_token& stop);
+    void sort_received(detail::PairStorage& piece, const ObjectRange& rows, const std::stop_token& stop);
 
     Communicator& comm_;
     Team& team_;

@@ -208,7 +208,7 @@ Summary MasterSearch::scan(const Task& task, const Sets& all) {
     Summary summary;
     {
         const Metered metered(comm_, costs_.scan);
-        const Engine::Request request{all[0], task.joint.join ? &all[1] : nullptr, task.options};
+        const detail::Request request{all[0], task.joint.join ? &all[1] : nullptr, task.options};
         summary = search_.run(request, task.output, {task.stop, task.progress});
     }
     costs_.scan -= costs_.merge - merged;  // which is part of the search

@@ -34,7 +34,7 @@ public:
 
     /// A call that all ranks have joined. Borrows all.
     struct Task {
-        const Engine::Output& output;
+        const detail::Output& output;
         const Options& options;
         const JointCall& joint;
         const std::array<Objects, 2>& slices;  ///< that this rank brought

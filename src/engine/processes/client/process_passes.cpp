@@ -129,14 +129,14 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
     std::copy_n(arena_->memory.array<std::uint32_t>(place, counts.size()), counts.size(), counts.begin());
 }
 
-void ProcessPasses::list_octal(Call& call, PairList::Storage& list, double progress) {
+void ProcessPasses::list_octal(Call& call, detail::PairStorage& list, double progress) {
     pass_.kind = PassKind::list_octal;
     const auto pairs = free_pairs();
     run(call, progress, pairs, {});
     append_runs(list, pairs);
 }
 
-void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds,
+void ProcessPasses::list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
                                    double progress) {
     pass_.kind = PassKind::list_ascending;
     pass_.bounds = bounds;
@@ -146,7 +146,7 @@ void ProcessPasses::list_ascending(Call& call, PairList::Storage& list, const As
 }
 
 /// The list keeps the memory that the workers wrote to, or gets a copy.
-void ProcessPasses::append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs) {
+void ProcessPasses::append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs) {
     const DeskView& view = crew_.view();
     const std::uint64_t written = view.desk().next_block.load();
     if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged_result();

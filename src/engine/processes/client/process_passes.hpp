@@ -22,15 +22,15 @@ public:
     void build(Call& call, double progress) override;
     std::uint64_t count(Call& call, double progress) override;
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
-    void list_octal(Call& call, PairList::Storage& list, double progress) override;
+    void list_octal(Call& call, detail::PairStorage& list, double progress) override;
     void stream_octal(Call& call, const Deliver& deliver, double progress) override;
-    void list_ascending(Call& call, PairList::Storage& list, const AscendingBounds& bounds, double progress) override;
+    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
 
 private:
     void run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch);
     void show_progress(Call& call, std::uint64_t& shown);
     void take_results(Call& call);
-    void append_runs(PairList::Storage& list, const std::shared_ptr<Region>& pairs);
+    void append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs);
     std::shared_ptr<Region> free_pairs();
     std::span<Share> shares_done();
 

@@ -38,7 +38,7 @@ std::shared_ptr<Region> SharedArrays::find(std::span<const std::byte> memory) co
 }
 
 void SharedInputs::place(const Call& call, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions) {
-    const Engine::Request& request = call.request;
+    const detail::Request& request = call.request;
     stop_ = call.stop.get_token();
     used_ = 0;
     pass.first = place(request.first, crew, regions);
