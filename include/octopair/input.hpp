@@ -26,7 +26,7 @@ struct InputOf {
     // NOLINTBEGIN(google-explicit-constructor): a set is an input, and so is a join.
     template <typename Source>
         requires std::convertible_to<Source, Set>
-    InputOf(Source&& set) : first(std::forward<Source>(set)) {}
+    InputOf(Source set) : first(std::move(set)) {}
     InputOf(JoinOf<Set> join) : first(std::move(join.first)), second(std::move(join.second)) {}
     /// Objects by their boxes alone, and with paddings: find_pairs({boxes, padding}, pairs).
     InputOf(Boxes boxes, std::span<const double> padding = {})

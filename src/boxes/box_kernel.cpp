@@ -77,8 +77,8 @@ bool bound_one(const Triangle3d& triangle, Box3f& box) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double a = triangle[0][axis], b = triangle[1][axis], c = triangle[2][axis];
         for (const double at : {a, b, c}) finite &= std::abs(at) <= DBL_MAX;
-        box.min[axis] = 0.0f - round_up(-std::min(std::min(a, b), c));
-        box.max[axis] = round_up(std::max(std::max(a, b), c));
+        box.min[axis] = 0.0f - rounding::finite_float_above(-std::min(std::min(a, b), c));
+        box.max[axis] = rounding::finite_float_above(std::max(std::max(a, b), c));
     }
     return finite;
 }
@@ -92,7 +92,7 @@ HWY_INLINE hn::Vec<Doubles> load_wide(const float* numbers) {
 }
 HWY_INLINE hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
 
-/// round_up() of the specification.
+/// finite_float_above() of the specification (geometry/rounding.hpp).
 HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
     const Doubles d;
     const hn::FixedTag<float, 4> f;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "boxes/entry.hpp"
+#include "geometry/rounding.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pose.hpp"
 
@@ -33,14 +34,6 @@ Box3d wide(const Box<Real>& box) {
 }
 
 inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
-
-/// The smallest float32 >= value, and no higher than the highest finite one; 0 has no sign.
-inline float round_up(double value) {
-    if (value <= -double(FLT_MAX)) return -FLT_MAX;
-    if (value >= double(FLT_MAX)) return FLT_MAX;
-    const float nearest = float(value) + 0.0f;
-    return double(nearest) < value ? std::nextafterf(nearest, FLT_MAX) : nearest;
-}
 
 /// Boxes are moved to an origin, widened, and rounded outward to float32.
 struct OutwardRounding {
@@ -71,7 +64,7 @@ private:
         // Each part on its own: their sum may be beyond float64.
         const double error = std::abs(bound) * error_part + std::abs(origin[axis]) * error_part + widening * error_part;
         const double extra = widening > 0 ? widening + error : 0;
-        return round_up(sign * (bound - origin[axis]) + extra);
+        return rounding::finite_float_above(sign * (bound - origin[axis]) + extra);
     }
 };
 

@@ -94,7 +94,7 @@ RoundingSlack BoxSource::slack() const {
     // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
     RoundingSlack slack;
     for (unsigned axis = 0; axis < 3; ++axis)
-        slack.base[axis] = round_up(std::abs(form_.rounding.origin[axis]) * 0x1p-44 + FLT_MIN);
+        slack.base[axis] = rounding::finite_float_above(std::abs(form_.rounding.origin[axis]) * 0x1p-44 + FLT_MIN);
     return slack;
 }
 

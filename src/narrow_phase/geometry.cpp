@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/floating_point.hpp"
+#include "geometry/rounding.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/mesh/mesh_tree.hpp"
 #include "narrow_phase/prepared.hpp"
@@ -98,7 +99,6 @@ std::vector<Point3d> vertices_of(const shape::Any& shape) {
 
 /// Its core's outermost coordinates, and outward by the radius.
 Box3d box_of(const ConvexSolid& solid) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     Box3d box = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Point3d direction = {};
@@ -106,8 +106,8 @@ Box3d box_of(const ConvexSolid& solid) {
         const double high = support(solid, direction)[axis];
         direction[axis] = -1;
         const double low = support(solid, direction)[axis];
-        box.max[axis] = solid.radius > 0 ? std::nextafter(high + solid.radius, infinity) : high;
-        box.min[axis] = solid.radius > 0 ? std::nextafter(low - solid.radius, -infinity) : low;
+        box.max[axis] = solid.radius > 0 ? rounding::next_above(high + solid.radius) : high;
+        box.min[axis] = solid.radius > 0 ? rounding::next_below(low - solid.radius) : low;
     }
     return box;
 }

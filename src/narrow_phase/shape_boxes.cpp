@@ -14,6 +14,7 @@
 #include <string>
 
 #include "base/floating_point.hpp"
+#include "geometry/rounding.hpp"
 #include "narrow_phase/convex/posed_plane.hpp"
 #include "narrow_phase/motion/motion.hpp"
 #include "narrow_phase/prepared.hpp"
@@ -34,9 +35,8 @@ void unite(Box3d& box, const Box3d& other) {
 }
 
 void widen(Box3d& box, int axis, double by) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    box.min[axis] = std::nextafter(box.min[axis] - by, -infinity);
-    box.max[axis] = std::nextafter(box.max[axis] + by, infinity);
+    box.min[axis] = rounding::next_below(box.min[axis] - by);
+    box.max[axis] = rounding::next_above(box.max[axis] + by);
 }
 
 Box3d box_by_support(const detail::PreparedShape& shape, const Pose& pose) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "octopair/objects.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair {

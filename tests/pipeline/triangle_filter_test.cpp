@@ -170,8 +170,8 @@ TEST(TriangleFilter, BoxesAreTheSmallestOnAnyThreads) {
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const auto& [a, b, c] = triangles[i];
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const float low = 0.0f - round_up(-std::min({a[axis], b[axis], c[axis]}));
-                const float high = round_up(std::max({a[axis], b[axis], c[axis]}));
+                const float low = 0.0f - rounding::finite_float_above(-std::min({a[axis], b[axis], c[axis]}));
+                const float high = rounding::finite_float_above(std::max({a[axis], b[axis], c[axis]}));
                 ASSERT_EQ(std::bit_cast<std::uint32_t>(boxes[i].min[axis]), std::bit_cast<std::uint32_t>(low)) << i;
                 ASSERT_EQ(std::bit_cast<std::uint32_t>(boxes[i].max[axis]), std::bit_cast<std::uint32_t>(high)) << i;
             }

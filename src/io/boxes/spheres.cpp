@@ -5,28 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "geometry/rounding.hpp"
 #include "io/files/failure.hpp"
 
 namespace octopair::io {
 
 namespace {
 
-/// The least float64 not below a + b, for a rounding error by Knuth's two-sum: exact, since addition never underflows.
-double sum_rounded_up(double a, double b) {
-    const double sum = a + b;
-    if (std::isinf(sum)) return sum;
-    const double b_part = sum - a;
-    const double error = (a - (sum - b_part)) + (b - b_part);
-    return error > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
-}
-
-float float_rounded_up(double value) {
-    const float nearest = float(value);
-    return double(nearest) < value ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
-}
-
-float upper_end(float centre, float radius) { return float_rounded_up(double(centre) + double(radius)); }
-double upper_end(double centre, double radius) { return sum_rounded_up(centre, radius); }
+float upper_end(float centre, float radius) { return rounding::float_above(double(centre) + double(radius)); }
+double upper_end(double centre, double radius) { return rounding::sum_above(centre, radius); }
 
 bool is_finite(const auto& sphere) {
     return std::isfinite(sphere.centre[0]) && std::isfinite(sphere.centre[1]) && std::isfinite(sphere.centre[2]) &&

@@ -1,7 +1,8 @@
 #include "io/meshes/bounded_pose.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "geometry/rounding.hpp"
 
 namespace octopair {
 
@@ -60,7 +61,6 @@ BoundedPose BoundedPose::operator*(const BoundedPose& local) const {
 }
 
 BoundedPoint BoundedPose::apply(const Point3d& point) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     BoundedPoint posed;
     for (int row = 0; row < 3; ++row) {
         Sum sum;
@@ -68,8 +68,8 @@ BoundedPoint BoundedPose::apply(const Point3d& point) const {
         sum.add(rows_[row][3]);
         const auto [value, error] = sum.value();
         posed.value[row] = value;
-        posed.low[row] = error == 0 ? value : std::nextafter(value - error, -infinity);
-        posed.high[row] = error == 0 ? value : std::nextafter(value + error, infinity);
+        posed.low[row] = error == 0 ? value : rounding::next_below(value - error);
+        posed.high[row] = error == 0 ? value : rounding::next_above(value + error);
     }
     return posed;
 }

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "geometry/rounding.hpp"
 #include "narrow_phase/mesh/mesh_walk.hpp"
 
 namespace octopair {
 
 /// As a reach of walks: upward, so that what is within it stays so.
-inline float reach_above(double reach) { return std::nextafter(float(reach), std::numeric_limits<float>::infinity()); }
+inline float reach_above(double reach) { return rounding::next_above(float(reach)); }
 
 /// Calls leaves(node of a, node of b) for leaves that may be no further apart than `reach`, until it returns false.
 template <typename Leaves>

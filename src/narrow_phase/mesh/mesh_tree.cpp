@@ -7,6 +7,8 @@
 #include <numeric>
 #include <span>
 
+#include "geometry/rounding.hpp"
+
 namespace octopair {
 
 namespace {
@@ -50,7 +52,7 @@ void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& o
         const double centre = double(node.centre[axis]);
         const double made_of = std::abs(low) + std::abs(high) + std::abs(origin[axis]) * 0x1p-8;
         const double half = std::max(high - centre, centre - low) + made_of * 0x1p-44;
-        node.half[axis] = std::nextafter(float(half), std::numeric_limits<float>::infinity());
+        node.half[axis] = rounding::next_above(float(half));
     }
 }
 
