@@ -142,6 +142,12 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
     return make_local_engine(choice.threads.value_or(0));
 }
 
+EngineChoice EngineChoice::with_width(unsigned width) const {
+    EngineChoice choice = *this;
+    (has_workers() ? choice.workers : choice.threads) = width;
+    return choice;
+}
+
 EngineCrew crew_of(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
     if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};

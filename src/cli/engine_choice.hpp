@@ -17,11 +17,21 @@ class Command;
 
 enum class EngineKind : std::uint8_t { local, processes, mpi, server };
 
-/// As it was asked for; 0 threads or workers are one a core.
+/// The engine that the command line asks for. 0 threads or workers: one per core.
 struct EngineChoice {
     EngineKind kind = EngineKind::local;
     std::optional<unsigned> threads, workers;
     ServerChoice server;
+
+    bool has_ranks() const { return kind == EngineKind::mpi; }
+    bool has_workers() const { return kind == EngineKind::processes; }
+    bool is_server() const { return kind == EngineKind::server; }
+    /// Whether the engine has a Scene. The others find all pairs of each frame.
+    bool keeps_scenes() const { return kind == EngineKind::local || kind == EngineKind::server; }
+    /// Whether a call may run on the thread that made it, without waking another thread or process.
+    bool runs_in_caller() const { return kind == EngineKind::local; }
+    /// The same engine with `width` threads, or workers if it has workers.
+    EngineChoice with_width(unsigned width) const;
 };
 
 /// Who looked for the pairs: threads of this process, workers, ranks, or a server.

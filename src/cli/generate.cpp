@@ -13,6 +13,7 @@
 #include "cli/subcommands.hpp"
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 
@@ -98,7 +99,7 @@ void add_generate(Command& program, Action& action) {
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
     command.footer(kinds_text());
     command.callback([request, &action] {
-        if (!request->output.ends_with(".npy")) {
+        if (!io::is_npy_file(request->output)) {
             throw Error(ErrorCode::usage,
                         fmt::format("--output: the name of '{}' does not end in .npy", request->output));
         }

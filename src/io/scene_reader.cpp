@@ -2,27 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "io/boxes/csv.hpp"
 #include "io/boxes/npy.hpp"
 #include "io/files/failure.hpp"
+#include "io/formats.hpp"
 #include "io/json/json_scene_file.hpp"
 #include "io/meshes/mesh.hpp"
 
 namespace octopair::io {
 
 namespace {
-
-std::string lower_case_ending(const std::string& path) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    for (char& c : ending) {
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    }
-    return ending;
-}
 
 template <typename To, typename From>
 void copy_frame(const Buffer<From>& from, std::size_t begin, std::span<To> to) {
@@ -107,31 +99,25 @@ LoadedScene read_shapes(const std::string& path, const SceneContent& content, co
 
 }  // namespace
 
-bool is_mesh_file(const std::string& path) {
-#ifdef OCTOPAIR_WITH_MESHES
-    const std::string ending = lower_case_ending(path);
-    return ending != ".npy" && ending != ".csv" && ending != ".json" && is_mesh_ending(ending);
-#else
-    (void)path;
-    return false;
-#endif
-}
-
-bool is_json_file(const std::string& path) { return lower_case_ending(path) == ".json"; }
-
-bool is_npy_file(const std::string& path) { return lower_case_ending(path) == ".npy"; }
-
 LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
-    const std::string ending = lower_case_ending(path);
-    if (is_npy_file(path)) return read_npy_scene(path, stop);
-    if (ending == ".csv") return read_csv_scene(path, stop);
-    if (is_json_file(path)) return read_shapes(path, content, stop);
+    switch (scene_format(path)) {
+        case SceneFormat::npy:
+            return read_npy_scene(path, stop);
+        case SceneFormat::csv:
+            return read_csv_scene(path, stop);
+        case SceneFormat::json:
+            return read_shapes(path, content, stop);
+        case SceneFormat::mesh:
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_mesh_ending(ending)) return read_mesh_scene(path, content);
-    refuse(path, "not a kind of file that is known: its name ends neither in .npy, .csv or .json nor as a mesh file's");
+            return read_mesh_scene(path, content);
+#endif
+        case SceneFormat::unknown:
+            break;
+    }
+#ifdef OCTOPAIR_WITH_MESHES
+    refuse(path, "the ending of its name is not known: it is not .npy, .csv, .json or that of a mesh file");
 #else
-    (void)content;
-    refuse(path, "its name ends neither in .npy, .csv nor .json, and this build of octopair reads no mesh files");
+    refuse(path, "the ending of its name is not .npy, .csv or .json, and this build of octopair reads no mesh files");
 #endif
 }
 

@@ -20,15 +20,6 @@ struct SceneContent {
     bool shapes = false;  ///< beside boxes, what the exact stages need: shapes, or triangles
 };
 
-/// True if read_scene would give the file to Assimp.
-bool is_mesh_file(const std::string& path);
-
-/// True if read_scene would read it as a JSON scene: it has shapes, asked for or not, and lacks boxes.
-bool is_json_file(const std::string& path);
-
-/// True if read_scene would read it as .npy.
-bool is_npy_file(const std::string& path);
-
 /// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
 LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop = {});
 

@@ -12,18 +12,18 @@ namespace octopair::test {
 namespace {
 
 using io::Event;
-using io::PairFormat;
+using io::ResultFormat;
 using Pairs = std::vector<Pair>;
 
 TEST(EventWriter, FormatsByEnding) {
-    EXPECT_EQ(int(io::event_format("c.csv")), int(PairFormat::csv));
-    EXPECT_EQ(int(io::event_format("c.jsonl")), int(PairFormat::jsonl));
+    EXPECT_EQ(int(io::event_format("c.csv")), int(ResultFormat::csv));
+    EXPECT_EQ(int(io::event_format("c.jsonl")), int(ResultFormat::jsonl));
     for (const std::string path : {"c.npy", "c", "c.json"}) {
         EXPECT_NE(error_of(ErrorCode::usage, [&] { (void)io::event_format(path); }), "") << path;
     }
     const TemporaryDirectory directory;
     error_of(ErrorCode::usage,
-             [&] { io::EventWriter(PairFormat::npy, std::make_unique<io::AtomicFile>(directory.file("e")), {}); });
+             [&] { io::EventWriter(ResultFormat::npy, std::make_unique<io::AtomicFile>(directory.file("e")), {}); });
 }
 
 TEST(EventWriter, WritesRowsWithNames) {
@@ -50,7 +50,7 @@ TEST(EventWriter, WritesRowsWithNames) {
 
 TEST(EventWriter, LargestNumbersFit) {
     const TemporaryDirectory directory;
-    io::EventWriter writer(PairFormat::csv, std::make_unique<io::AtomicFile>(directory.file("e.csv")), {});
+    io::EventWriter writer(ResultFormat::csv, std::make_unique<io::AtomicFile>(directory.file("e.csv")), {});
     writer.write(~std::uint64_t(0), Event::begin, Pairs(100'000, {4294967294u, 4294967295u}));
     writer.finish();
     EXPECT_TRUE(read_file(directory.file("e.csv")).ends_with("\n18446744073709551615,begin,4294967294,4294967295\n"));

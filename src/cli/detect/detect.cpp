@@ -18,6 +18,7 @@
 #include "cli/output/report.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/formats.hpp"
 #include "io/results/pair_writer.hpp"
 #ifdef OCTOPAIR_WITH_MPI
 #include "cli/detect/rank_detection.hpp"
@@ -86,7 +87,7 @@ int run_on_ranks(const DetectRequest& request) {
 
 int run_detect(const DetectRequest& request) {
 #ifdef OCTOPAIR_WITH_MPI
-    if (request.engine.kind == EngineKind::mpi) return run_on_ranks(request);
+    if (request.engine.has_ranks()) return run_on_ranks(request);
 #endif
     const Interrupt interrupt;
     Outcome outcome(request, interrupt.token());
@@ -130,9 +131,8 @@ void add_outcome(Command& command, DetectRequest& request) {
 void check_index_type(const DetectRequest& request) {
     if (!request.wide_indices) return;
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--index-type uint64: " + why); };
-    if (request.engine.kind != EngineKind::mpi) refuse("only with --engine mpi");
-    const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
-    if (!npy && !request.count_only) refuse("only in an .npy file");
+    if (!request.engine.has_ranks()) refuse("only with --engine mpi");
+    if (!io::is_array_file(request.output) && !request.count_only) refuse("only in an .npy file");
 }
 
 /// Refuses what the second algorithm could not check.
@@ -174,7 +174,7 @@ void add_detect(Command& program, Action& action) {
 #endif
     command.callback([request, &action] {
         check_engine_choice(request->engine);
-        if (!request->output.empty()) (void)io::pair_format(request->output);
+        if (!request->output.empty()) (void)io::result_format(request->output);
         if (request->events) check_event_options(*request);
         check_index_type(*request);
         if (request->verify) check_verify_options(*request);

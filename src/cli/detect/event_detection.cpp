@@ -57,12 +57,11 @@ private:
         report_.crew = crew_of(request_.engine);
     }
 
-    /// The local engine and servers keep a scene; worker processes find each frame's pairs.
     template <typename Real>
     void find() {
         const FrameSets sets{*inputs_, against_ ? &*against_ : nullptr, *paddings_};
-        const auto source = request_.engine.kind == EngineKind::processes ? make_engine_events<Real>(sets, request_)
-                                                                          : make_scene_events<Real>(sets, request_);
+        const auto source = request_.engine.keeps_scenes() ? make_scene_events<Real>(sets, request_)
+                                                           : make_engine_events<Real>(sets, request_);
         check_frames(*source);
         open_writer();
         for (std::uint64_t frame = 0; frame < report_.frames && !report_.truncated; ++frame) {
@@ -90,7 +89,7 @@ private:
     void open_writer() {
         const io::PairNames names{&inputs_->names(), against_ ? &against_->names() : &inputs_->names()};
         if (request_.output.empty()) {
-            writer_.emplace(io::PairFormat::csv, std::make_unique<io::StandardOutput>(stop_), names);
+            writer_.emplace(io::ResultFormat::csv, std::make_unique<io::StandardOutput>(stop_), names);
         } else {
             writer_.emplace(io::event_format(request_.output), std::make_unique<io::AtomicFile>(request_.output),
                             names);
@@ -134,7 +133,7 @@ private:
 
 void check_event_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--events: " + why); };
-    if (request.engine.kind == EngineKind::mpi) refuse("not with --engine mpi");
+    if (request.engine.has_ranks()) refuse("not with --engine mpi");
     if (request.count_only) refuse("not with --count-only");
     if (request.order == Order::octal) refuse("not with --order octal: the pairs of a frame are ascending");
     if (!request.output.empty()) (void)io::event_format(request.output);

@@ -14,6 +14,7 @@
 #include "cli/input/join.hpp"
 #include "cli/input/whole_inputs.hpp"
 #include "cli/output/piece_output.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
 #include "verification/verifier.hpp"
@@ -85,8 +86,7 @@ private:
                         std::to_string(report_.objects) +
                             " objects: " + (request_.verify ? "--verify has" : "filters have") + " indices of 32 bits");
         }
-        const bool npy = !request_.output.empty() && io::pair_format(request_.output) == io::PairFormat::npy;
-        if (wide() && !npy && !request_.count_only) {
+        if (wide() && !io::is_array_file(request_.output) && !request_.count_only) {
             throw Error(ErrorCode::resource_limit,
                         std::to_string(report_.objects) + " objects: indices of 64 bits go to .npy files alone");
         }

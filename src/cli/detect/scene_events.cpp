@@ -112,7 +112,7 @@ template <typename Real>
 std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request) {
     constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
 #ifdef OCTOPAIR_WITH_SERVICE
-    if (request.engine.kind == EngineKind::server) {
+    if (request.engine.is_server()) {
         return std::make_unique<SceneEvents<Real, RemoteScene>>(
             sets, connect_scene(request.engine.server.address, {precision, request.margin},
                                 client_options(request.engine.server)));

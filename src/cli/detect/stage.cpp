@@ -8,6 +8,7 @@
 #include "cli/command/numbers.hpp"
 #include "cli/command/words.hpp"
 #include "cli/detect/detection.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

@@ -6,6 +6,7 @@
 
 #include "boxes/box_kernel.hpp"
 #include "io/files/failure.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

@@ -6,6 +6,7 @@
 
 #include "cli/input/isolated_read.hpp"
 #include "io/boxes/npy.hpp"
+#include "io/formats.hpp"
 
 namespace octopair::cli {
 

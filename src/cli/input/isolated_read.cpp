@@ -22,6 +22,7 @@
 #include "base/descriptor.hpp"
 #include "cli/input/scene_transfer.hpp"
 #include "io/files/failure.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -87,7 +88,7 @@ private:
 /// The size of a file; of a glTF or a JSON scene with all that lies beside it, as meshes may be in further files.
 [[maybe_unused]] std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
     std::error_code error;
-    if (path.extension() != ".gltf" && path.extension() != ".json") return std::filesystem::file_size(path, error);
+    if (!io::has_parts(path.string())) return std::filesystem::file_size(path, error);
     std::uintmax_t bytes = 0;
     const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
     for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {

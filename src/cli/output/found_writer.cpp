@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/files/atomic_file.hpp"
+#include "io/formats.hpp"
 #include "io/results/collision_writer.hpp"
 #include "io/results/html_report.hpp"
 #include "io/results/pair_writer.hpp"
@@ -73,10 +74,6 @@ io::ObjectNames names_of(const InputSet& set) {
     return {set.scene.names};
 }
 
-bool is_npy(const DetectRequest& request) {
-    return !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
-}
-
 std::unique_ptr<io::PairWriter> make_pairs(const DetectRequest& request, const FoundIn& sets,
                                            const std::stop_token& stop) {
     const io::PairNames names{&sets.first.scene.names, &sets.second.scene.names};
@@ -126,7 +123,7 @@ std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const
     std::optional<io::Baseline> baseline;
     if (form.changes) baseline.emplace(asked.baseline, !request.against.empty(), stop);
     auto collisions = std::make_unique<Collisions>(form.names, std::move(baseline));
-    if (is_npy(request)) {
+    if (io::is_array_file(request.output)) {
         collisions->add(make_pairs(request, sets, stop));
     } else {
         collisions->add(make_rows(request, form, stop));

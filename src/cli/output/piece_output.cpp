@@ -9,6 +9,7 @@
 
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/formats.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -110,8 +111,7 @@ private:
 // NOLINTNEXTLINE(readability-function-size): all of it goes to one of the two.
 std::unique_ptr<PieceOutput> make_piece_output(const DetectRequest& request, Cluster& cluster,
                                                const io::PairNames& names, const std::stop_token& stop, bool moving) {
-    const bool npy = !request.output.empty() && io::pair_format(request.output) == io::PairFormat::npy;
-    if (npy) return std::make_unique<SharedNpy>(cluster, request.output, moving);
+    if (io::is_array_file(request.output)) return std::make_unique<SharedNpy>(cluster, request.output, moving);
     std::unique_ptr<io::PairWriter> writer;
     cluster.together([&] {
         if (!cluster.first()) return;

@@ -12,6 +12,7 @@
 #include "cli/command/progress_line.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/subcommands.hpp"
+#include "io/formats.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"
@@ -224,7 +225,7 @@ void add_result(Command& program, Action& action) {
     add_server_address(command, request->server);
     command.callback([request, &action] {
         check_server_named(request->server);
-        if (!request->output.empty()) (void)io::pair_format(request->output);
+        if (!request->output.empty()) (void)io::result_format(request->output);
         action = [request] { return run_result(*request); };
     });
 }

@@ -26,7 +26,7 @@ void keep_freed_memory() {
 int run_serve(const ServeRequest& request) {
     keep_freed_memory();
 #ifdef OCTOPAIR_WITH_MPI
-    if (request.engine.kind == EngineKind::mpi) return serve_on_ranks(request);
+    if (request.engine.has_ranks()) return serve_on_ranks(request);
 #endif
     const Interrupt interrupt;
     const auto log = make_log(request);

@@ -145,10 +145,10 @@ void complete_serve_request(const Command& command, ServeRequest& request) {
     request.options.listen = service::parse_address(request.listen);
     if (!request.metrics.empty()) request.options.metrics = service::parse_address(request.metrics);
     check_engine_choice(request.engine);
-    if (request.engine.kind == EngineKind::server) {
+    if (request.engine.is_server()) {
         throw Error(ErrorCode::usage, "--engine: a server looks for pairs itself; it does not ask another one");
     }
-    if (request.rank_silence && request.engine.kind != EngineKind::mpi) {
+    if (request.rank_silence && !request.engine.has_ranks()) {
         throw Error(ErrorCode::usage, "--rank-timeout: only --engine mpi has ranks");
     }
 }

@@ -21,14 +21,12 @@ service::ServerOptions server_options_of(const ServeRequest& request) {
     options.engine_name = crew.engine;
     const unsigned width = crew.threads + crew.workers;
     // A worker process is woken for every job anyway.
-    options.lanes = {width, width, request.engine.kind == EngineKind::local ? width : 0};
-    options.engine = [choice = request.engine](unsigned workers) {
-        EngineChoice one = choice;
-        (one.kind == EngineKind::processes ? one.workers : one.threads) = workers;
-        return make_engine(one);
+    options.lanes = {width, width, request.engine.runs_in_caller() ? width : 0};
+    options.engine = [choice = request.engine](unsigned one_width) {
+        return make_engine(choice.with_width(one_width));
     };
 #ifdef OCTOPAIR_WITH_PROCESSES
-    if (request.engine.kind == EngineKind::processes) {
+    if (request.engine.has_workers()) {
         options.worker_faults = [](const Engine& engine) {
             const WorkerFaults faults = worker_faults(engine);
             return faults.ended + faults.stopped;

@@ -213,12 +213,12 @@ std::unique_ptr<CollisionWriter> make_collision_csv_writer(std::unique_ptr<Outpu
 }
 
 std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& path, const CollisionForm& form) {
-    switch (pair_format(path)) {
-        case PairFormat::csv:
+    switch (result_format(path)) {
+        case ResultFormat::csv:
             return make_collision_csv_writer(std::make_unique<AtomicFile>(path), form);
-        case PairFormat::jsonl:
+        case ResultFormat::jsonl:
             return make_collision_jsonl_writer(std::make_unique<AtomicFile>(path), form);
-        case PairFormat::npy:
+        case ResultFormat::npy:
             break;
     }
     throw Error(ErrorCode::usage, fmt::format("{}: .npy holds pairs alone; collisions go to .csv or .jsonl", path));

@@ -18,19 +18,19 @@ namespace octopair::io {
 enum class Event : std::uint8_t { begin, end };
 
 /// By the ending of the path: csv or jsonl. Throws Error{usage} for another ending.
-PairFormat event_format(const std::string& path);
+ResultFormat event_format(const std::string& path);
 
 class EventWriter {
 public:
     /// Throws Error{usage} for npy.
-    EventWriter(PairFormat format, std::unique_ptr<OutputStream> out, const PairNames& names);
+    EventWriter(ResultFormat format, std::unique_ptr<OutputStream> out, const PairNames& names);
 
     /// Any number of calls for a frame and an event.
     void write(std::uint64_t frame, Event event, std::span<const Pair> pairs);
     void finish() { out_->commit(); }
 
 private:
-    PairFormat format_;
+    ResultFormat format_;
     std::unique_ptr<OutputStream> out_;
     JsonlRows jsonl_;
 };

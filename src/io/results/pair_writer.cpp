@@ -95,14 +95,6 @@ private:
 
 }  // namespace
 
-PairFormat pair_format(const std::string& path) {
-    const std::string ending = std::filesystem::path(path).extension().string();
-    if (ending == ".npy") return PairFormat::npy;
-    if (ending == ".csv") return PairFormat::csv;
-    if (ending == ".jsonl") return PairFormat::jsonl;
-    throw Error(ErrorCode::usage, fmt::format("{}: the name of a pairs file ends in .npy, .csv or .jsonl", path));
-}
-
 std::string frame_path(const std::string& path, std::uint64_t frame) {
     const std::size_t dot = path.rfind('.');
     return fmt::format("{}.{:06}{}", path.substr(0, dot), frame, dot == std::string::npos ? "" : path.substr(dot));
@@ -121,12 +113,12 @@ std::unique_ptr<PairWriter> make_jsonl_writer(std::unique_ptr<OutputStream> out,
 }
 
 std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool moving, const PairNames& names) {
-    switch (pair_format(path)) {
-        case PairFormat::npy:
+    switch (result_format(path)) {
+        case ResultFormat::npy:
             return make_npy_writer(path, moving);
-        case PairFormat::csv:
+        case ResultFormat::csv:
             return make_csv_writer(std::make_unique<AtomicFile>(path), moving);
-        case PairFormat::jsonl:
+        case ResultFormat::jsonl:
             return make_jsonl_writer(std::make_unique<AtomicFile>(path), moving, names);
     }
     throw Error(ErrorCode::usage, "unknown pair format");

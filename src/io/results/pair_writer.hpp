@@ -15,14 +15,10 @@
 #include <vector>
 
 #include "io/files/output_stream.hpp"
+#include "io/formats.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::io {
-
-enum class PairFormat : std::uint8_t { npy, csv, jsonl };
-
-/// By the ending of the path. Throws Error{usage} for another ending.
-PairFormat pair_format(const std::string& path);
 
 /// NAME.npy and 7 give NAME.000007.npy.
 std::string frame_path(const std::string& path, std::uint64_t frame);

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "engine/processes/worker_limits.hpp"
 #include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
 
@@ -12,19 +13,9 @@ namespace octopair {
 
 namespace {
 
-using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds look_interval(20);     // between looks at the workers
-constexpr milliseconds patience(2000);        // for a worker to leave a pass that failed
-constexpr milliseconds start_patience(5000);  // for a worker to find its slot
-constexpr milliseconds standstill(5000);      // while all workers wait for something to happen
-constexpr milliseconds fruitful(60000);       // a worker that lived so long did something
-constexpr unsigned most_fruitless = 10;
-constexpr unsigned most_looks = 4000;  // for the end of a pass, about 80 us, before going to sleep
-constexpr unsigned most_strikes = 3;   // workers that a share may end
-constexpr unsigned most_failed_starts = 3;
-/// Less its slot: the share of what a worker does before the first.
+/// Pseudo share `preparing - slot`: the worker died before its first share.
 constexpr std::uint64_t preparing = ~std::uint64_t(0);
 
 SharedMemory make_desk(unsigned workers) {
@@ -73,7 +64,7 @@ void Crew::count_fault(std::uint64_t& fault) {
 void Crew::start(unsigned slot) {
     Member& member = crew_[slot];
     std::string how;
-    for (unsigned i = 0; i < most_failed_starts; ++i) {
+    for (unsigned i = 0; i < worker_limits::max_failed_starts; ++i) {
         member.process = nullptr;
         view_.slot(slot).attached.store(0);
         view_.slot(slot).waits.store(0);
@@ -132,12 +123,12 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
         throw Error(ErrorCode::usage, "the workers belong to the process that this one was forked from");
     if (!same_work(pass, last_pass_)) {
         strikes_.clear();
-        for (Member& member : crew_) member.fruitless = 0;
+        for (Member& member : crew_) member.deaths_between_shares = 0;
     }
     last_pass_ = pass;
     taking_part_ = pass.workers;
     // A client that keeps looking would take time from workers that have no other core.
-    looks_ = taking_part_ < std::thread::hardware_concurrency() ? most_looks : 0;
+    looks_ = taking_part_ < std::thread::hardware_concurrency() ? worker_limits::max_spins_for_pass_end : 0;
     needed_ = regions;
     failure_ = nullptr;
     forget_regions();
@@ -147,12 +138,12 @@ std::uint32_t Crew::run(const Pass& pass, std::span<const std::shared_ptr<Region
 
     const std::stop_callback wake(watch.stop, [&] { view_.desk().for_client.raise(); });
     changed_at_ = Clock::now();
-    Clock::time_point next_check = Clock::now() + look_interval;
+    Clock::time_point next_check = Clock::now() + worker_limits::check_interval;
     for (bool over = false; !over;) {
         const std::uint32_t seen = view_.desk().for_client.count.load();
         over = all_finished();
         const bool check = !over && Clock::now() >= next_check;
-        if (check) next_check = Clock::now() + look_interval;
+        if (check) next_check = Clock::now() + worker_limits::check_interval;
         try {
             look(watch, over, check);
         } catch (...) {
@@ -195,22 +186,25 @@ void Crew::check_members(const PassWatch& watch) {
         if (state == ProcessState::runs) {
             const bool attached = view_.slot(slot).attached.load() != 0;
             if (attached) member.failed_starts = 0;
-            if (attached || Clock::now() - member.started_at < start_patience) continue;
+            if (attached || Clock::now() - member.started_at < worker_limits::attach_timeout) continue;
         }
         lose(slot, state != ProcessState::ended, watch);
     }
-    if (failure_ != nullptr && Clock::now() - failed_at_ > patience) end_sluggish();
-    if (failure_ == nullptr) check_standstill();
+    if (failure_ != nullptr && Clock::now() - failed_at_ > worker_limits::pass_exit_timeout)
+        kill_unresponsive_workers();
+    if (failure_ == nullptr) check_deadlock();
 }
 
-/// Workers that all wait for each other do so because of what was left in the tables: it would be for ever.
-void Crew::check_standstill() {
+/// Fails the pass if all workers wait for each other. A worker that died can leave such a state in the shared tables.
+void Crew::check_deadlock() {
     const std::uint64_t now = events();
     if (now != last_events_ || !all_wait()) {
         last_events_ = now;
         changed_at_ = Clock::now();
-    } else if (Clock::now() - changed_at_ > standstill) {
-        fail(std::make_exception_ptr(Error(ErrorCode::engine_failed, "worker processes wait for what does not come")));
+    } else if (Clock::now() - changed_at_ > worker_limits::deadlock_timeout) {
+        fail(std::make_exception_ptr(Error(ErrorCode::engine_failed,
+                                           "worker processes wait for each other: no work was done for " +
+                                               std::to_string(worker_limits::deadlock_timeout.count() / 1000) + " s")));
     }
 }
 
@@ -221,7 +215,7 @@ bool Crew::all_wait() const {
     return true;
 }
 
-/// How much has happened in the pass, so to speak.
+/// Activity counter of the pass, used to detect a deadlock among the workers.
 std::uint64_t Crew::events() const {
     std::uint64_t events = view_.desk().among_workers.count.load() + view_.desk().for_client.count.load();
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
@@ -240,7 +234,7 @@ void Crew::lose(unsigned slot, bool stopped, const PassWatch& watch) {
     count_fault(stopped ? faults_.stopped : faults_.ended);
     try {
         member.failed_starts = attached ? 0 : member.failed_starts + 1;
-        if (member.failed_starts >= most_failed_starts) {
+        if (member.failed_starts >= worker_limits::max_failed_starts) {
             member.failed_starts = 0;
             throw_cannot_start(how);
         }
@@ -269,23 +263,25 @@ void Crew::strike(unsigned slot) {
         const Share& record = view_.shares(share - 1, 1)[0];
         const ShareState state = ShareState::of(record.state.load());
         const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
-        if (!under_way || record.step >= step_names.size()) return check_fruits(slot);
+        if (!under_way || record.step >= step_names.size()) return check_crash_loop(slot);
         step = Step(record.step);
         count_fault(faults_.in_share[std::size_t(step)]);
     } else {
-        if (part.preparing.load() == 0) return check_fruits(slot);
+        if (part.preparing.load() == 0) return check_crash_loop(slot);
         share = preparing - slot;
     }
-    if (++strikes_[share] < most_strikes) return;
+    if (++strikes_[share] < worker_limits::max_deaths_per_share) return;
     throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +
-                                              ", has ended " + std::to_string(most_strikes) + " worker processes");
+                                              ", has ended " + std::to_string(worker_limits::max_deaths_per_share) +
+                                              " worker processes");
 }
 
 /// Throws Error{engine_failed} where worker after worker of a slot ends between two shares.
-void Crew::check_fruits(unsigned slot) {
+void Crew::check_crash_loop(unsigned slot) {
     Member& member = crew_[slot];
-    member.fruitless = Clock::now() - member.started_at > fruitful ? 1 : member.fruitless + 1;
-    if (member.fruitless < most_fruitless) return;
+    member.deaths_between_shares =
+        Clock::now() - member.started_at > worker_limits::healthy_lifetime ? 1 : member.deaths_between_shares + 1;
+    if (member.deaths_between_shares < worker_limits::max_deaths_between_shares) return;
     throw Error(ErrorCode::engine_failed, "worker processes keep ending between their shares");
 }
 
@@ -318,7 +314,7 @@ void Crew::fail_as_worker(unsigned slot) {
 }
 
 /// Workers that do not leave a pass that failed are killed.
-void Crew::end_sluggish() {
+void Crew::kill_unresponsive_workers() {
     for (unsigned slot = 0; slot < taking_part_; ++slot) {
         if (crew_[slot].process == nullptr || finished(slot)) continue;
         crew_[slot].process = nullptr;

@@ -73,7 +73,7 @@ private:
         std::unique_ptr<WorkerProcess> process;  ///< none where it could not be started
         unsigned failed_starts = 0;              ///< one after another
         std::chrono::steady_clock::time_point started_at = {};
-        unsigned fruitless = 0;  ///< workers that soon ended outside of any share, one after another
+        unsigned deaths_between_shares = 0;  ///< workers that soon ended outside of any share, one after another
     };
     void start(unsigned slot);
     [[noreturn]] void throw_cannot_start(const std::string& how) const;
@@ -86,13 +86,13 @@ private:
     void lose(unsigned slot, bool stopped, const PassWatch& watch);
     void count_fault(std::uint64_t& fault);
     void strike(unsigned slot);
-    void check_fruits(unsigned slot);
-    void check_standstill();
+    void check_crash_loop(unsigned slot);
+    void check_deadlock();
     bool all_wait() const;
     std::uint64_t events() const;
     void fail(std::exception_ptr failure);
     void fail_as_worker(unsigned slot);
-    void end_sluggish();
+    void kill_unresponsive_workers();
     void send_regions(unsigned slot);
     void forget_regions();
 

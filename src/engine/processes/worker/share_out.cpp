@@ -3,17 +3,9 @@
 #include <utility>
 
 #include "base/stop.hpp"
+#include "engine/processes/worker_limits.hpp"
 
 namespace octopair {
-
-namespace {
-
-using std::chrono::milliseconds;
-
-constexpr unsigned looks_for_event = 2000;  // about 40 us: the others tend to end at the same time
-constexpr milliseconds longest_event_sleep(100);
-
-}  // namespace
 
 ShareOut::ShareOut(DeskView& view, const Self& self, std::stop_token stop)
     : view_(view), slot_(view.slot(self.slot)), self_(self), stop_(std::move(stop)) {}
@@ -67,7 +59,7 @@ void ShareOut::wait_for_others(std::span<Share> records) {
         if (done == records.size()) return;
         throw_if_stopped(stop_);
         const Waiting waiting(slot_);
-        event.wait(seen, longest_event_sleep, looks_for_event);
+        event.wait(seen, worker_limits::max_event_sleep, worker_limits::max_spins_for_event);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "engine/processes/worker_limits.hpp"
 #include "engine/threads/writers.hpp"
 
 namespace octopair {
@@ -100,7 +101,7 @@ private:
             if (filled - slot_.ring_taken.load() < pass_.ring_blocks) break;
             throw_if_stopped(place_.stop);
             const Waiting waiting(slot_);
-            slot_.command.wait(seen, std::chrono::milliseconds(100), 0);
+            slot_.command.wait(seen, worker_limits::max_event_sleep, 0);
         }
         held_ = 0;
         const std::uint64_t block = place_.shares.slot() * pass_.ring_blocks + filled % pass_.ring_blocks;

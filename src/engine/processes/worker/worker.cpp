@@ -12,14 +12,12 @@
 #include "base/floating_point.hpp"
 #include "engine/processes/shared_memory/mail.hpp"
 #include "engine/processes/worker/worker_pass.hpp"
+#include "engine/processes/worker_limits.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
-
-constexpr unsigned looks_for_pass = 4000;  // for a next pass, about 80 us: calls tend to come one after another
-constexpr std::chrono::seconds longest_pass_sleep(3600);
 
 /// The stop source of the pass under way, and which pass was stopped last.
 class Stops {
@@ -87,7 +85,7 @@ public:
             if (asked == slot.finished.load()) {
                 if (forgot_.exchange(false)) program.forget_job();
                 const Waiting waiting(slot);
-                slot.command.wait(seen, longest_pass_sleep, looks_for_pass);
+                slot.command.wait(seen, worker_limits::max_command_sleep, worker_limits::max_spins_for_pass);
                 continue;
             }
             const Pass pass = view.desk().pass;
@@ -113,10 +111,9 @@ private:
     /// Waits for mail or the end of the client. Its process is looked for as well: a copy of its end of the socket may
     /// live on in some child that it forked.
     bool client_lives() const {
-        constexpr int look_interval = 1000;  // milliseconds
         for (;;) {
             pollfd waiting{socket_.number(), POLLIN, 0};
-            const int ready = ::poll(&waiting, 1, look_interval);
+            const int ready = ::poll(&waiting, 1, int(worker_limits::client_check_interval.count()));
             if (ready > 0) return true;
             if (::getppid() != parent_) return false;
         }

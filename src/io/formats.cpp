@@ -1,0 +1,51 @@
+#include "io/formats.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "io/meshes/mesh.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// Returns the ending in lower case, with its dot.
+std::string ending_of(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) {
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    }
+    return ending;
+}
+
+}  // namespace
+
+SceneFormat scene_format(const std::string& path) {
+    const std::string ending = ending_of(path);
+    if (ending == ".npy") return SceneFormat::npy;
+    if (ending == ".csv") return SceneFormat::csv;
+    if (ending == ".json") return SceneFormat::json;
+#ifdef OCTOPAIR_WITH_MESHES
+    if (is_mesh_ending(ending)) return SceneFormat::mesh;
+#endif
+    return SceneFormat::unknown;
+}
+
+bool has_parts(const std::string& path) {
+    const std::string ending = ending_of(path);
+    return ending == ".gltf" || ending == ".json";
+}
+
+ResultFormat result_format(const std::string& path) {
+    const std::string ending = ending_of(path);
+    if (ending == ".npy") return ResultFormat::npy;
+    if (ending == ".csv") return ResultFormat::csv;
+    if (ending == ".jsonl") return ResultFormat::jsonl;
+    throw Error(ErrorCode::usage, fmt::format("{}: the name of a pairs file ends in .npy, .csv or .jsonl", path));
+}
+
+bool is_array_file(const std::string& path) { return !path.empty() && result_format(path) == ResultFormat::npy; }
+
+}  // namespace octopair::io
