@@ -25,11 +25,13 @@ inline float float_above(double value) {
     return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
-/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. Zero is positive.
+/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. A zero that is nearest to `value` is
+/// positive.
 inline float finite_float_above(double value) {
     if (value <= -double(FLT_MAX)) return -FLT_MAX;
     if (value >= double(FLT_MAX)) return FLT_MAX;
-    return float_above(value) + 0.0F;
+    const float nearest = float(value) + 0.0F;
+    return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
 /// Returns the smallest float64 >= a + b.

@@ -32,7 +32,7 @@ TEST(Rounding, FloatAboveAtTheEnds) {
     EXPECT_EQ(rounding::float_above(-1e-320), 0.0F);
 }
 
-TEST(Rounding, FiniteFloatAboveIsFiniteAndHasNoNegativeZero) {
+TEST(Rounding, FiniteFloatAboveIsFiniteAndNearestZerosArePositive) {
     EXPECT_EQ(rounding::finite_float_above(1e300), FLT_MAX);
     EXPECT_EQ(rounding::finite_float_above(-1e300), -FLT_MAX);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(rounding::finite_float_above(-1e-320)), 0u);
