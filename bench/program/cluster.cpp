@@ -2,6 +2,7 @@
 #include "cluster/study.hpp"
 
 #include <memory>
+#include <utility>
 
 #include "cli/command/interrupt.hpp"
 #include "cli/command/words.hpp"
@@ -21,7 +22,7 @@ struct ClusterRequest {
     std::string on_ranks;  // a file: measure on the ranks of this program
 };
 
-std::string measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
+MakeText measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
     std::vector<cluster::Measured> all;
     for (const std::string& scene : plan.scenes) {
         for (const std::uint64_t objects : plan.objects) {
@@ -32,7 +33,7 @@ std::string measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks,
             }
         }
     }
-    return cluster::measured_json(all);
+    return [all = std::move(all)] { return cluster::measured_json(all); };
 }
 
 int run_cluster(const ClusterRequest& request) {

@@ -6,14 +6,14 @@
 
 namespace octopair::bench {
 
-int run_on_ranks(const std::string& path, const std::function<std::string(cli::Cluster&)>& measure) {
+int run_on_ranks(const std::string& path, const std::function<MakeText(cli::Cluster&)>& measure) {
     cli::Cluster ranks;
     try {
-        const std::string text = measure(ranks);
+        const MakeText make_text = measure(ranks);
         ranks.together([&] {
             if (!ranks.first()) return;
             io::AtomicFile file(path);
-            file.write(text);
+            file.write(make_text());
             file.commit();
         });
         return 0;

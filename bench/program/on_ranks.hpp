@@ -9,8 +9,11 @@
 
 namespace octopair::bench {
 
-/// Collective. Runs `measure` on all ranks, and writes the text that rank 0 gets to `path`. Returns the exit status.
-/// Throws: what fails on one rank alone.
-int run_on_ranks(const std::string& path, const std::function<std::string(cli::Cluster&)>& measure);
+/// Makes the text of a file. Only rank 0 calls it.
+using MakeText = std::function<std::string()>;
+
+/// Collective. Runs `measure` on all ranks, and writes the text that rank 0 makes of the result to `path`. Returns the exit
+/// status. Throws: what fails on one rank alone.
+int run_on_ranks(const std::string& path, const std::function<MakeText(cli::Cluster&)>& measure);
 
 }  // namespace octopair::bench

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "cli/command/interrupt.hpp"
 #include "octopair/error.hpp"
@@ -23,11 +24,12 @@ struct ScalingRequest {
 };
 
 /// Measures the first scene of the plan.
-std::string measure_scaling(const scaling::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
+MakeText measure_scaling(const scaling::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {
     const scaling::Turns turns{scaling::setups(plan.cores, plan.threads_per_rank), plan.rounds};
     const auto together = [&](const std::function<void()>& part) { ranks.together(part); };
-    return scaling::contest_json(scaling::hold_on_ranks(
-        MPI_COMM_WORLD, {plan.scenes.front(), plan.objects.front(), plan.weak, {}}, turns, together, stop));
+    auto contest = scaling::hold_on_ranks(MPI_COMM_WORLD, {plan.scenes.front(), plan.objects.front(), plan.weak, {}},
+                                          turns, together, stop);
+    return [contest = std::move(contest)] { return scaling::contest_json(contest); };
 }
 
 /// Adds 1 to ascending numbers, and removes repeated ones.

@@ -14,9 +14,9 @@ struct PosedPlane {
 
 inline PosedPlane posed_plane(const shape::Plane& plane, const Pose& pose) {
     const double length = vector::length(plane.normal);
-    const Point3d unit = {plane.normal[0] / length, plane.normal[1] / length, plane.normal[2] / length};
-    const Point3d turned = vector::turned(pose, unit);
-    const Point3d point = vector::turned(pose, vector::times(unit, plane.offset / length));
+    const Point3d normal = {plane.normal[0] / length, plane.normal[1] / length, plane.normal[2] / length};
+    const Point3d turned = vector::turned(pose, normal);
+    const Point3d point = vector::turned(pose, vector::times(normal, plane.offset / length));
     return {vector::times(turned, 1 / vector::length(turned)), vector::plus(point, vector::place(pose))};
 }
 
