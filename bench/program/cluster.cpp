@@ -1,12 +1,14 @@
 // octopair-bench cluster: what a call costs each of so many ranks (bench/cluster).
-#include "cluster/study.hpp"
-
 #include <memory>
+#include <stop_token>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/command/interrupt.hpp"
 #include "cli/command/words.hpp"
 #include "cluster/on_ranks.hpp"
+#include "cluster/study.hpp"
 #include "program/on_ranks.hpp"
 #include "program/options.hpp"
 #include "program/study_output.hpp"

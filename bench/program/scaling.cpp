@@ -1,8 +1,11 @@
 // octopair-bench scaling: how long a call takes on so many threads, and on so many ranks (bench/scaling).
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "cli/command/interrupt.hpp"
 #include "octopair/error.hpp"

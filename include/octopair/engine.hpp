@@ -48,7 +48,8 @@ public:
 
     /// Finds the pairs of one set (`Objects{boxes}`), or of two (`Join{first, second}`), and writes them to `pairs`.
     /// Throws: Error{bad_input} with the object's index for a box that is not one; Error{cancelled} within 200 ms of a stop
-    /// request; Error{resource_limit}, Error{engine_failed}.
+    /// request; Error{resource_limit}, Error{engine_failed}; Error{usage} where the kind of engine cannot make this call (its
+    /// header says why).
     Summary find_pairs(const Input& input, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
     /// Hands the pairs to `sink` in order, and holds at most `Options::buffer_bytes` of them at a time. With an empty `sink`
     /// the pairs are only counted. Throws: as find_pairs().
@@ -59,7 +60,8 @@ public:
 
     /// Starts a job (job.hpp): find_pairs(), or stream_pairs() for `sink`, on a thread of the engine, which also calls `sink`.
     /// Returns at once. The end of the engine cancels its jobs. A box or a padding that is wrong fails the job.
-    /// Throws: Error{bad_input} for wrong options or sizes; Error{resource_limit} without memory or threads for a job.
+    /// Throws: Error{bad_input} for wrong options or sizes; Error{resource_limit} for more than 2^32 - 1 objects, or without
+    /// memory or threads for a job; Error{usage} as find_pairs().
     Job submit(JobInput input, Options options = {});
     Job submit_stream(JobInput input, PairSink sink, Options options = {});
 

@@ -34,7 +34,7 @@ class JobTask;
 Job make_job(std::shared_ptr<JobTask> task) noexcept;
 }  // namespace detail
 
-/// The last three are for ever.
+/// `done`, `failed` and `cancelled` are terminal states.
 enum class JobState : std::uint8_t {
     queued,     ///< others are before it
     running,    ///< its turn, unless a direct call is still under way
@@ -73,8 +73,8 @@ inline BorrowedObjects borrowed(const Objects& objects) { return BorrowedObjects
 
 using JobObjects = std::variant<OwnedObjects, BorrowedObjects>;
 
-/// What a job searches: JobObjects, or JobJoin{first, second}.
 using JobJoin = JoinOf<JobObjects>;
+/// The objects of a job: JobObjects, or JobJoin{first, second}.
 using JobInput = InputOf<JobObjects>;
 
 /// The handle of a job. Destroying it or assigning over it cancels the job and waits until the engine has let go of its

@@ -25,6 +25,7 @@
 #include "octopair/client.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
+#include "octopair/input.hpp"
 #include "octopair/job.hpp"
 
 namespace octopair {

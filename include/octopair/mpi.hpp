@@ -28,6 +28,7 @@
 
 #include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
+#include "octopair/input.hpp"
 
 namespace octopair {
 
@@ -62,8 +63,8 @@ struct IndexedObjects {
     std::span<const std::uint64_t> indices = {};
 };
 
-/// One set, or IndexedJoin{first, second}.
 using IndexedJoin = JoinOf<IndexedObjects>;
+/// The objects of find_pairs64(): IndexedObjects, or IndexedJoin{first, second}.
 using IndexedInput = InputOf<IndexedObjects>;
 
 /// Collective: this rank's piece of the pairs, as find_pairs would give it for all objects in the order of their indices. For

@@ -24,6 +24,7 @@
 
 #include "octopair/collision.hpp"
 #include "octopair/engine.hpp"
+#include "octopair/input.hpp"
 
 namespace octopair {
 

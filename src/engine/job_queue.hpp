@@ -2,7 +2,7 @@
 //
 // The thread is started by the first job. An engine owns its queue as its last member: the queue's end cancels all jobs
 // and joins the thread while the engine still has all that a job uses. A job that is cancelled while it waits ends
-// there and then, and only its empty Task stays in the queue until its turn, or until such have become half of it. Where
+// there and then, and only its empty JobTask stays in the queue until its turn, or until such have become half of it. Where
 // other processes take part in each job, such a one has its turn all the same, and is told to the engine.
 #pragma once
 

@@ -1,8 +1,9 @@
-// Outward rounding: bounds of numbers that float32 or float64 cannot hold. Every layer that widens a box rounds with these
-// functions.
+// Outward rounding: bounds of numbers that float32 or float64 cannot hold. boxes/box_kernel.cpp has finite_float_above() for
+// many numbers at a time.
 //
 // Invariants
-// - A function named `..._above` returns no less than the exact value, and one named `..._below` no more.
+// - A function named `..._above` returns no less than the exact value, and one named `..._below` no more, unless its comment
+//   names a bound.
 // - Without widening, rounding is monotone: a <= b implies float_above(a) <= float_above(b).
 #pragma once
 
@@ -34,7 +35,7 @@ inline float finite_float_above(double value) {
     return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
-/// Returns the smallest float64 >= a + b.
+/// Returns the smallest float64 >= a + b, but infinity of the sum's sign where the sum overflows.
 /// Source: Knuth's two-sum, which gives the rounding error of a sum exactly, since additions never underflow.
 inline double sum_above(double a, double b) {
     const double sum = a + b;

@@ -9,9 +9,6 @@
 
 namespace octopair::io {
 
-namespace {
-
-/// Returns the ending in lower case, with its dot.
 std::string ending_of(const std::string& path) {
     std::string ending = std::filesystem::path(path).extension().string();
     for (char& c : ending) {
@@ -19,8 +16,6 @@ std::string ending_of(const std::string& path) {
     }
     return ending;
 }
-
-}  // namespace
 
 SceneFormat scene_format(const std::string& path) {
     const std::string ending = ending_of(path);

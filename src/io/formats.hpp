@@ -6,6 +6,9 @@
 
 namespace octopair::io {
 
+/// Returns the ending of a file's name in lower case, with its dot; empty if there is none.
+std::string ending_of(const std::string& path);
+
 /// How a scene file is read. `mesh`: by Assimp. `unknown`: refused.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 

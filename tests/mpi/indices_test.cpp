@@ -103,7 +103,7 @@ TEST_F(RankIndices, CountOnFromRankToRankWhereNoneAreGiven) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 3'000, 1);
     const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);
     std::vector<Pair64> found, expected;
-    (void)find_pairs64(*ranks_, {{std::span(own), {}}, {}}, found);
+    (void)find_pairs64(*ranks_, IndexedObjects{{std::span(own), {}}, {}}, found);
     for (const Pair& pair : find_pairs(boxes)) expected.push_back({pair.a, pair.b});
     EXPECT_EQ(testing::all_pieces(found), expected);
 }

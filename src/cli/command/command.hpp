@@ -1,4 +1,4 @@
-// Commands of the program and their options.
+// Commands of a program and their options.
 //
 // `Command` and `Option` are handles: copies name the same command or option of a `CommandLine`, which must outlive them.
 // Only command.cpp includes CLI11, because its header takes 5 seconds to compile.

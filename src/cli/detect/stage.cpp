@@ -149,10 +149,11 @@ void check_outcome_options(const DetectRequest& request) {
         if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
         if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
     }
-    if (!asked.report.empty() && !asked.report.ends_with(".html") && !asked.report.ends_with(".htm")) {
+    const std::string page = io::ending_of(asked.report), older = io::ending_of(asked.baseline);
+    if (!asked.report.empty() && page != ".html" && page != ".htm") {
         refuse(fmt::format("--report: {}: a page ends in .html", asked.report));
     }
-    if (asked.baseline.ends_with(".csv") || asked.baseline.ends_with(".npy")) {
+    if (older == ".csv" || older == ".npy") {
         refuse(fmt::format("--baseline: {}: an older result is a .jsonl file", asked.baseline));
     }
     if (!asked.baseline.empty() && request.limit)

@@ -3,7 +3,7 @@
 //   - All numbers are the caller's float64, each taken for the real number that it is: differences are not rounded, and
 //     nothing overflows or underflows.
 //   - What is compared is first computed in float64. An error bound tells whether that decides; if not, integers do
-//     (exact/square_sum.hpp).
+//     (geometry/square_sum.hpp).
 //   - distance() is monotone: what is nearer by compare_distances() has no larger distance().
 //
 // Requires: rounding to nearest, with subnormal numbers.
