@@ -33,7 +33,7 @@ std::shared_ptr<ServerJob> begin(Limits& limits, Engine& engine, v1::JobSpec spe
     ServerJob::Parts parts;
     parts.place = limits.places.enter("local");
     parts.memory = limits.memory.take(input_bytes(spec));
-    parts.input = std::make_unique<JobInput>(spec, engine);
+    parts.input = std::make_unique<UploadedInput>(spec, engine);
     parts.pairs = std::make_unique<PairsInMemory>(limits.memory, 0);
     parts.spec = std::move(spec);
     return std::make_shared<ServerJob>(std::move(parts));

@@ -94,7 +94,7 @@ std::shared_ptr<ServerJob> Host::begin(const std::string& owner, v1::JobSpec spe
         parts.owner = owner;
         parts.place = places.enter(owner);
         parts.memory = memory.take(memory_of(spec));
-        parts.input = std::make_unique<JobInput>(spec, lanes.engine_for(object_count(spec)), &spares);
+        parts.input = std::make_unique<UploadedInput>(spec, lanes.engine_for(object_count(spec)), &spares);
         parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs);
         parts.spec = std::move(spec);
         auto job = make_job(std::move(parts));

@@ -2,9 +2,9 @@
 #include <thread>
 
 #include "service/detached/host.hpp"
-#include "service/server/jobs/job_input.hpp"
 #include "service/server/jobs/lanes.hpp"
 #include "service/server/jobs/server_job.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 
 namespace octopair::testing {
 namespace {
@@ -45,8 +45,8 @@ class NoRecord final : public service::JobRecord {
 public:
     std::string hash() const override { return "hash"; }
     std::optional<service::Budget::Share> ask_memory() override { return service::Budget::Share(); }
-    std::unique_ptr<service::JobInput> load(Engine& engine, const std::stop_token&) const override {
-        return std::make_unique<service::JobInput>(v1::JobSpec(), engine);
+    std::unique_ptr<service::UploadedInput> load(Engine& engine, const std::stop_token&) const override {
+        return std::make_unique<service::UploadedInput>(v1::JobSpec(), engine);
     }
     void end(const v1::JobReport&) override {}
     void later(std::function<void()> errand) override { errand(); }
@@ -60,7 +60,7 @@ protected:
         if (detached)
             parts.record = std::make_shared<NoRecord>();
         else
-            parts.input = std::make_unique<service::JobInput>(parts.spec, *engine_);
+            parts.input = std::make_unique<service::UploadedInput>(parts.spec, *engine_);
         parts.pairs = std::make_shared<service::PairsInMemory>(memory_, 0);
         auto job = std::make_shared<service::ServerJob>(std::move(parts));
         job->queue();

@@ -19,7 +19,7 @@ class JobReport;
 
 namespace octopair::service {
 
-class JobInput;
+class UploadedInput;
 
 class JobRecord {
 public:
@@ -30,7 +30,7 @@ public:
     /// What the job takes when it runs; none: there is not as much now.
     virtual std::optional<Budget::Share> ask_memory() = 0;
     /// Throws Error{io_failed} for a file that is damaged, Error{cancelled} on a stop.
-    virtual std::unique_ptr<JobInput> load(Engine& engine, const std::stop_token& stop) const = 0;
+    virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
     /// When it returns, how the job ended lasts. Throws Error{io_failed}.
     virtual void end(const v1::JobReport& ending) = 0;
     /// Has this done soon where waiting for a disk holds nobody up.

@@ -22,11 +22,11 @@
 #include "octopair/engine.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/server/jobs/budget.hpp"
-#include "service/server/jobs/job_input.hpp"
 #include "service/server/jobs/job_record.hpp"
 #include "service/server/jobs/job_table.hpp"
 #include "service/server/jobs/kept_pairs.hpp"
 #include "service/server/jobs/overseer.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 
 namespace octopair::service {
 
@@ -42,10 +42,10 @@ public:
     using Clock = std::chrono::steady_clock;
 
     struct Parts {
-        std::string owner;                  ///< who submitted it: others do not see it
-        v1::JobSpec spec;                   ///< checked
-        std::unique_ptr<JobInput> input;    ///< of a detached job: while it runs
-        std::shared_ptr<JobRecord> record;  ///< of a detached job
+        std::string owner;                     ///< who submitted it: others do not see it
+        v1::JobSpec spec;                      ///< checked
+        std::unique_ptr<UploadedInput> input;  ///< of a detached job: while it runs
+        std::shared_ptr<JobRecord> record;     ///< of a detached job
         std::shared_ptr<KeptPairs> pairs;
         Budget::Share memory;                                  ///< for the input and for finding the pairs
         ClientCounts::Place place;                             ///< until it has ended
@@ -64,7 +64,7 @@ public:
     bool detached() const { return parts_.record != nullptr; }
 
     /// While uploading, for the one who uploads.
-    JobInput& input() { return *parts_.input; }
+    UploadedInput& input() { return *parts_.input; }
     /// The input is complete.
     void queue();
     /// Instead of that: it has ended, before the server began.

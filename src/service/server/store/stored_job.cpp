@@ -9,7 +9,7 @@
 #include "service/protocol/job_spec.hpp"
 #include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/server/jobs/job_input.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 #include "service/server/log/event.hpp"
 
 namespace octopair::service {
@@ -22,9 +22,9 @@ std::optional<Budget::Share> StoredJob::ask_memory() {
     }
 }
 
-std::unique_ptr<JobInput> StoredJob::load(Engine& engine, const std::stop_token& stop) const {
+std::unique_ptr<UploadedInput> StoredJob::load(Engine& engine, const std::stop_token& stop) const {
     const File file(parts_.base + ".job", File::Mode::read);
-    auto input = std::make_unique<JobInput>(parts_.stored.spec, engine);
+    auto input = std::make_unique<UploadedInput>(parts_.stored.spec, engine);
     Buffer<std::byte> piece(piece_bytes);
     for (std::uint64_t at = parts_.stored.input_at; input->missing() > 0;) {
         throw_if_stopped(stop);

@@ -34,7 +34,7 @@ public:
 
     std::string hash() const override { return parts_.stored.hash; }
     std::optional<Budget::Share> ask_memory() override;
-    std::unique_ptr<JobInput> load(Engine& engine, const std::stop_token& stop) const override;
+    std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
     void later(std::function<void()> errand) override { parts_.folder.errands().add(std::move(errand)); }
 

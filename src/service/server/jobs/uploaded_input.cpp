@@ -1,4 +1,4 @@
-#include "service/server/jobs/job_input.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -11,7 +11,7 @@
 
 namespace octopair::service {
 
-JobInput::JobInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares)
+UploadedInput::UploadedInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares)
     : engine_(engine), spares_(spares), joined_(spec.has_second()), hash_(spec) {
     const std::array<const v1::ObjectSet*, 2> sets = {&spec.first(), &spec.second()};
     for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -21,19 +21,19 @@ JobInput::JobInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares)
     missing_ = input_bytes(spec);
 }
 
-JobInput::~JobInput() {
+UploadedInput::~UploadedInput() {
     if (spares_ == nullptr) return;
     for (Set& set : sets_) spares_->give(engine_, std::move(set.boxes));
 }
 
-std::span<std::byte> JobInput::make_room(const v1::ObjectSet& set, Set& made) {
+std::span<std::byte> UploadedInput::make_room(const v1::ObjectSet& set, Set& made) {
     made.padding.resize(set.padded() ? std::size_t(set.objects()) : 0);
     return set.precision() == v1::FLOAT64 ? make_boxes<double>(set.objects(), made)
                                           : make_boxes<float>(set.objects(), made);
 }
 
 template <typename Real>
-std::span<std::byte> JobInput::make_boxes(std::uint64_t count, Set& made) {
+std::span<std::byte> UploadedInput::make_boxes(std::uint64_t count, Set& made) {
     auto array = spares_ != nullptr ? spares_->take<Real>(engine_, count) : engine_.allocate_boxes<Box<Real>>(count);
     const std::span<Box<Real>> boxes = array.boxes().first(std::size_t(count));
     made.boxes = std::move(array);
@@ -47,7 +47,7 @@ void check_fits(std::span<const std::byte> data, std::uint64_t missing) {
     }
 }
 
-void JobInput::append(std::span<const std::byte> data) {
+void UploadedInput::append(std::span<const std::byte> data) {
     check_fits(data, missing_);
     missing_ -= data.size();
     hash_.add(data);

@@ -1,4 +1,4 @@
-// The objects of a job, put together from the pieces in which they come.
+// UploadedInput: the objects of a job, put together from the pieces in which they arrive.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@ class ObjectSet;
 
 namespace octopair::service {
 
-class JobInput final : public InputTarget {
+class UploadedInput final : public InputTarget {
 public:
     /// Room for what `spec` says, which was checked; the boxes lie where `engine` reads them, in spare arrays if there are
     /// such, and become spare ones. Throws Error.
-    JobInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares = nullptr);
-    JobInput(const JobInput&) = delete;
-    JobInput& operator=(const JobInput&) = delete;
-    ~JobInput() override;
+    UploadedInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares = nullptr);
+    UploadedInput(const UploadedInput&) = delete;
+    UploadedInput& operator=(const UploadedInput&) = delete;
+    ~UploadedInput() override;
 
     void append(std::span<const std::byte> data) override;
     std::uint64_t missing() const override { return missing_; }
