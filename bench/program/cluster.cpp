@@ -69,7 +69,7 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
         .add_option(
             "--ranks-per-machine",
             [request](const std::string& text) {
-                request->plan.ranks_per_machine = unsigned(parse_some("--ranks-per-machine", text));
+                request->plan.ranks_per_machine = unsigned(parse_between("--ranks-per-machine", text));
             },
             "in the paper's arrangement (default 2)")
         .type_name("N");

@@ -19,8 +19,7 @@ constexpr unsigned ranks_per_machine = 2;  // the paper's
 std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
     std::vector<unsigned> machines;
     for (const std::string& text : texts) {
-        machines.push_back(unsigned(cli::parse_count("--machines", text, most_machines)));
-        if (machines.back() == 0) throw Error(ErrorCode::usage, "--machines: 0 is less than 1");
+        machines.push_back(unsigned(parse_between("--machines", text, {1, most_machines})));
     }
     std::ranges::sort(machines);
     const auto same = std::ranges::unique(machines);

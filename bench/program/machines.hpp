@@ -12,12 +12,12 @@
 namespace octopair::bench {
 
 struct MachinesRequest {
-    std::vector<unsigned> machines;                           ///< how many, ascending; empty: not asked for
-    std::optional<double> latency_seconds, bytes_per_second;  ///< of the network's model
+    std::vector<unsigned> machines;  ///< numbers of machines, ascending; empty: do not run on ranks
+    std::optional<double> latency_seconds, bytes_per_second;  ///< parameters of the network model
     std::string mpirun = "mpirun";
 };
 
-/// --machines, --latency, --bandwidth, --mpirun.
+/// Adds --machines, --latency, --bandwidth and --mpirun.
 void add_machines_options(cli::Command& command, MachinesRequest& request);
 
 /// The other options of `octopair-bench paper`.

@@ -14,11 +14,17 @@
 
 namespace octopair::bench {
 
-/// Returns a number of at least 1. Throws: Error{usage} that names the option.
-inline std::uint64_t parse_some(const std::string& name, const std::string& text) {
-    const std::uint64_t number = cli::parse_count(name, text, std::numeric_limits<std::uint32_t>::max());
-    if (number == 0) throw Error(ErrorCode::usage, name + ": 0 is less than 1");
-    return number;
+struct Bounds {
+    std::uint64_t least = 1;
+    std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+};
+
+/// Returns a whole number within `bounds`. Throws: Error{usage} that names the option.
+inline std::uint64_t parse_between(const std::string& name, const std::string& text, const Bounds& bounds = {}) {
+    const std::uint64_t number = cli::parse_count(name, text, bounds.most);
+    if (number >= bounds.least) return number;
+    throw Error(ErrorCode::usage,
+                name + ": " + std::to_string(number) + " is less than " + std::to_string(bounds.least));
 }
 
 /// Adds an option that takes numbers of at least 1, and sorts them.
@@ -30,7 +36,7 @@ void add_numbers(cli::Command& command, const std::string& name, std::vector<Num
             name,
             [&numbers, name](const std::vector<std::string>& texts) {
                 numbers.clear();
-                for (const std::string& text : texts) numbers.push_back(Number(parse_some(name, text)));
+                for (const std::string& text : texts) numbers.push_back(Number(parse_between(name, text)));
                 std::ranges::sort(numbers);
             },
             what)
@@ -54,7 +60,7 @@ inline void add_scenes(cli::Command& command, std::vector<std::string>& scenes) 
 inline void add_rounds(cli::Command& command, unsigned& rounds) {
     command
         .add_option(
-            "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_some("--rounds", text)); },
+            "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_between("--rounds", text)); },
             "calls of each, of which the median counts (default " + std::to_string(rounds) + ')')
         .type_name("R");
 }

@@ -1,10 +1,10 @@
 // octopair-bench paper: the figure and the tables of the paper's section 5 (bench/paper; on ranks: machines.cpp).
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <limits>
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "cli/command/interrupt.hpp"
 #include "cli/command/numbers.hpp"
@@ -12,6 +12,7 @@
 #include "paper/json.hpp"
 #include "paper/study.hpp"
 #include "paper/tables.hpp"
+#include "program/options.hpp"
 #include "program/study_output.hpp"
 #include "program/subcommands.hpp"
 #include "samples/scenes.hpp"
@@ -37,22 +38,11 @@ std::vector<std::uint64_t> objects_or(const std::vector<std::uint64_t>& asked,
     return asked.empty() ? usual : asked;
 }
 
-struct Bounds {
-    std::uint64_t least, most;
-};
-
-/// A whole number within `bounds`. Throws Error{usage} that names `option`.
-std::uint64_t parse_between(std::string_view option, const std::string& text, const Bounds& bounds) {
-    const std::uint64_t number = cli::parse_count(option, text, bounds.most);
-    if (number >= bounds.least) return number;
-    throw Error(ErrorCode::usage, fmt::format("{}: {} is less than {}", option, number, bounds.least));
-}
-
 std::vector<std::uint64_t> parse_objects(const std::vector<std::string>& texts) {
     std::vector<std::uint64_t> objects;
     objects.reserve(texts.size());
     for (const std::string& text : texts) {
-        objects.push_back(parse_between("--objects", text, {2, std::numeric_limits<std::uint32_t>::max()}));
+        objects.push_back(parse_between("--objects", text, {.least = 2}));
     }
     std::sort(objects.begin(), objects.end());
     objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
@@ -81,7 +71,7 @@ int run_paper(PaperRequest request) {
     return 0;
 }
 
-void add_numbers(Command& command, PaperRequest& request) {
+void add_plan_options(Command& command, PaperRequest& request) {
     constexpr unsigned most_rounds = 1000;
     command
         .add_option(
@@ -121,7 +111,7 @@ void add_paper(Command& program, Action& action) {
             },
             "a kind of octopair generate (default uniform)")
         .type_name("KIND");
-    add_numbers(command, *request);
+    add_plan_options(command, *request);
 #ifdef OCTOPAIR_WITH_MPI
     add_machines_options(command, request->machines);
 #endif

@@ -1,4 +1,4 @@
-// Collisions: what the exact tests say about a pair of objects: its class, distance, depth, time of impact and contacts.
+// Collisions: class, distance, depth, time of impact and contacts of a pair of objects, as the exact tests compute them.
 //
 // Units     Lengths are in the caller's unit. Times run from 0 to 1, from an object's pose to its end pose (shapes.hpp).
 // Ownership All types are plain values.
@@ -12,7 +12,7 @@
 
 namespace octopair {
 
-/// What two objects are to each other. `collision`: they meet, and nobody asked how.
+/// Relation of two objects. `collision` means that they meet and that no exact feature filter has run.
 enum class CollisionClass : std::uint8_t {
     unknown,    ///< no exact filter has seen the pair
     clearance,  ///< they do not meet, but are no further apart than margin and paddings allow
@@ -33,7 +33,7 @@ struct Contact {
     std::uint32_t feature_b = no_feature;
 };
 
-/// What filters learned of a pair.
+/// Result of the exact filters for one pair.
 struct Finding {
     CollisionClass collision_class = CollisionClass::unknown;
     double distance = 0;                  ///< between two that do not meet

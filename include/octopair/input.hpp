@@ -1,7 +1,7 @@
 // Input: the objects of a call: one set, or two.
 //
-// Result    of one set: the pairs within it. Of two sets: the pairs of one object of each; a is in the first set.
-// Ownership as that of the sets: Objects are borrowed (objects.hpp), JobObjects are kept or borrowed (job.hpp).
+// Result    With one set, a call finds the pairs within the set. With two sets, it finds the pairs of one object of each.
+// Ownership An input owns what its sets own: Objects are borrowed (objects.hpp), JobObjects owned or borrowed (job.hpp).
 #pragma once
 
 #include <concepts>
@@ -28,12 +28,12 @@ struct InputOf {
         requires std::convertible_to<Source, Set>
     InputOf(Source set) : first(std::move(set)) {}
     InputOf(JoinOf<Set> join) : first(std::move(join.first)), second(std::move(join.second)) {}
-    /// Objects by their boxes alone, and with paddings: find_pairs({boxes, padding}, pairs).
+    /// Makes one set of boxes, with or without paddings: find_pairs({boxes, padding}, pairs).
     InputOf(Boxes boxes, std::span<const double> padding = {})
         requires std::same_as<Set, Objects>
         : first{boxes, padding} {}
     // NOLINTEND(google-explicit-constructor)
-    /// One set if `other` is empty, else a join.
+    /// Makes one set if `other` is empty, else a join.
     InputOf(Set set, std::optional<Set> other) : first(std::move(set)), second(std::move(other)) {}
 
     Set first;

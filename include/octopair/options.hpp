@@ -1,4 +1,4 @@
-// Options: how a call is made, the same for all engines.
+// Options: the settings of a call, the same for all engines.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Summary: what a call did, beside its pairs.
+// Summary: the counts and times of a call.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Verification {
     std::string_view not_checked = {};
 };
 
-/// What a call did, beside its pairs.
+/// Counts and times of a call.
 struct Summary {
     std::uint64_t pairs = 0;
     bool truncated = false;     ///< `limit` was reached and at least one more pair exists

@@ -30,7 +30,7 @@ struct EngineChoice {
     bool keeps_scenes() const { return kind == EngineKind::local || kind == EngineKind::server; }
     /// Whether a call may run on the thread that made it, without waking another thread or process.
     bool runs_in_caller() const { return kind == EngineKind::local; }
-    /// The same engine with `width` threads, or workers if it has workers.
+    /// Returns a copy of this choice with `width` workers if the engine has workers, else with `width` threads.
     EngineChoice with_width(unsigned width) const;
 };
 

@@ -1,4 +1,4 @@
-// What main() of a program does around its own work: signals, and errors as a line and an exit status.
+// program_main: runs a program's work, and reports its errors as one line and an exit status.
 #pragma once
 
 #include <functional>
