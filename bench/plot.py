@@ -90,8 +90,8 @@ def figure_5(study, folder):
     save(figure, folder, "figure-5.svg")
 
 
-STEPS = [("octal codes (encode)", BLUE, "octal_codes", "encode"), ("sort", ORANGE, "sort", "sort"),
-         ("merge", GREEN, "merge_machine", "merge"), ("merge at the master", PURPLE, "merge_master", None),
+STEPS = [("octal codes (encode)", BLUE, "octal_codes", "encode"), ("sort (scatter)", ORANGE, "sort", "scatter"),
+         ("merge (count)", GREEN, "merge_machine", "count"), ("merge at the master", PURPLE, "merge_master", None),
          ("scan", SKY, "scan", "scan")]
 
 
@@ -240,7 +240,7 @@ def scaling(results, folder):
     save(figure, folder, "scaling.svg")
 
 
-RANK_STEPS = {"join": BLACK, "plant": GREEN, "route": PURPLE, "pack": YELLOW, "build": ORANGE, "merge": RED, "scan": SKY,
+RANK_STEPS = {"join": BLACK, "plan": GREEN, "route": PURPLE, "pack": YELLOW, "build": ORANGE, "merge": RED, "scan": SKY,
               "order": BLUE}
 
 

@@ -6,7 +6,7 @@
 Of n objects on k ranks, boxes spread evenly:
 
     shared   s = sigma (k / n)^(1/3)                          the part of the objects that several ranks receive: surfaces
-    plant    c r + d n + e k   seconds                        r = (n / k) (1 + s) objects received; d: what every rank does for
+    plan    c r + d n + e k   seconds                        r = (n / k) (1 + s) objects received; d: what every rank does for
                                                               all octants of the tree; e: for every other rank
     compute  r (a + b log2 r) + m k   seconds                 all other steps
     bytes    28 r (k - 1) / k + f n + g k + h                 that a rank sends
@@ -38,13 +38,13 @@ def mean_seconds(run, steps):
     return sum(rank["cpu_seconds"][step] for rank in run["alone"] for step in steps) / run["ranks"]
 
 
-def planting(run):
-    return mean_seconds(run, ["plant"])
+def planning(run):
+    return mean_seconds(run, ["plan"])
 
 
 def computing(run):
-    """All but planting."""
-    return mean_seconds(run, set(run["alone"][0]["cpu_seconds"]) - {"plant", "mpi"})
+    """All but planning."""
+    return mean_seconds(run, set(run["alone"][0]["cpu_seconds"]) - {"plan", "mpi"})
 
 
 def per_rank(run, name):
@@ -71,7 +71,7 @@ class Model:
         self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
                          [per_rank(run, "shared_objects") * run["ranks"] / run["objects"] for run in runs])[0]
         sizes = [(run["objects"], run["ranks"]) for run in runs]
-        self.plant = fit([[self.received(n, k), n, k] for n, k in sizes], [planting(run) for run in runs])
+        self.plan = fit([[self.received(n, k), n, k] for n, k in sizes], [planning(run) for run in runs])
         self.compute = fit([self.compute_row(n, k) for n, k in sizes], [computing(run) for run in runs])
         self.sent = fit([[n, k, 1] for n, k in sizes],
                         [per_rank(run, "bytes_sent") - 28 * self.received(*size) * (size[1] - 1) / size[1]
@@ -91,7 +91,7 @@ class Model:
     def seconds(self, n, k):
         """Of received objects, of the tree, of other ranks."""
         own, logarithm, ranks = (a * b for a, b in zip(self.compute, self.compute_row(n, k)))
-        c, d, e = self.plant
+        c, d, e = self.plan
         return own + logarithm + c * self.received(n, k), d * n, ranks + e * k
 
     def bytes(self, n, k):
@@ -108,7 +108,7 @@ def table(head, rows):
 
 def constants_text(model):
     a, b, m = model.compute
-    c, d, e = model.plant
+    c, d, e = model.plan
     f, g, h = model.sent
     p, q = model.told
     return table(["sigma", "a, ns", "b, ns", "c, ns", "d, ns", "e, us", "m, us", "f", "g", "h", "p", "q"],
@@ -122,7 +122,7 @@ def check_text(model, runs):
     rows = []
     for run in sorted(runs, key=lambda run: (run["objects"], run["ranks"])):
         n, k = run["objects"], run["ranks"]
-        pairs = [((planting(run) + computing(run)) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
+        pairs = [((planning(run) + computing(run)) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
                  (per_rank(run, "shared_objects") * k / n * 100, model.shared(n, k) * 100, "{:.2f}"),
                  (per_rank(run, "bytes_sent") * k / n, model.bytes(n, k) * k / n, "{:.1f}")]
         rows.append([f"{n:,}", str(k)] + [form.format(number) for measured, said, form in pairs for number in

@@ -147,7 +147,7 @@ std::string components_text(const std::vector<Measured>& all, const Network& net
         double seconds;
     };
     const Component components[] = {
-        {"octants (plant)", {}, slowest_of(ranks, &RankCosts::plant)},
+        {"octants (plan)", {}, slowest_of(ranks, &RankCosts::plan)},
         {"octal codes, sort", published.octal_codes + published.sort, slowest_of(ranks, &RankCosts::build)},
         {"merge (each machine)", published.merge_machine, merged_on_machines(ranks)},
         {"merge at the master", published.merge_master, merged_at_master(ranks)},

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json steps_json(const Setup& setup, const Steps& steps) {
     if (setup.finder == Finder::octopair) {
-        return {{"encode", steps.encode}, {"sort", steps.sort}, {"merge", steps.merge}, {"scan", steps.scan}};
+        return {{"encode", steps.encode}, {"count", steps.merge}, {"scatter", steps.sort}, {"scan", steps.scan}};
     }
     return {{"octal_codes", steps.encode},
             {"sort", steps.sort},

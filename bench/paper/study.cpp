@@ -72,7 +72,7 @@ public:
         const Summary summary = engine_->find_pairs(Objects{boxes}, pairs_, options_, stop_);
         const double seconds = seconds_since(start);
         const StepSeconds& steps = summary.steps;
-        return {{seconds, {steps.encode, steps.sort, steps.merge, 0, steps.scan}}, summary.pairs};
+        return {{seconds, {steps.encode, steps.scatter, steps.count, 0, steps.scan}}, summary.pairs};
     }
 
 private:

@@ -78,7 +78,7 @@ Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair
 /// they leave out waiting, and the other threads of a rank that has several.
 struct RankCosts {
     double join = 0;   ///< to learn what all ranks ask for
-    double plant = 0;  ///< the octants
+    double plan = 0;  ///< the octants
     double route = 0;  ///< to find where objects go
     double pack = 0;   ///< what is sent
     double build = 0;  ///< the linear octree of what was received; in the paper's arrangement a sorted list

@@ -6,9 +6,13 @@
 
 namespace octopair {
 
-/// Wall-clock seconds of the steps; a step that was passed over more than once (streaming) is summed.
+/// Wall-clock seconds of each step of a call. A step that ran more than once is summed.
 struct StepSeconds {
-    double encode = 0, sort = 0, merge = 0, scan = 0;
+    double encode = 0;   ///< finds the octants of each box; the paper's encode
+    double count = 0;    ///< counts each octant's entries, to know where they go; half of the paper's sort
+    double scatter = 0;  ///< writes the entries to their places; the other half
+    double scan = 0;     ///< finds the pairs; the paper's scan
+    double merge = 0;    ///< merges sorted lists; 0 but in the paper's arrangement
 };
 
 /// Outcome of Options::verify.

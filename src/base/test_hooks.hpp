@@ -18,11 +18,11 @@ namespace octopair {
 /// The choices between paths, by the file that makes them. A test of tiny scenes takes each of them.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
-    /* octree/build/octant_growth.cpp, octree/directory.cpp */ \
+    /* octree/build/split_rule.cpp, octree/directory.cpp */ \
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
     /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
-    path(build_one_block) path(build_blocks) path(merge_ranges) path(kept_above_leaf) path(ghost_entries) \
+    path(build_one_block) path(build_blocks) path(count_ranges) path(kept_above_leaf) path(ghost_entries) \
     path(refilled) path(crowded_octree) path(class_bits_brought) \
     /* octree/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
@@ -50,7 +50,7 @@ namespace octopair {
     path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
     path(relay_found_again) \
     /* scene/ */ \
-    path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_planted) \
+    path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_rebuilt) \
     path(octree_for_queries) path(pairs_waited) path(pairs_merged)
 // clang-format on
 
@@ -74,7 +74,7 @@ enum class Fault : unsigned {
     window_end_open,         ///< a column that begins where the rows of a block end is not tested
     tile_end_open,           ///< a tile that begins where a tile of rows ends is not swept
     handed_to_wrong_child,   ///< an entry is handed down to an octant that it does not touch
-    nested_frame_moved,      ///< class bits of handed down entries come from a frame that is a cell off
+    nested_space_moved,      ///< class bits of handed down entries come from a space that is a cell off
     stream_windows_overlap,  ///< a window begins with the last object of the one before
     sweep_repeats_block,     ///< a resumed sweep begins its block of rows again
     part_joined_twice,       ///< two parts of a crowd are joined in both directions

@@ -26,15 +26,15 @@ namespace octopair {
 enum class StepChoice : std::uint8_t { measured, full, incremental };
 
 struct Tuning {
-    /// Which objects stand for all when the octree is planned (octree/linear_octree.cpp, octree/frame.cpp).
+    /// Which objects stand for all when the octree is planned (octree/linear_octree.cpp, octree/space.cpp).
     struct Sampling {
         std::size_t stride = 64;         ///< one object of so many, but
         std::size_t most = 1 << 21;      ///< at most so many objects, but
         std::size_t most_stride = 2048;  ///< one of so many at least: as many as crowd an octant
-        std::size_t frame = 4096;        ///< of the sample: enough for the quantiles of a frame
+        std::size_t space = 4096;        ///< of the sample: enough for the quantiles of a space
     } sampling;
 
-    /// When an octant is divided (octree/build/octant_growth.cpp). In objects, unless a comment says otherwise.
+    /// When an octant is divided (octree/build/split_rule.cpp). In objects, unless a comment says otherwise.
     struct Split {
         double always = 2048;           ///< more would not stay in the cache while they are swept
         double never = 512;             ///< fewer are not divided, whatever their sweep costs; at most `always`
@@ -57,8 +57,8 @@ struct Tuning {
         std::size_t large_node = 1 << 15;     ///< entries: an octant that all threads share
         std::size_t share_entries = 1 << 13;  ///< entries of a share at most, so that stops are seen soon
         std::size_t shares_per_thread = 64;
-        std::size_t hot_node = 4096;      ///< entries: swept at once where the first axis does
-        std::uint64_t good_window = 192;  ///< tests a box
+        std::size_t crowded_octant = 4096;      ///< entries: swept at once where the first axis does
+        std::uint64_t good_tests = 192;  ///< tests a box
         double largest_part = 0.75;       ///< of the entries that one octant of a nested octree may hold
         double most_growth = 4;           ///< of entries in nested octrees, multiplied along a path of nesting
         unsigned most_nesting = 8;        ///< octrees within octants of octrees
@@ -68,7 +68,7 @@ struct Tuning {
     struct Sweep {
         std::size_t tile = 4096;               ///< boxes: their arrays stay in the second cache
         std::size_t small_set = 512;           ///< boxes: a sweep is good whatever its windows
-        std::uint64_t cheap_window = 64;       ///< tests a box
+        std::uint64_t cheap_tests = 64;       ///< tests a box
         std::uint64_t tests_per_pair = 16;     ///< two registers a pair
         std::size_t large_join = 1 << 15;      ///< boxes: shared out among threads
         std::size_t tests_per_call = 1 << 20;  ///< blocks of rows times registers of columns: a few milliseconds
@@ -82,11 +82,11 @@ struct Tuning {
         std::size_t measured_least = 256;      ///< boxes of a set that are looked at to measure it, at least, and
         std::size_t measured_most = 4096;      ///< at most
         std::size_t tried_rows = 16;           ///< rows that are tested against the measured columns to estimate hits
-        std::size_t window_stride = 13;        ///< rows of a set that is laid out, of which one window is measured
-        std::size_t windows = 24;              ///< measured at most
+        std::size_t measured_row_stride = 13;        ///< rows of a set that is laid out, of which one window is measured
+        std::size_t measured_rows = 24;              ///< measured at most
     } sweep;
 
-    /// Octrees that change (octree/dynamic/mutable_octree.cpp, octree/dynamic/plot.cpp).
+    /// Octrees that change (octree/dynamic/mutable_octree.cpp, octree/dynamic/leaf_grid.cpp).
     struct Dynamic {
         std::size_t listed_visits = 128;  ///< units that a change may visit; with more it is made on its own
         std::size_t hits = 1 << 16;       ///< of a run of visits

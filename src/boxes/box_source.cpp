@@ -80,7 +80,7 @@ Box3d BoxSource::box(std::uint32_t object, double& padding) const {
     return wide_box(set, index);
 }
 
-bool BoxSource::counts(std::uint32_t a, std::uint32_t b) const {
+bool BoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
     double padding_a = 0;
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);

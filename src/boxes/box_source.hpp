@@ -3,7 +3,7 @@
 // Float32 boxes without margin and padding pass through unchanged (`exact()`): overlap of entries is the answer. All
 // others are moved to an origin near the bulk, widened by margin / 2 + padding and rounded outward to float32. Each of
 // these operations is monotone, or bounded by an error that is added, so a pair that counts is never lost; a hit whose
-// boxes overlap by less than the rounding could make is settled by counts(), on the caller's own numbers.
+// boxes overlap by less than the rounding could make is settled by is_pair(), on the caller's own numbers.
 #pragma once
 
 #include <array>
@@ -80,7 +80,7 @@ public:
     bool exact() const override { return form_.exact; }
     RoundingSlack slack() const override;
     /// The rule of objects.hpp, in float64.
-    bool counts(std::uint32_t a, std::uint32_t b) const override;
+    bool is_pair(std::uint32_t a, std::uint32_t b) const override;
 
     /// How boxes become entries, unless exact().
     const OutwardRounding& rounding() const { return form_.rounding; }

@@ -26,10 +26,10 @@ public:
     virtual std::uint32_t second_begin() const = 0;
     /// True if overlapping entries are a pair, without a further test.
     virtual bool exact() const = 0;
-    /// A hit that is no deeper than this says counts only if counts() says so.
+    /// A hit that is no deeper than this says counts only if is_pair() says so.
     virtual RoundingSlack slack() const = 0;
     /// On the caller's numbers.
-    virtual bool counts(std::uint32_t a, std::uint32_t b) const = 0;
+    virtual bool is_pair(std::uint32_t a, std::uint32_t b) const = 0;
 };
 
 }  // namespace octopair

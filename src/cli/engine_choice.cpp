@@ -148,7 +148,7 @@ EngineChoice EngineChoice::with_width(unsigned width) const {
     return choice;
 }
 
-EngineCrew crew_of(const EngineChoice& choice) {
+EngineDescription describe_engine(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
     if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};
     if (choice.kind == EngineKind::mpi) return {"mpi", one_a_core_unless(choice.threads.value_or(1), ~0u), 0};
@@ -156,7 +156,7 @@ EngineCrew crew_of(const EngineChoice& choice) {
 }
 
 unsigned threads_beside(const EngineChoice& choice) {
-    if (choice.kind == EngineKind::mpi) return crew_of(choice).threads;
+    if (choice.kind == EngineKind::mpi) return describe_engine(choice).threads;
     return choice.threads ? *choice.threads : choice.workers.value_or(0);
 }
 

@@ -35,7 +35,7 @@ struct EngineChoice {
 };
 
 /// Who looked for the pairs: threads of this process, workers, ranks, or a server.
-struct EngineCrew {
+struct EngineDescription {
     std::string_view engine = "local";
     unsigned threads = 0;
     unsigned workers = 0;
@@ -55,7 +55,7 @@ void check_engine_choice(const EngineChoice& choice);
 /// Throws what the makers of engines throw; Error{usage} for ranks, which only `detect` and `serve` have, in their own way.
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice);
 
-EngineCrew crew_of(const EngineChoice& choice);
+EngineDescription describe_engine(const EngineChoice& choice);
 
 /// Of this process, for shapes and filters: as many as were asked for, for whatever; 0: one a core.
 unsigned threads_beside(const EngineChoice& choice);

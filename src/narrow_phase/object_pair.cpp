@@ -94,7 +94,7 @@ struct TwoSolids {
 
     Meeting meeting() const {
         if (!convex_meet(a, b)) return std::nullopt;
-        return contained_or_collision(convex_holds(a, b) || convex_holds(b, a));
+        return contained_or_collision(convex_contains(a, b) || convex_contains(b, a));
     }
     std::optional<Distance> gap(double) const { return from(std::optional(convex_gap(a, b))); }
     void find_contacts(const ContactRequest& request, Finding& finding) const {

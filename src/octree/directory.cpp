@@ -8,26 +8,26 @@
 
 namespace octopair {
 
-Directory::Directory(const Frame& frame, const OctantShape& shape) {
-    if (shape.size() >= most_nodes) throw Error(ErrorCode::resource_limit, "more octants than can be numbered");
-    nodes_.reserve(shape.size());
+Directory::Directory(const Space& space, const SplitFlags& shape) {
+    if (shape.size() >= most_octants) throw Error(ErrorCode::resource_limit, "more octants than can be numbered");
+    octants_.reserve(shape.size());
     append({}, 0, shape);
-    make_table(frame);
+    make_table(space);
 }
 
 /// The octant that comes next in the shape, and its subtree.
-NodeIndex Directory::append(const Octant& octant, NodeIndex parent, const OctantShape& shape) {
-    const NodeIndex index = NodeIndex(nodes_.size());
-    nodes_.push_back({octant.lo, octant.level, parent, index + 1, Node::no_children});
+OctantIndex Directory::append(const OctantCube& cube, OctantIndex parent, const SplitFlags& shape) {
+    const OctantIndex index = OctantIndex(octants_.size());
+    octants_.push_back({cube.lo, cube.level, parent, index + 1, Octant::no_children});
     if (shape[index] == 0) return index;
     const std::uint32_t row = std::uint32_t(children_.size());
-    nodes_[index].children = row;
+    octants_[index].children = row;
     children_.emplace_back();
     for (unsigned digit = 0; digit < 8; ++digit) {
-        const NodeIndex child = append(octant.child(digit), index, shape);
+        const OctantIndex child = append(cube.child(digit), index, shape);
         children_[row][digit] = child;
     }
-    nodes_[index].next = NodeIndex(nodes_.size());
+    octants_[index].next = OctantIndex(octants_.size());
     return index;
 }
 
@@ -66,11 +66,11 @@ struct Directory::Table {
     std::size_t begin;
 };
 
-void Directory::make_table(const Frame& frame) {
+void Directory::make_table(const Space& space) {
     unsigned depth = 0;
-    for (const Node& node : nodes_) depth = std::max(depth, node.level);
-    const auto rows = [&](unsigned level, unsigned axis) { return (frame.last_cell(axis) >> (deepest - level)) + 1; };
-    const std::uint64_t most_cells = tuning().split.table_cells * nodes_.size();
+    for (const Octant& octant : octants_) depth = std::max(depth, octant.level);
+    const auto rows = [&](unsigned level, unsigned axis) { return (space.last_cell(axis) >> (deepest - level)) + 1; };
+    const std::uint64_t most_cells = tuning().split.table_cells * octants_.size();
     unsigned level = 0;
     while (level < depth && std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= most_cells) {
         ++level;
@@ -81,21 +81,21 @@ void Directory::make_table(const Frame& frame) {
     fill_table(0, {{}, table_size_, level, 0});
 }
 
-/// What lies within octant `node`, all of which the table covers but for what is beyond its sizes.
-void Directory::fill_table(NodeIndex index, const Table& table) {
-    const Node node = nodes_[index];
-    if (!node.leaf() && node.level < table.level) {
-        for (const NodeIndex child : children_[node.children]) fill_table(child, table);
+/// What lies within octant `octant`, all of which the table covers but for what is beyond its sizes.
+void Directory::fill_table(OctantIndex index, const Table& table) {
+    const Octant octant = octants_[index];
+    if (!octant.leaf() && octant.level < table.level) {
+        for (const OctantIndex child : children_[octant.children]) fill_table(child, table);
         return;
     }
     const unsigned shift = deepest - table.level;
     std::array<std::uint32_t, 3> begin, end;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        begin[axis] = std::min((node.lo[axis] - table.first[axis]) >> shift, table.sizes[axis]);
-        end[axis] = std::min(begin[axis] + (1u << (table.level - node.level)), table.sizes[axis]);
+        begin[axis] = std::min((octant.lo[axis] - table.first[axis]) >> shift, table.sizes[axis]);
+        end[axis] = std::min(begin[axis] + (1u << (table.level - octant.level)), table.sizes[axis]);
         if (begin[axis] == end[axis]) return;
     }
-    const std::uint32_t element = node.leaf() ? index | node.level << node_bits : add_table(index, table);
+    const std::uint32_t element = octant.leaf() ? index | octant.level << octant_bits : add_table(index, table);
     for (std::uint32_t z = begin[2]; z < end[2]; ++z) {
         for (std::uint32_t y = begin[1]; y < end[1]; ++y) {
             const std::size_t row = table.begin + (std::size_t(z) * table.sizes[1] + y) * table.sizes[0];
@@ -106,14 +106,14 @@ void Directory::fill_table(NodeIndex index, const Table& table) {
 }
 
 /// A further table, below an octant of `table`. Returns the element that tells of it.
-std::uint32_t Directory::add_table(NodeIndex index, const Table& table) {
+std::uint32_t Directory::add_table(OctantIndex index, const Table& table) {
     count_path(Path::table_further);
     const std::size_t begin = table_.size();
     table_.resize(begin + (std::size_t(1) << 3 * table_levels));
     constexpr std::uint32_t side = 1u << table_levels;
     const unsigned level = std::min(table.level + table_levels, deepest);
-    for (const NodeIndex child : children_[nodes_[index].children]) {
-        fill_table(child, {nodes_[index].lo, {side, side, side}, level, begin});
+    for (const OctantIndex child : children_[octants_[index].children]) {
+        fill_table(child, {octants_[index].lo, {side, side, side}, level, begin});
     }
     return further + std::uint32_t(begin);
 }

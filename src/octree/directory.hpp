@@ -1,8 +1,8 @@
 // Directory: the octants of a linear octree in pre-order, and the way from cells to them.
 //
 // Invariants
-//   nodes()[0] is the root; a node's subtree is nodes [i, node.next), its children (all eight or none) in digit order.
-//   The leaves tile the whole frame, so every cell lies in exactly one leaf.
+//   octants()[0] is the root; an octant's subtree is octants [i, octant.next), its children (all eight or none) in digit order.
+//   The leaves tile the whole space, so every cell lies in exactly one leaf.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 #include <vector>
 
 #include "base/test_hooks.hpp"
-#include "octree/build/octant_growth.hpp"
-#include "octree/frame.hpp"
+#include "octree/build/split_rule.hpp"
+#include "octree/space.hpp"
 
 namespace octopair {
 
-/// A position in Directory::nodes().
-using NodeIndex = std::uint32_t;
+/// A position in Directory::octants().
+using OctantIndex = std::uint32_t;
 
-struct Node {
+struct Octant {
     Cell lo;                 ///< its first cell on each axis
     unsigned level;          ///< its side is 2^(21 - level) cells
-    NodeIndex parent;        ///< the root is its own
-    NodeIndex next;          ///< the first node after its subtree
+    OctantIndex parent;        ///< the root is its own
+    OctantIndex next;          ///< the first octant after its subtree
     std::uint32_t children;  ///< row of the child table; no_children for a leaf
 
     static constexpr std::uint32_t no_children = ~std::uint32_t(0);
@@ -52,17 +52,17 @@ public:
     /// The root alone.
     Directory() : Directory({}, {0}) {}
     /// The shape is that of the root. Throws Error{resource_limit} for more than 2^26 octants.
-    Directory(const Frame& frame, const OctantShape& shape);
+    Directory(const Space& space, const SplitFlags& shape);
 
-    std::span<const Node> nodes() const { return nodes_; }
-    NodeIndex child(const Node& node, unsigned digit) const { return children_[node.children][digit]; }
+    std::span<const Octant> octants() const { return octants_; }
+    OctantIndex child(const Octant& octant, unsigned digit) const { return children_[octant.children][digit]; }
 
     /// A leaf and its level.
     class Leaf {
     public:
         Leaf() = default;
-        NodeIndex node() const { return element_ & most_nodes; }
-        unsigned level() const { return element_ >> node_bits; }
+        OctantIndex octant() const { return element_ & most_octants; }
+        unsigned level() const { return element_ >> octant_bits; }
 
     private:
         friend Directory;
@@ -79,28 +79,28 @@ public:
     /// Of many at once: the leaf that each box begins in.
     void leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const;
     /// The leaf itself, or the octant of `level` that holds it.
-    NodeIndex at_most(const Leaf& leaf, unsigned level) const {
-        NodeIndex node = leaf.node();
-        for (unsigned at = leaf.level(); at > level; --at) node = nodes_[node].parent;
-        return node;
+    OctantIndex at_most(const Leaf& leaf, unsigned level) const {
+        OctantIndex octant = leaf.octant();
+        for (unsigned at = leaf.level(); at > level; --at) octant = octants_[octant].parent;
+        return octant;
     }
 
 private:
-    NodeIndex append(const Octant& octant, NodeIndex parent, const OctantShape& shape);
-    void make_table(const Frame& frame);
+    OctantIndex append(const OctantCube& cube, OctantIndex parent, const SplitFlags& shape);
+    void make_table(const Space& space);
     struct Table;
-    void fill_table(NodeIndex index, const Table& table);
-    std::uint32_t add_table(NodeIndex index, const Table& table);
+    void fill_table(OctantIndex index, const Table& table);
+    std::uint32_t add_table(OctantIndex index, const Table& table);
 
-    std::vector<Node> nodes_;
-    std::vector<std::array<NodeIndex, 8>> children_;
+    std::vector<Octant> octants_;
+    std::vector<std::array<OctantIndex, 8>> children_;
 
     // From cells to leaves: a table of one level's octants, row-major, and for octants that are divided further tables
     // of the next three levels, and so on. An element is a leaf and its level, or where the further table begins.
     static constexpr unsigned table_levels = 3;
-    static constexpr unsigned node_bits = 26;
-    static constexpr std::uint32_t most_nodes = (std::uint32_t(1) << node_bits) - 1;
-    static constexpr std::uint32_t further = (deepest + 1) << node_bits;
+    static constexpr unsigned octant_bits = 26;
+    static constexpr std::uint32_t most_octants = (std::uint32_t(1) << octant_bits) - 1;
+    static constexpr std::uint32_t further = (deepest + 1) << octant_bits;
     std::uint32_t first_element(const Cell& cell) const {
         const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;
         return table_[(z * table_size_[1] + y) * table_size_[0] + x];

@@ -18,9 +18,9 @@ namespace octopair {
 class Executor;
 
 /// Where one share's pairs go, in order. One thread at a time.
-class PairWriter {
+class ShareWriter {
 public:
-    virtual ~PairWriter() = default;
+    virtual ~ShareWriter() = default;
     /// The rows may be counted only: then write_count is called in place of write.
     virtual bool counting() const = 0;
     virtual void write(std::span<const Pair> pairs) = 0;
@@ -42,7 +42,7 @@ public:
     /// Calls body(i) for each i below `count`.
     virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
     /// The same, with pairs: those of share i come before those of share i + 1.
-    virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) = 0;
+    virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) = 0;
     /// Returns where a scan with this executor builds a nested octree of `entries` entries: usually with this executor, in
     /// memory of this process. Processes that scan together must make the same calls, and get the same kind of place.
     /// The executor returned is valid until the next call.
@@ -50,7 +50,7 @@ public:
 };
 
 /// For steps that write no pairs.
-class NoPairs final : public PairWriter {
+class NoPairs final : public ShareWriter {
 public:
     bool counting() const override { return true; }
     void write(std::span<const Pair>) override {}
@@ -60,17 +60,17 @@ public:
 /// Runs all shares on the calling thread, pairs to one writer: how a share runs steps within itself.
 class SerialExecutor final : public Executor {
 public:
-    explicit SerialExecutor(PairWriter& writer) : writer_(writer) {}
+    explicit SerialExecutor(ShareWriter& writer) : writer_(writer) {}
     unsigned width() const override { return 1; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
         for (std::size_t i = 0; i < count; ++i) body(i);
     }
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override {
         for (std::size_t i = 0; i < count; ++i) body(i, writer_);
     }
 
 private:
-    PairWriter& writer_;
+    ShareWriter& writer_;
 };
 
 }  // namespace octopair

@@ -22,11 +22,11 @@ std::vector<NumberedBlock> blocks_of(std::size_t objects, unsigned width) {
     return blocks;
 }
 
-std::vector<NumberedNodes> ranges_of(std::size_t nodes, std::size_t blocks, unsigned width) {
-    const std::size_t enough = nodes * blocks / tuning().build.counts_per_range + 1;
-    std::vector<NumberedNodes> ranges(std::min<std::size_t>(width, enough));
+std::vector<NumberedOctants> ranges_of(std::size_t octants, std::size_t blocks, unsigned width) {
+    const std::size_t enough = octants * blocks / tuning().build.counts_per_range + 1;
+    std::vector<NumberedOctants> ranges(std::min<std::size_t>(width, enough));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        ranges[i] = {i, NodeIndex(nodes * i / ranges.size()), NodeIndex(nodes * (i + 1) / ranges.size())};
+        ranges[i] = {i, OctantIndex(octants * i / ranges.size()), OctantIndex(octants * (i + 1) / ranges.size())};
     }
     return ranges;
 }
@@ -55,40 +55,40 @@ Sample octant_sample(std::uint64_t objects) {
             std::max(sampling.most, std::size_t(objects) / sampling.most_stride)};
 }
 
-OctantGrowth octant_growth(std::uint64_t objects, const std::stop_token& stop) {
+SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop) {
     const std::size_t sampled = octant_sample(objects).size();
     return {double(objects) / double(std::max<std::size_t>(1, sampled)), stop};
 }
 
-OctantPlan plan_octants(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
-    OctantPlan plan;
-    plan.frame = Frame::fit(sampled, objects);
+OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
+    OctreePlan plan;
+    plan.space = Space::fit(sampled, objects);
     SampledOctant root;
     root.inside.resize(sampled.size());
-    plan.frame.cells(sampled, root.inside);
-    octant_growth(objects, stop).grow(std::move(root), plan.shape);
+    plan.space.cells(sampled, root.inside);
+    split_rule(objects, stop).grow(std::move(root), plan.shape);
     return plan;
 }
 
-OctantPlan plan_octants(const EntrySource& source, const std::stop_token& stop) {
+OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop) {
     // The sample is gone when the entries need the memory.
     const std::vector<Entry> sampled = sample_of(source);
-    return plan_octants(sampled, source.size(), stop);
+    return plan_octree(sampled, source.size(), stop);
 }
 
-PlantedOctants plant_octants(const EntrySource& source, const std::stop_token& stop) {
-    return plan_octants(source, stop).planted();
+OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop) {
+    return plan_octree(source, stop).layout();
 }
 
 void LinearOctree::build(const EntrySource& source, Executor& executor, std::stop_token stop) {
     const auto begin = std::chrono::steady_clock::now();
-    octants_ = plant_octants(source, stop);
+    layout_ = make_layout(source, stop);
     fill(source, executor, stop, begin);
 }
 
-void LinearOctree::build(PlantedOctants octants, const EntrySource& source, Executor& executor, std::stop_token stop) {
+void LinearOctree::build(OctreeLayout layout, const EntrySource& source, Executor& executor, std::stop_token stop) {
     const auto begin = std::chrono::steady_clock::now();
-    octants_ = std::move(octants);
+    layout_ = std::move(layout);
     fill(source, executor, stop, begin);
 }
 
@@ -99,25 +99,25 @@ void LinearOctree::refill(const EntrySource& source, Executor& executor, std::st
 
 void LinearOctree::fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, Clock clock) {
     const auto blocks = blocks_of(source.size(), executor.width());
-    const auto ranges = ranges_of(nodes().size(), blocks.size(), executor.width());
-    memory_.resize(source.size(), blocks.size(), nodes().size(), ranges.size());
+    const auto ranges = ranges_of(octants().size(), blocks.size(), executor.width());
+    memory_.resize(source.size(), blocks.size(), octants().size(), ranges.size());
     count_path(blocks.size() == 1 ? Path::build_one_block : Path::build_blocks);
-    if (ranges.size() > 1) count_path(Path::merge_ranges);
-    const BuildSteps steps{source, frame(), directory(), memory_, stop};
+    if (ranges.size() > 1) count_path(Path::count_ranges);
+    const BuildSteps steps{source, space(), directory(), memory_, stop};
     executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode(blocks[i]); });
     seconds_.encode = seconds_since(clock);
 
     std::vector<std::size_t> all(blocks.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
-    executor.for_each(ranges.size(), [&](std::size_t i) { steps.merge(ranges[i], all); });
+    executor.for_each(ranges.size(), [&](std::size_t i) { steps.count(ranges[i], all); });
     std::vector<std::uint64_t> range_begins;
     join_ranges(ranges, range_begins);
-    seconds_.merge = seconds_since(clock);
+    seconds_.count = seconds_since(clock);
 
     entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
     executor.for_each(blocks.size(), [&](std::size_t i) {
-        const SortTarget target{entries_.span(), range_begins, ranges, std::size_t(entry_count()) + i};
-        steps.sort(blocks[i], target);
+        const ScatterTarget target{entries_.span(), range_begins, ranges, std::size_t(entry_count()) + i};
+        steps.scatter(blocks[i], target);
     });
     for (const NumberedBlock& block : blocks) {
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
@@ -127,16 +127,16 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
         count_path(Path::crowded_octree);
         memory_.homes.clear();  // the scan needs the memory more
     }
-    seconds_.sort = seconds_since(clock);
+    seconds_.scatter = seconds_since(clock);
 }
 
-/// Where each range of nodes begins among the entries, and each node.
-void LinearOctree::join_ranges(std::span<const NumberedNodes> ranges, std::vector<std::uint64_t>& range_begins) {
-    begins_.resize(nodes().size() + 1);
+/// Where each range of octants begins among the entries, and each octant.
+void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges, std::vector<std::uint64_t>& range_begins) {
+    begins_.resize(octants().size() + 1);
     std::uint64_t at = 0;
-    for (const NumberedNodes& range : ranges) {
+    for (const NumberedOctants& range : ranges) {
         range_begins.push_back(at);
-        for (NodeIndex node = range.begin; node < range.end; ++node) begins_[node] = at + memory_.begins[node];
+        for (OctantIndex octant = range.begin; octant < range.end; ++octant) begins_[octant] = at + memory_.begins[octant];
         at += memory_.totals[range.number];
     }
     begins_.back() = at;
@@ -144,20 +144,20 @@ void LinearOctree::join_ranges(std::span<const NumberedNodes> ranges, std::vecto
 
 /// Whether one octant holds half of the entries.
 bool LinearOctree::crowded() const {
-    for (NodeIndex node = 0; node < nodes().size(); ++node) {
-        if (2 * entries(node).size() > entry_count()) return true;
+    for (OctantIndex octant = 0; octant < octants().size(); ++octant) {
+        if (2 * entries(octant).size() > entry_count()) return true;
     }
     return false;
 }
 
-void LinearOctree::assemble(PlantedOctants octants, std::span<const SortedList> lists, const std::stop_token& stop) {
+void LinearOctree::assemble(OctreeLayout layout, std::span<const SortedList> lists, const std::stop_token& stop) {
     auto clock = std::chrono::steady_clock::now();
-    octants_ = std::move(octants);
+    layout_ = std::move(layout);
     std::uint64_t all = 0;
     for (const SortedList& list : lists) all += list.entries.size();
     entries_.resize_discard(std::size_t(all));
-    begins_.resize(nodes().size() + 1);
-    begins_.back() = merge_lists(lists, {entries_.span(), std::span(begins_).first(nodes().size()), {}}, stop);
+    begins_.resize(octants().size() + 1);
+    begins_.back() = merge_lists(lists, {entries_.span(), std::span(begins_).first(octants().size()), {}}, stop);
     seconds_ = {};
     seconds_.merge = seconds_since(clock);
 }

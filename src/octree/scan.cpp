@@ -16,41 +16,41 @@ namespace {
 
 using Handed = std::vector<Entry>;
 
-/// The boxes handed down to the nodes on one path, level by level; each with its class bits in that node.
+/// The boxes handed down to the octants on one path, level by level; each with its class bits in that octant.
 class HandedDown {
 public:
-    /// `moved`: by how many cells the frame is to be off, as a planted fault.
+    /// `moved`: by how many cells the space is to be off, as a planted fault.
     HandedDown(const LinearOctree& octree, std::uint32_t moved) : octree_(octree), moved_(moved) {}
 
-    /// Those that touch `node`, kept by the octants above. Nodes must come in pre-order, from any first one.
-    const Handed& at(NodeIndex node) {
-        const unsigned level = octree_.nodes()[node].level;
+    /// Those that touch `octant`, kept by the octants above. Nodes must come in pre-order, from any first one.
+    const Handed& at(OctantIndex octant) {
+        const unsigned level = octree_.octants()[octant].level;
         if (lists_.size() <= level) {
             lists_.resize(level + 1);
             owners_.resize(level + 1, none);
         }
-        if (owners_[level] == node) return lists_[level];
+        if (owners_[level] == octant) return lists_[level];
         if (level == 0) {
             lists_[0].clear();
         } else {
-            const NodeIndex parent = octree_.nodes()[node].parent;
+            const OctantIndex parent = octree_.octants()[octant].parent;
             (void)at(parent);
             lists_[level].clear();
-            hand(lists_[level - 1], node);
-            hand(octree_.entries(parent), node);
+            hand(lists_[level - 1], octant);
+            hand(octree_.entries(parent), octant);
         }
-        owners_[level] = node;
+        owners_[level] = octant;
         return lists_[level];
     }
 
 private:
-    static constexpr NodeIndex none = ~NodeIndex(0);
+    static constexpr OctantIndex none = ~OctantIndex(0);
 
-    void hand(std::span<const Entry> from, NodeIndex to) {
+    void hand(std::span<const Entry> from, OctantIndex to) {
         std::array<CellBox, 64> cells;
         while (!from.empty()) {
             const auto some = from.first(std::min(from.size(), cells.size()));
-            octree_.frame().cells(some, cells);
+            octree_.space().cells(some, cells);
             for (std::size_t i = 0; i < some.size(); ++i) {
                 if (has_test_hooks) move(cells[i]);
                 hand(some[i], cells[i], to);
@@ -59,13 +59,13 @@ private:
         }
     }
 
-    void hand(const Entry& entry, const CellBox& box, NodeIndex to) {
-        const Node& node = octree_.nodes()[to];
-        if (node.touches(box) == planted(Fault::handed_to_wrong_child)) return;
+    void hand(const Entry& entry, const CellBox& box, OctantIndex to) {
+        const Octant& octant = octree_.octants()[to];
+        if (octant.touches(box) == planted(Fault::handed_to_wrong_child)) return;
         count_path(Path::handed_down);
         // Bits are added, never taken back: see entry.hpp.
-        Entry& handed = lists_[node.level].emplace_back(entry);
-        handed.mask |= node.begins_before(box);
+        Entry& handed = lists_[octant.level].emplace_back(entry);
+        handed.mask |= octant.begins_before(box);
     }
 
     void move(CellBox& box) const {
@@ -78,7 +78,7 @@ private:
     const LinearOctree& octree_;
     std::uint32_t moved_;
     std::vector<Handed> lists_;
-    std::vector<NodeIndex> owners_;
+    std::vector<OctantIndex> owners_;
 };
 
 /// The entries of a join as those of a scene: rows, then columns.
@@ -102,18 +102,18 @@ private:
     const SweepInput& join_;
 };
 
-/// Scans single nodes, keeping its memory from node to node. One thread at a time.
-class NodeScan {
+/// Scans single octants, keeping its memory from octant to octant. One thread at a time.
+class OctantScan {
 public:
-    NodeScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
+    OctantScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
         : octree_(octree), context_(context), executor_(executor), order_(context.stop) {}
 
-    void scan(NodeIndex node, std::span<const Entry> handed) {
+    void scan(OctantIndex octant, std::span<const Entry> handed) {
         if constexpr (has_test_hooks) {
-            if (context_.nesting == 0) context_.outermost = OutermostOctant{octree_.frame(), octree_.nodes()[node]};
+            if (context_.nesting == 0) context_.outermost = OutermostOctant{octree_.space(), octree_.octants()[octant]};
         }
-        const auto own = octree_.entries(node);
-        const unsigned axis = octree_.frame().long_axis();
+        const auto own = octree_.entries(octant);
+        const unsigned axis = octree_.space().long_axis();
         context_.rule.join() ? scan_join(own, handed, axis) : scan_self(own, handed, axis);
     }
 
@@ -167,7 +167,7 @@ private:
     }
 
     bool lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-        if (list.size() > tuning().scan.hot_node) return false;
+        if (list.size() > tuning().scan.crowded_octant) return false;
         order_.lay_out(list, axis, set);
         return true;
     }
@@ -181,11 +181,11 @@ private:
         std::uint64_t tests = 0;
         std::size_t rows = 0;
         for (const Sweep& sweep : sweeps) {
-            tests += sampled_windows(sweep);
+            tests += sampled_tests(sweep);
             rows += sweep.rows.size();
         }
-        if (tests > tuning().scan.good_window * rows) return false;
-        executor_.for_each_writing(1, [&](std::size_t, PairWriter& writer) {
+        if (tests > tuning().scan.good_tests * rows) return false;
+        executor_.for_each_writing(1, [&](std::size_t, ShareWriter& writer) {
             PairMaker maker(context_, writer);
             for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
             maker.flush();
@@ -253,8 +253,8 @@ private:
     /// Whether a nested octree of so many entries leaves less to do in its octants, and does not multiply the entries.
     bool thins(const LinearOctree& octree, std::size_t entries) const {
         std::size_t largest = 0;
-        for (NodeIndex node = 0; node < octree.nodes().size(); ++node) {
-            largest = std::max(largest, octree.entries(node).size());
+        for (OctantIndex octant = 0; octant < octree.octants().size(); ++octant) {
+            largest = std::max(largest, octree.entries(octant).size());
         }
         const bool thinner = double(largest) <= tuning().scan.largest_part * double(entries);
         const double growth = context_.growth * double(octree.entry_count()) / double(entries);
@@ -270,12 +270,12 @@ private:
     SweepOrder order_;
     SweepSet own_set_;
     SweepSet handed_set_;
-    std::array<std::vector<std::uint32_t>, 4> positions_;  // of a node's entries of each set
+    std::array<std::vector<std::uint32_t>, 4> positions_;  // of an octant's entries of each set
 };
 
-/// Runs of nodes in pre-order that make up one share each; a large node is a share alone.
+/// Runs of octants in pre-order that make up one share each; a large octant is a share alone.
 struct Share {
-    NodeIndex begin = 0, end = 0;
+    OctantIndex begin = 0, end = 0;
     bool large = false;
 };
 
@@ -286,14 +286,14 @@ std::vector<Share> shares_of(const OctreeRange& octants, unsigned width) {
     const std::uint64_t most = std::min<std::uint64_t>(even, tuning().scan.share_entries);
     std::vector<Share> shares;
     std::uint64_t held = 0;
-    for (NodeIndex node = octants.begin; node < octants.end; ++node) {
-        const std::size_t size = octree.entries(node).size();
+    for (OctantIndex octant = octants.begin; octant < octants.end; ++octant) {
+        const std::size_t size = octree.entries(octant).size();
         const bool large = size > tuning().scan.large_node;
         if (shares.empty() || large || shares.back().large || held + size > most) {
-            shares.push_back({node, node, large});
+            shares.push_back({octant, octant, large});
             held = 0;
         }
-        shares.back().end = node + 1;
+        shares.back().end = octant + 1;
         held += size;
     }
     return shares;
@@ -306,11 +306,11 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
     const LinearOctree& octree = octants.octree;
     const std::vector<Share> shares = shares_of(octants, executor.width());
     const auto scan_share = [&](const Share& share, Executor& within) {
-        HandedDown handed(octree, planted(Fault::nested_frame_moved) && context.nesting > 0 ? 1 : 0);
-        NodeScan nodes(octree, context, within);
-        for (NodeIndex node = share.begin; node < share.end; ++node) {
-            const Handed& above = handed.at(node);
-            if (!octree.entries(node).empty()) nodes.scan(node, above);
+        HandedDown handed(octree, planted(Fault::nested_space_moved) && context.nesting > 0 ? 1 : 0);
+        OctantScan scans(octree, context, within);
+        for (OctantIndex octant = share.begin; octant < share.end; ++octant) {
+            const Handed& above = handed.at(octant);
+            if (!octree.entries(octant).empty()) scans.scan(octant, above);
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));
@@ -324,7 +324,7 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
         count_path(Path::share_of_octants);
         std::size_t end = i;
         while (end < shares.size() && !shares[end].large) ++end;
-        executor.for_each_writing(end - i, [&](std::size_t k, PairWriter& writer) {
+        executor.for_each_writing(end - i, [&](std::size_t k, ShareWriter& writer) {
             SerialExecutor serial(writer);
             scan_share(shares[i + k], serial);
         });

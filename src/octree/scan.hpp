@@ -19,11 +19,11 @@ namespace octopair {
 /// The octants [begin, end) of an octree, in pre-order. Borrows it.
 struct OctreeRange {
     OctreeRange(const LinearOctree& whole)  // NOLINT(google-explicit-constructor): a tree is a range of itself
-        : OctreeRange(whole, 0, NodeIndex(whole.nodes().size())) {}
-    OctreeRange(const LinearOctree& tree, NodeIndex first, NodeIndex last) : octree(tree), begin(first), end(last) {}
+        : OctreeRange(whole, 0, OctantIndex(whole.octants().size())) {}
+    OctreeRange(const LinearOctree& tree, OctantIndex first, OctantIndex last) : octree(tree), begin(first), end(last) {}
 
     const LinearOctree& octree;
-    NodeIndex begin, end;
+    OctantIndex begin, end;
 };
 
 /// Writes the pairs that these octants report, in pre-order. Of octants outside, only entries that reach into these are

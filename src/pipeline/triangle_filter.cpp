@@ -13,7 +13,7 @@
 #include "base/floating_point.hpp"
 #include "boxes/box_kernel.hpp"
 #include "narrow_phase/exact/contact_of_triangles.hpp"
-#include "narrow_phase/exact/pair_look.hpp"
+#include "narrow_phase/exact/triangle_prefilter.hpp"
 #include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"

@@ -15,7 +15,7 @@
 namespace octopair {
 
 /// An object before its first change since the last step.
-struct Former {
+struct PreviousState {
     std::uint32_t index;
     ObjectState state;
 };
@@ -40,7 +40,7 @@ public:
         formers_.back().state.exists = existed;
     }
 
-    std::span<const Former> formers() const { return formers_; }
+    std::span<const PreviousState> formers() const { return formers_; }
     /// More has changed than is kept.
     bool overflowed() const { return overflowed_; }
 
@@ -64,11 +64,11 @@ private:
     }
 
     void forget(ObjectTable& table) {
-        for (const Former& former : formers_) table.set_mark(former.index, ObjectTable::none);
+        for (const PreviousState& former : formers_) table.set_mark(former.index, ObjectTable::none);
         formers_.clear();
     }
 
-    std::vector<Former> formers_;
+    std::vector<PreviousState> formers_;
     bool overflowed_ = false;
 };
 

@@ -71,7 +71,7 @@ void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree)
     entries_.clear();
     for (std::size_t i = 0; i < formers.size(); ++i) {
         if (i + judged_ahead < formers.size()) scene.table.prefetch(formers[i + judged_ahead].index);
-        const Former& former = formers[i];
+        const PreviousState& former = formers[i];
         const ObjectState now = scene.table.state(former.index);
         changes_.push_back({former.index, former.state.exists, now.exists, {}, {}});
         // One that did not exist, or does not, has a box that means nothing.
@@ -79,7 +79,7 @@ void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree)
         entries_.push_back(scene.rounding.entry(now.box, now.padding));
     }
     cells_.resize(entries_.size());
-    octree.frame().cells(entries_, cells_);
+    octree.space().cells(entries_, cells_);
     for (std::size_t i = 0; i < changes_.size(); ++i) {
         changes_[i].before = cells_[2 * i];
         changes_[i].after = cells_[2 * i + 1];
@@ -168,7 +168,7 @@ void ChangeSearch::judge(const Scene& scene, Worker& worker) const {
             scene.table.prefetch(changes_[hits[i + judged_ahead].change].object);
         }
         if (judged.change != hits[i].change) {
-            const Former& former = scene.log.formers()[hits[i].change];
+            const PreviousState& former = scene.log.formers()[hits[i].change];
             judged = {hits[i].change, former.index, former.state, scene.table.state(former.index)};
         }
         judge(scene, hits[i], judged, worker);

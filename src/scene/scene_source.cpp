@@ -65,8 +65,8 @@ RoundingSlack SceneSource::slack() const {
     return {{all, all, all}};
 }
 
-bool SceneSource::counts(std::uint32_t a, std::uint32_t b) const {
-    return compatible(table_.traits(a), table_.traits(b)) && all_.counts(a, b);
+bool SceneSource::is_pair(std::uint32_t a, std::uint32_t b) const {
+    return compatible(table_.traits(a), table_.traits(b)) && all_.is_pair(a, b);
 }
 
 }  // namespace octopair

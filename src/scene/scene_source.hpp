@@ -28,7 +28,7 @@ public:
     std::uint32_t second_begin() const override { return 0; }
     bool exact() const override { return all_.exact() && !table_.any_traits(); }
     RoundingSlack slack() const override;
-    bool counts(std::uint32_t a, std::uint32_t b) const override;
+    bool is_pair(std::uint32_t a, std::uint32_t b) const override;
 
     const BoxSource& boxes() const { return all_; }
 

@@ -1,7 +1,7 @@
 // Scene::State: what is behind a Scene, and how its parts work together.
 //
 //   objects    as they are now, and what those that changed since the last step were before
-//   octree     the objects as they were at the last step (`planted_`), or as they are now (`fresh_`)
+//   octree     the objects as they were at the last step (`octree_is_current_`), or as they are now (`fresh_`)
 //   search     brings a planted octree up to date, and tells which pairs began and ended
 //   linear     for a step that searches all: where too much has changed, or there is no planted octree
 //   history    the pairs of the last step
@@ -62,7 +62,7 @@ private:
     MutableOctree octree_;
     unsigned refills_ = tuning().scene.refills;  // of the octants of linear_ since they were made; at most as many
     EntryRounding rounding_;
-    bool planted_ = false;  // octree_ holds the objects as they were at the last step
+    bool octree_is_current_ = false;  // octree_ holds the objects as they were at the last step
     bool fresh_ = false;    // octree_ holds them as they are now
     bool built_ = false;    // linear_ does
     bool asked_ = false;    // queries made an octree since all was last searched: they may again

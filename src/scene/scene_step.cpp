@@ -55,9 +55,9 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const std::uint64_t before = history_.size();
     const bool unlike = rounding_.exact && objects_.table().any_padding();  // boxes in the octree have not been widened
     const bool cheap = is_wanted_incremental(expected <= worth_it * full_seconds_);
-    bool full = !planted_ || unlike || objects_.log().overflowed() || !cheap || history_.is_doubtful();
+    bool full = !octree_is_current_ || unlike || objects_.log().overflowed() || !cheap || history_.is_doubtful();
     try {
-        history_.prepare(planted_);
+        history_.prepare(octree_is_current_);
         const bool found = !full && find_changes(stop);
         if (!found) find_all(stop);
         count_path(found ? Path::step_incremental : Path::step_full);
@@ -77,7 +77,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
 
 /// After a search that was wrong: the next one begins with the objects alone.
 void Scene::State::drop_octrees() {
-    planted_ = fresh_ = built_ = false;
+    octree_is_current_ = fresh_ = built_ = false;
     refills_ = tuning().scene.refills;
 }
 
@@ -85,7 +85,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
     if (!asked_) octree_.release();
     asked_ = false;
-    planted_ = fresh_ = false;
+    octree_is_current_ = fresh_ = false;
     const SceneSource source(objects_.table(), margin_);
     build(source, stop);
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
@@ -97,16 +97,16 @@ void Scene::State::find_all(const std::stop_token& stop) {
     const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
     // What was learned fades, so that it is tried again.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    const bool plant = is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_);
-    if (plant) {
-        count_path(Path::octree_planted);
+    const bool build_octree = is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_);
+    if (build_octree) {
+        count_path(Path::octree_rebuilt);
         octree_.build(linear_, stop);
         linear_ = {};
         refills_ = tuning().scene.refills;
         built_ = false;
     }
     history_.take_over(found_);  // the last step: one that fails before has changed nothing
-    planted_ = plant;
+    octree_is_current_ = build_octree;
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
@@ -124,10 +124,10 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
 }
 
 SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
-    const bool follows = planted_ && !objects_.log().overflowed() && !history_.is_doubtful();
+    const bool follows = octree_is_current_ && !objects_.log().overflowed() && !history_.is_doubtful();
     if (!follows && !fresh_) {
         count_path(Path::octree_for_queries);
-        planted_ = false;
+        octree_is_current_ = false;
         if (!built_) build(SceneSource(objects_.table(), margin_), {});
         octree_.build(linear_, {});
         fresh_ = asked_ = true;
@@ -143,7 +143,7 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     const ChangeSearch::Limits limits{begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience),
                                       objects_.table().size() / 2 + tuning().scene.visits,
                                       history_.size() + tuning().scene.changed_pairs, stop};
-    planted_ = false;  // until all of this is done
+    octree_is_current_ = false;  // until all of this is done
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
     } catch (const ChangeSearch::TooDear&) {
@@ -152,7 +152,7 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
         return false;
     }
     history_.apply(found_);
-    planted_ = true;
+    octree_is_current_ = true;
     constexpr std::size_t enough = 64;  // to tell what one costs
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
     return true;

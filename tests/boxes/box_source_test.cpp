@@ -129,7 +129,7 @@ void check_entries(std::span<const Box3d> boxes, double margin) {
     std::size_t counted = 0;
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
         for (std::uint32_t k = 0; k < boxes.size(); ++k) {
-            const bool counts = source.counts(i, k);
+            const bool counts = source.is_pair(i, k);
             counted += counts;
             ASSERT_TRUE(overlap(entries[i], entries[k]) || !counts) << i << " " << k;
             ASSERT_TRUE(counts || !deep(entries[i], entries[k], depths(source.slack(), entries[i], entries[k])))

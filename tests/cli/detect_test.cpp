@@ -126,7 +126,7 @@ TEST_F(Detect, StatsHoldEveryKey) {
     double parts = 0;
     for (const char* key : {"read", "detect", "write"}) parts += stats["seconds"][key].get<double>();
     EXPECT_LE(parts, stats["seconds"]["total"].get<double>() + 1e-9);
-    for (const char* key : {"encode", "sort", "merge", "scan", "filter"})
+    for (const char* key : {"encode", "count", "scatter", "scan", "filter"})
         EXPECT_GE(stats["seconds"][key].get<double>(), 0);
 }
 

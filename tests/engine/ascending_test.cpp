@@ -32,7 +32,7 @@ std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, co
     Team team(threads);
     PairList list;
     AscendingExecutor executor(team, detail::storage_of(list), bounds);
-    executor.for_each_writing(100, [&](std::size_t i, PairWriter& writer) {
+    executor.for_each_writing(100, [&](std::size_t i, ShareWriter& writer) {
         const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
         writer.write(std::span(pairs).subspan(begin, end - begin));
     });

@@ -25,7 +25,7 @@ protected:
         StreamExecutor executor(
             team_, [&](std::span<const Pair> pairs) { all.insert(all.end(), pairs.begin(), pairs.end()); }, buffer,
             stop_);
-        executor.for_each_writing(shares, [&](std::size_t share, PairWriter& writer) {
+        executor.for_each_writing(shares, [&](std::size_t share, ShareWriter& writer) {
             const Pair pair{std::uint32_t(share), 0};
             for (std::size_t i = 0; i < each; ++i) writer.write({&pair, 1});
         });
@@ -64,7 +64,7 @@ TEST_P(StreamOfThreads, RunSharesSideBySide) {
     std::size_t begun = 0, alone = 0;
     StreamExecutor executor(
         team_, [](std::span<const Pair>) {}, 1000, stop_);
-    executor.for_each_writing(shares, [&](std::size_t share, PairWriter&) {
+    executor.for_each_writing(shares, [&](std::size_t share, ShareWriter&) {
         std::unique_lock lock(mutex);
         begun = std::max(begun, share + 1);
         changed.notify_all();
@@ -78,7 +78,7 @@ TEST_P(Stream, TellsTheFirstFailure) {
     StreamExecutor executor(
         team_, [](std::span<const Pair>) {}, 10, stop_);
     const auto run = [&] {
-        executor.for_each_writing(50, [&](std::size_t share, PairWriter& writer) {
+        executor.for_each_writing(50, [&](std::size_t share, ShareWriter& writer) {
             if (share == 20) throw Error(ErrorCode::resource_limit, "twenty");
             const Pair pair{std::uint32_t(share), 0};
             for (int i = 0; i < 100; ++i) {
@@ -106,7 +106,7 @@ TEST_P(Stream, EndsWhereItsReceiverFails) {
         },
         100, stop_);
     EXPECT_THROW(executor.for_each_writing(100,
-                                           [](std::size_t share, PairWriter& writer) {
+                                           [](std::size_t share, ShareWriter& writer) {
                                                const Pair pair{std::uint32_t(share), 0};
                                                for (int i = 0; i < 50; ++i) writer.write({&pair, 1});
                                            }),

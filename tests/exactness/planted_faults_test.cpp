@@ -52,7 +52,7 @@ constexpr auto planted_here = std::to_array<Planted>({
     {"window_end_open", Fault::window_end_open},
     {"tile_end_open", Fault::tile_end_open},
     {"handed_to_wrong_child", Fault::handed_to_wrong_child},
-    {"nested_frame_moved", Fault::nested_frame_moved},
+    {"nested_space_moved", Fault::nested_space_moved},
     {"stream_windows_overlap", Fault::stream_windows_overlap},
     {"sweep_repeats_block", Fault::sweep_repeats_block},
     {"part_joined_twice", Fault::part_joined_twice},

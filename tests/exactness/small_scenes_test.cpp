@@ -30,7 +30,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                         table_further,
                                         build_one_block,
                                         build_blocks,
-                                        merge_ranges,
+                                        count_ranges,
                                         kept_above_leaf,
                                         ghost_entries,
                                         crowded_octree,

@@ -30,7 +30,7 @@ void shrink(Tuning::Sampling& sampling, Shrinker& to) {
     to.one_of<std::size_t>(sampling.stride, {1, 1, 2, 3, 7});
     to.one_of<std::size_t>(sampling.most, {8, 20, 1000});
     to.one_of<std::size_t>(sampling.most_stride, {1, 2, 5});
-    to.one_of<std::size_t>(sampling.frame, {1, 5, 60});
+    to.one_of<std::size_t>(sampling.space, {1, 5, 60});
 }
 
 void shrink(Tuning::Split& split, Shrinker& to) {
@@ -54,8 +54,8 @@ void shrink(Tuning::Scan& scan, Shrinker& to) {
     to.one_of<std::size_t>(scan.large_node, {1, 4, 20, 60});
     to.one_of<std::size_t>(scan.share_entries, {1, 5, 30});
     to.one_of<std::size_t>(scan.shares_per_thread, {1, 3});
-    to.one_of<std::size_t>(scan.hot_node, {1, 4, 16, 50});
-    to.one_of<std::uint64_t>(scan.good_window, {0, 1, 3, 8});
+    to.one_of<std::size_t>(scan.crowded_octant, {1, 4, 16, 50});
+    to.one_of<std::uint64_t>(scan.good_tests, {0, 1, 3, 8});
     to.one_of<double>(scan.largest_part, {0.6, 0.8, 0.95, 1});
     to.one_of<double>(scan.most_growth, {1.5, 4, 16});
     to.one_of<unsigned>(scan.most_nesting, {1, 2, 3, 5, 8});
@@ -64,7 +64,7 @@ void shrink(Tuning::Scan& scan, Shrinker& to) {
 void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.tile, {1, 2, 5, 16});
     to.one_of<std::size_t>(sweep.small_set, {1, 3, 8});
-    to.one_of<std::uint64_t>(sweep.cheap_window, {0, 1, 3});
+    to.one_of<std::uint64_t>(sweep.cheap_tests, {0, 1, 3});
     to.one_of<std::uint64_t>(sweep.tests_per_pair, {1, 4});
     to.one_of<std::size_t>(sweep.large_join, {1, 4, 20});
     to.one_of<std::size_t>(sweep.tests_per_call, {1, 2, 7});
@@ -78,8 +78,8 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.measured_least, {1, 4, 16});
     to.one_of<std::size_t>(sweep.measured_most, {16, 40});
     to.one_of<std::size_t>(sweep.tried_rows, {1, 5});
-    to.one_of<std::size_t>(sweep.window_stride, {1, 3});
-    to.one_of<std::size_t>(sweep.windows, {1, 5});
+    to.one_of<std::size_t>(sweep.measured_row_stride, {1, 3});
+    to.one_of<std::size_t>(sweep.measured_rows, {1, 5});
 }
 
 void shrink(Tuning::Dynamic& dynamic, Shrinker& to) {
@@ -141,12 +141,12 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
 /// Hardly any sweep is good enough, and samples see little: octants are crowded, and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
-    tuning.scan.hot_node = 1;
-    tuning.scan.good_window = 0;
+    tuning.scan.crowded_octant = 1;
+    tuning.scan.good_tests = 0;
     tuning.scan.largest_part = 0.9;
     tuning.scan.most_growth = 16;
     tuning.sweep.small_set = 2;
-    tuning.sweep.cheap_window = 0;
+    tuning.sweep.cheap_tests = 0;
     tuning.sweep.tests_per_pair = 1;
 }
 

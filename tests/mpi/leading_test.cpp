@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/mpi/comm/pulse.hpp"
+#include "engine/mpi/comm/heartbeat.hpp"
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
@@ -225,27 +225,27 @@ TEST(RankPulse, TellsWhoIsSilent) {
     const bool first = testing::own_rank() == 0, last = testing::own_rank() + 1 == testing::rank_count();
     constexpr std::chrono::milliseconds silence(2000);  // longer than a busy machine stalls
     Communicator comm(MPI_COMM_WORLD);
-    Pulse pulse(comm, silence);
+    Heartbeat heartbeat(comm, silence);
     const auto work = [&](int times, const auto& each) {
         for (int i = 0; i < times; ++i) {
             each();
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
     };
-    pulse.begin();
-    work(500, [&] { EXPECT_NO_THROW(pulse.beat()); });  // longer than that
+    heartbeat.begin();
+    work(500, [&] { EXPECT_NO_THROW(heartbeat.beat()); });  // longer than that
     MPI_Barrier(MPI_COMM_WORLD);
     if (first) {
-        pulse.begin();
+        heartbeat.begin();
         const auto begun = std::chrono::steady_clock::now();
-        EXPECT_THROW(work(1000, [&] { pulse.beat(); }), Error);
+        EXPECT_THROW(work(1000, [&] { heartbeat.beat(); }), Error);
         EXPECT_GE(std::chrono::steady_clock::now() - begun, silence);
-        ASSERT_TRUE(pulse.lost());
-        EXPECT_EQ(*pulse.lost(), "rank " + std::to_string(testing::rank_count() - 1) + " has not answered for 2 s");
+        ASSERT_TRUE(heartbeat.lost());
+        EXPECT_EQ(*heartbeat.lost(), "rank " + std::to_string(testing::rank_count() - 1) + " has not answered for 2 s");
     } else if (!last) {
-        work(500, [&] { pulse.beat(); });
+        work(500, [&] { heartbeat.beat(); });
     }
-    pulse.end();
+    heartbeat.end();
 }
 
 }  // namespace

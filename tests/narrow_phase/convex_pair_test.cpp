@@ -215,8 +215,8 @@ TEST(ConvexPair, InEachOtherOrTheSame) {
         const Thing grain(shape::Sphere{0.01}, thing.posed.pose);
         EXPECT_EQ(gap(thing, grain), 0);
         EXPECT_GT(contact(thing, grain).depth, 0.04);
-        EXPECT_TRUE(convex_holds(thing.convex(), grain.convex()));
-        EXPECT_FALSE(convex_holds(grain.convex(), thing.convex()));
+        EXPECT_TRUE(convex_contains(thing.convex(), grain.convex()));
+        EXPECT_FALSE(convex_contains(grain.convex(), thing.convex()));
     }
 }
 
@@ -284,12 +284,12 @@ TEST(ConvexPair, TrianglesAndPoints) {
     const Thing cylinder(shape::Cylinder{1, 2}, Point3d{1e6, 0, 0});
     std::array<Point3d, 3> triangle = {{{1e6 + 2, -1, 0}, {1e6 + 2, 1, 0}, {1e6 + 2, 0, 1}}};
     EXPECT_NEAR(convex_gap(PosedConvex(triangle), cylinder.convex()).distance, 1, 1e-9);
-    EXPECT_FALSE(convex_holds(cylinder.convex(), PosedConvex(triangle)));
+    EXPECT_FALSE(convex_contains(cylinder.convex(), PosedConvex(triangle)));
     for (Point3d& corner : triangle) corner[0] = 1e6 + 0.25, corner[1] *= 0.5, corner[2] *= 0.5;
     EXPECT_TRUE(convex_meet(PosedConvex(triangle), cylinder.convex()));
-    EXPECT_TRUE(convex_holds(cylinder.convex(), PosedConvex(triangle)));
+    EXPECT_TRUE(convex_contains(cylinder.convex(), PosedConvex(triangle)));
     EXPECT_TRUE(convex_meet(PosedConvex(Point3d{1e6 + 1, 0, 1}), cylinder.convex()));
-    EXPECT_FALSE(convex_holds(cylinder.convex(), PosedConvex(Point3d{1e6 + 1, 0, 1})));
+    EXPECT_FALSE(convex_contains(cylinder.convex(), PosedConvex(Point3d{1e6 + 1, 0, 1})));
     EXPECT_FALSE(convex_meet(PosedConvex(Point3d{1e6 + 1, 0.001, 1}), cylinder.convex()));
 }
 
@@ -301,7 +301,7 @@ TEST(ConvexPair, HoldsWhatStaysBelowItsSurface) {
             for (int i = 0; i < 20; ++i) {
                 const Thing outer(random_shape(kind_a, random), random_pose(random, 0.3));
                 const Thing inner(random_shape(kind_b, random), random_pose(random, 0.3));
-                if (!convex_holds(outer.convex(), inner.convex())) continue;
+                if (!convex_contains(outer.convex(), inner.convex())) continue;
                 ++held;
                 // No point of the inner one is outside.
                 for (int k = 0; k < 50; ++k) {
@@ -313,8 +313,8 @@ TEST(ConvexPair, HoldsWhatStaysBelowItsSurface) {
     }
     EXPECT_GT(held, 30);
     const Thing box(shape::Box{{1, 1, 1}}), ball(shape::Sphere{0.5});
-    EXPECT_TRUE(convex_holds(box.convex(), ball.moved({0.499, 0, 0}).convex()));
-    EXPECT_FALSE(convex_holds(box.convex(), ball.moved({0.5, 0, 0}).convex()));
+    EXPECT_TRUE(convex_contains(box.convex(), ball.moved({0.499, 0, 0}).convex()));
+    EXPECT_FALSE(convex_contains(box.convex(), ball.moved({0.5, 0, 0}).convex()));
 }
 
 }  // namespace

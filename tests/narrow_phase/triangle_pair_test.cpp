@@ -10,7 +10,7 @@
 #include <string>
 
 #include "narrow_phase/exact/orientation.hpp"
-#include "narrow_phase/exact/pair_look.hpp"
+#include "narrow_phase/exact/triangle_prefilter.hpp"
 #include "narrow_phase/exact_oracle.hpp"
 #include "support/scale.hpp"
 

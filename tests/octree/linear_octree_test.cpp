@@ -25,7 +25,7 @@ public:
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
         for (std::size_t i = count; i-- > 0;) body(i);
     }
-    void for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) override {}
+    void for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) override {}
 
 private:
     unsigned width_;
@@ -51,34 +51,34 @@ protected:
 };
 
 TEST_P(Scene, DirectoryIsAPreOrderWhoseLeavesTileTheSpace) {
-    const auto nodes = octree_.nodes();
-    ASSERT_EQ(nodes[0].next, nodes.size());
+    const auto octants = octree_.octants();
+    ASSERT_EQ(octants[0].next, octants.size());
     long double volume = 0;
-    for (NodeIndex i = 0; i < nodes.size(); ++i) {
+    for (OctantIndex i = 0; i < octants.size(); ++i) {
         if (i > 0) {
-            ASSERT_LT(nodes[i - 1].code(), nodes[i].code());
+            ASSERT_LT(octants[i - 1].code(), octants[i].code());
         }
-        if (nodes[i].leaf()) {
-            ASSERT_EQ(nodes[i].next, i + 1);
-            const long double side = 1.0L / (1u << nodes[i].level);
+        if (octants[i].leaf()) {
+            ASSERT_EQ(octants[i].next, i + 1);
+            const long double side = 1.0L / (1u << octants[i].level);
             volume += side * side * side;
             continue;
         }
         for (unsigned digit = 0; digit < 8; ++digit) {
-            const NodeIndex child = octree_.directory().child(nodes[i], digit);
-            ASSERT_EQ(nodes[child].code(), nodes[i].code().child(digit));
-            ASSERT_EQ(nodes[child].parent, i);
+            const OctantIndex child = octree_.directory().child(octants[i], digit);
+            ASSERT_EQ(octants[child].code(), octants[i].code().child(digit));
+            ASSERT_EQ(octants[child].parent, i);
         }
     }
     EXPECT_EQ(volume, 1.0L);
 }
 
 TEST_P(Scene, EveryBoxHasOneToEightEntriesWhichCoverIt) {
-    std::map<std::uint32_t, std::vector<NodeIndex>> octants_of;
-    for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
-        for (const Entry& entry : octree_.entries(node)) {
-            ASSERT_TRUE(octree_.nodes()[node].touches(octree_.frame().cells(entry)));
-            octants_of[entry.object].push_back(node);
+    std::map<std::uint32_t, std::vector<OctantIndex>> octants_of;
+    for (OctantIndex octant = 0; octant < octree_.octants().size(); ++octant) {
+        for (const Entry& entry : octree_.entries(octant)) {
+            ASSERT_TRUE(octree_.octants()[octant].touches(octree_.space().cells(entry)));
+            octants_of[entry.object].push_back(octant);
         }
     }
     ASSERT_EQ(octants_of.size(), boxes_.size());
@@ -86,7 +86,7 @@ TEST_P(Scene, EveryBoxHasOneToEightEntriesWhichCoverIt) {
         ASSERT_LE(octants.size(), 8u);
         Entry entry;
         ASSERT_TRUE(source_.load(object, {&entry, 1}));
-        const CellBox cells = octree_.frame().cells(entry);
+        const CellBox cells = octree_.space().cells(entry);
         for (unsigned corner = 0; corner < 8; ++corner) {
             Cell cell = cells.lo;
             for (unsigned axis = 0; axis < 3; ++axis) {
@@ -94,17 +94,17 @@ TEST_P(Scene, EveryBoxHasOneToEightEntriesWhichCoverIt) {
             }
             const OctalCode at = OctalCode::from_cell({cell[0], cell[1], cell[2]}, deepest);
             std::size_t covering = 0;
-            for (const NodeIndex octant : octants) covering += octree_.nodes()[octant].code().contains(at) ? 1 : 0;
+            for (const OctantIndex octant : octants) covering += octree_.octants()[octant].code().contains(at) ? 1 : 0;
             ASSERT_EQ(covering, 1u) << "object " << object << " corner " << corner;
         }
     }
 }
 
 TEST_P(Scene, ClassBitsSayOnWhichAxesABoxBeginsBeforeItsOctant) {
-    for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
-        const Cell& first = octree_.nodes()[node].lo;
-        for (const Entry& entry : octree_.entries(node)) {
-            const CellBox cells = octree_.frame().cells(entry);
+    for (OctantIndex octant = 0; octant < octree_.octants().size(); ++octant) {
+        const Cell& first = octree_.octants()[octant].lo;
+        for (const Entry& entry : octree_.entries(octant)) {
+            const CellBox cells = octree_.space().cells(entry);
             for (unsigned axis = 0; axis < 3; ++axis) {
                 ASSERT_EQ(entry.mask >> axis & 1u, unsigned(cells.lo[axis] < first[axis]));
             }
@@ -117,10 +117,10 @@ TEST_P(Scene, SharingOutTheWorkChangesNothing) {
         BackwardExecutor executor(width);
         LinearOctree other;
         other.build(source_, executor, {});
-        ASSERT_EQ(other.nodes().size(), octree_.nodes().size());
-        for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
-            const auto ours = octree_.entries(node);
-            const auto theirs = other.entries(node);
+        ASSERT_EQ(other.octants().size(), octree_.octants().size());
+        for (OctantIndex octant = 0; octant < octree_.octants().size(); ++octant) {
+            const auto ours = octree_.entries(octant);
+            const auto theirs = other.entries(octant);
             ASSERT_EQ(ours.size(), theirs.size());
             for (std::size_t i = 0; i < ours.size(); ++i) {
                 ASSERT_EQ(ours[i].object, theirs[i].object);
@@ -143,20 +143,20 @@ struct OwnedList {
 };
 
 /// Of objects [begin, end), as a worker of the paper's arrangement makes it.
-OwnedList sorted_list(const EntrySource& source, const PlantedOctants& octants, ObjectBlock objects) {
+OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, ObjectBlock objects) {
     BuildMemory memory(own_pages(), own_pages());
-    memory.resize(source.size(), 1, octants.directory.nodes().size(), 1);
+    memory.resize(source.size(), 1, layout.directory.octants().size(), 1);
     const std::stop_token stop;
-    const BuildSteps steps{source, octants.frame, octants.directory, memory, stop};
+    const BuildSteps steps{source, layout.space, layout.directory, memory, stop};
     const std::array<std::size_t, 1> alone = {0};
-    const std::array<NumberedNodes, 1> nodes = {NumberedNodes{0, 0, NodeIndex(memory.nodes)}};
+    const std::array<NumberedOctants, 1> octants = {NumberedOctants{0, 0, OctantIndex(memory.octants)}};
     steps.encode({0, objects});
-    steps.merge(nodes[0], alone);
+    steps.count(octants[0], alone);
     OwnedList list;
     list.entries.resize(std::size_t(memory.totals[0]) + 1);
     const std::array<std::uint64_t, 1> begin = {0};
     // Twice: a step that is done again does the same.
-    for (int i = 0; i < 2; ++i) steps.sort({0, objects}, {list.entries, begin, nodes, list.entries.size() - 1});
+    for (int i = 0; i < 2; ++i) steps.scatter({0, objects}, {list.entries, begin, octants, list.entries.size() - 1});
     list.entries.pop_back();
     const auto homes = memory.home_part(memory.places, 0), ghosts = memory.ghost_part(memory.places, 0);
     list.home_begins.assign(homes.begin(), homes.end());
@@ -178,7 +178,7 @@ OwnedList merged_list(std::span<const SortedList> lists) {
 
 TEST_P(Scene, MergedListsAreTheSameOctree) {
     for (const std::size_t count : {1, 2, 5}) {
-        const PlantedOctants octants = plant_octants(source_, {});
+        const OctreeLayout layout = make_layout(source_, {});
         std::vector<OwnedList> owned;
         std::vector<SortedList> lists;
         lists.reserve(count);
@@ -196,8 +196,8 @@ TEST_P(Scene, MergedListsAreTheSameOctree) {
         LinearOctree merged;
         merged.assemble(octants, lists, {});
         ASSERT_EQ(merged.entry_count(), octree_.entry_count());
-        for (NodeIndex node = 0; node < octree_.nodes().size(); ++node) {
-            const auto expected = octree_.entries(node), found = merged.entries(node);
+        for (OctantIndex octant = 0; octant < octree_.octants().size(); ++octant) {
+            const auto expected = octree_.entries(octant), found = merged.entries(octant);
             ASSERT_EQ(found.size(), expected.size());
             ASSERT_EQ(std::memcmp(found.data(), expected.data(), expected.size_bytes()), 0);
         }
@@ -219,24 +219,24 @@ TEST(OctantSample, HasMoreOfMoreObjects) {
     EXPECT_LT(large[large.size() - 2], large[large.size() - 1]);
 }
 
-TEST(Frame, CellsNeverFallAsTheCoordinateGrows) {
+TEST(Space, CellsNeverFallAsTheCoordinateGrows) {
     std::vector<Entry> sample(100);
     for (std::size_t i = 0; i < sample.size(); ++i) {
         const float at = 1e7f + float(i);
         sample[i] = {{at, at * 1e-20f, -at}, {at + 2, at * 1e-20f, 1 - at}, std::uint32_t(i), 0};
     }
-    const Frame frame = Frame::fit(sample, 100);
+    const Space space = Space::fit(sample, 100);
     const float values[] = {-3.4e38f, -1e30f, -1e7f,   -1,   -0.0f,      0.0f,  1e-45f,
                             1e-13f,   1,      9999999, 1e7f, 1.00001e7f, 1e30f, 3.4e38f};
     for (unsigned axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 1; i < std::size(values); ++i) {
-            EXPECT_LE(frame.map().cell(values[i - 1], axis), frame.map().cell(values[i], axis));
+            EXPECT_LE(space.map().cell(values[i - 1], axis), space.map().cell(values[i], axis));
         }
-        EXPECT_LT(frame.map().cell(3.4e38f, axis), cells_per_axis);
+        EXPECT_LT(space.map().cell(3.4e38f, axis), cells_per_axis);
     }
 }
 
-TEST(Frame, TheKernelFollowsTheMap) {
+TEST(Space, TheKernelFollowsTheMap) {
     std::mt19937 random(7);
     const std::vector<float> special = {0.0f, -0.0f, 1e-45f, -1e-45f, 3.4e38f, -3.4e38f, 0.5f, 1.0f};
     std::vector<Entry> entries(1001);
@@ -250,49 +250,49 @@ TEST(Frame, TheKernelFollowsTheMap) {
         entry.object = std::uint32_t(random());
         entry.mask = 0;
     }
-    const Frame frame = Frame::fit(std::span(entries).first(50), 1000);
+    const Space space = Space::fit(std::span(entries).first(50), 1000);
     std::vector<Box3f> plain(entries.size());
     for (std::size_t i = 0; i < plain.size(); ++i) std::memcpy(&plain[i], &entries[i], sizeof(Box3f));
     std::vector<CellBox> boxes(entries.size()), plain_boxes(entries.size());
-    frame.cells(entries, boxes);
-    frame.cells(plain, plain_boxes);
+    space.cells(entries, boxes);
+    space.cells(plain, plain_boxes);
     for (std::size_t i = 0; i < entries.size(); ++i) {
         for (unsigned axis = 0; axis < 3; ++axis) {
-            ASSERT_EQ(boxes[i].lo[axis], frame.map().cell(entries[i].min[axis], axis));
-            ASSERT_EQ(boxes[i].hi[axis], frame.map().cell(entries[i].max[axis], axis));
+            ASSERT_EQ(boxes[i].lo[axis], space.map().cell(entries[i].min[axis], axis));
+            ASSERT_EQ(boxes[i].hi[axis], space.map().cell(entries[i].max[axis], axis));
         }
         ASSERT_EQ(plain_boxes[i].lo, boxes[i].lo);
         ASSERT_EQ(plain_boxes[i].hi, boxes[i].hi);
     }
 }
 
-TEST(Frame, WhatIsNoBoxHasCellsInOrder) {
+TEST(Space, WhatIsNoBoxHasCellsInOrder) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const std::array<float, 5> numbers = {nan, -infinity, infinity, 0.2f, 0.7f};
-    const Frame frame = Frame::fit(std::vector<Entry>{{{0, 0, 0}, {1, 1, 1}, 0, 0}}, 100);
+    const Space space = Space::fit(std::vector<Entry>{{{0, 0, 0}, {1, 1, 1}, 0, 0}}, 100);
     for (const float low : numbers) {
         for (const float high : numbers) {
             const Box3f box{{low, low, low}, {high, high, high}};
             CellBox cells;
-            frame.cells(std::span(&box, 1), {&cells, 1});
+            space.cells(std::span(&box, 1), {&cells, 1});
             for (unsigned axis = 0; axis < 3; ++axis) {
                 EXPECT_LE(cells.lo[axis], cells.hi[axis]);
-                EXPECT_LE(cells.hi[axis], frame.last_cell(axis));
+                EXPECT_LE(cells.hi[axis], space.last_cell(axis));
             }
         }
     }
 }
 
-TEST(Frame, AFarOutBoxDoesNotStretchIt) {
+TEST(Space, AFarOutBoxDoesNotStretchIt) {
     std::vector<Entry> sample(1000);
     for (std::size_t i = 0; i < sample.size(); ++i) {
         const float at = float(i) / 1000;
         sample[i] = {{at, at, at}, {at, at, at}, std::uint32_t(i), 0};
     }
     sample[500] = {{1e30f, 1e30f, 1e30f}, {1e30f, 1e30f, 1e30f}, 500, 0};
-    const Frame frame = Frame::fit(sample, 1000);
-    EXPECT_NE(frame.map().cell(0.25f, 1), frame.map().cell(0.2501f, 1));
+    const Space space = Space::fit(sample, 1000);
+    EXPECT_NE(space.map().cell(0.25f, 1), space.map().cell(0.2501f, 1));
 }
 
 }  // namespace

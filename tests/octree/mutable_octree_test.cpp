@@ -39,7 +39,7 @@ public:
     explicit Changing(const std::vector<Box3f>& boxes) {
         octree_.build(linear_octree_of(boxes), {});
         cells_.resize(boxes.size());
-        octree_.frame().cells(boxes, cells_);
+        octree_.space().cells(boxes, cells_);
         here_.assign(boxes.size(), true);
     }
 
@@ -49,7 +49,7 @@ public:
     }
 
     void insert(std::uint32_t object, const Box3f& box) {
-        octree_.frame().cells(std::span(&box, 1), {&cells_[object], 1});
+        octree_.space().cells(std::span(&box, 1), {&cells_[object], 1});
         octree_.insert(object, cells_[object]);
         here_[object] = true;
     }
@@ -58,7 +58,7 @@ public:
 
     void expect_found(const Box3f& box) const {
         CellBox cells;
-        octree_.frame().cells(std::span(&box, 1), {&cells, 1});
+        octree_.space().cells(std::span(&box, 1), {&cells, 1});
         std::vector<std::uint32_t> found;
         octree_.search(cells, found);
         std::sort(found.begin(), found.end());
@@ -113,7 +113,7 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
 INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
 
 /// Takes every object.
-class TakeAll final : public Probe {
+class TakeAll final : public NearestVisitor {
 public:
     double at_least(const Box3d&) const override { return 0; }
     double limit() const override { return 0; }
@@ -127,9 +127,9 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     std::vector<std::uint32_t> found;
     octree.search({}, found);
     EXPECT_TRUE(found.empty());
-    TakeAll probe;
-    octree.search(probe);
-    EXPECT_TRUE(probe.taken.empty());
+    TakeAll visitor;
+    octree.search(visitor);
+    EXPECT_TRUE(visitor.taken.empty());
 }
 
 /// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether it was cancelled.
@@ -158,7 +158,7 @@ TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     octree.build(linear, {});
     const auto whole = std::chrono::steady_clock::now() - begin;
     std::vector<CellBox> cells(boxes.size());
-    octree.frame().cells(boxes, cells);
+    octree.space().cells(boxes, cells);
     unsigned cancelled = 0;
     // From before the first octant to about the last.
     for (unsigned moment = 0; moment < moments; ++moment) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "octree/dynamic/plot.hpp"
+#include "octree/dynamic/leaf_grid.hpp"
 
 namespace octopair {
 namespace {
@@ -48,22 +48,22 @@ TEST(Unit, NumbersLoseNothing) {
     for (int round = 0; round < 20000; ++round) {
         const unsigned level = std::uint32_t(random()) % (deepest + 1);
         const std::uint32_t side = cells_per_axis >> level, octants = 1u << level;
-        Node node{};
-        node.level = level;
-        node.children = Node::no_children;
-        for (unsigned axis = 0; axis < 3; ++axis) node.lo[axis] = std::uint32_t(random()) % octants * side;
-        const Unit unit = Plot::cut(node, 0, {}).own_unit();
+        Octant octant{};
+        octant.level = level;
+        octant.children = Octant::no_children;
+        for (unsigned axis = 0; axis < 3; ++axis) octant.lo[axis] = std::uint32_t(random()) % octants * side;
+        const Unit unit = LeafGrid::cut(octant, 0, {}).own_unit();
         const auto random_cells = [&] {
             CellBox box;
             for (unsigned axis = 0; axis < 3; ++axis) {
                 // Near the unit, so that they touch it, its borders and each other.
-                const std::int64_t first = std::int64_t(node.lo[axis]) - side,
-                                   last = std::int64_t(node.lo[axis]) + 2 * side;
+                const std::int64_t first = std::int64_t(octant.lo[axis]) - side,
+                                   last = std::int64_t(octant.lo[axis]) + 2 * side;
                 std::int64_t a = std::uniform_int_distribution<std::int64_t>(first, last)(random);
                 std::int64_t b = std::uniform_int_distribution<std::int64_t>(first, last)(random);
                 if (a > b) std::swap(a, b);
-                a = std::clamp<std::int64_t>(a, 0, node.lo[axis] + side - 1);
-                b = std::clamp<std::int64_t>(b, node.lo[axis], cells_per_axis - 1);
+                a = std::clamp<std::int64_t>(a, 0, octant.lo[axis] + side - 1);
+                b = std::clamp<std::int64_t>(b, octant.lo[axis], cells_per_axis - 1);
                 box.lo[axis] = std::uint32_t(std::min(a, b));
                 box.hi[axis] = std::uint32_t(std::max(a, b));
             }
@@ -72,7 +72,7 @@ TEST(Unit, NumbersLoseNothing) {
         const CellBox a = random_cells(), b = random_cells();
         bool begins_here = true, overlaps = true;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            begins_here &= std::max(a.lo[axis], b.lo[axis]) >= node.lo[axis];
+            begins_here &= std::max(a.lo[axis], b.lo[axis]) >= octant.lo[axis];
             overlaps &= a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis];
         }
         if (overlaps && begins_here) {
@@ -80,8 +80,8 @@ TEST(Unit, NumbersLoseNothing) {
         }
         const CellBox held = unit.cells(unit.small(a));
         for (unsigned axis = 0; axis < 3; ++axis) {
-            ASSERT_LE(held.lo[axis], std::max(a.lo[axis], node.lo[axis]));
-            ASSERT_GE(held.hi[axis], std::min(a.hi[axis], node.lo[axis] + side - 1));
+            ASSERT_LE(held.lo[axis], std::max(a.lo[axis], octant.lo[axis]));
+            ASSERT_GE(held.hi[axis], std::min(a.hi[axis], octant.lo[axis] + side - 1));
         }
     }
 }

@@ -15,7 +15,7 @@ namespace octopair::testing {
 
 namespace {
 
-/// Where the desk is mapped in this process.
+/// Where the control block is mapped in this process.
 std::byte* find_desk() {
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
@@ -23,7 +23,7 @@ std::byte* find_desk() {
         auto* const begin = reinterpret_cast<std::byte*>(std::strtoull(line.c_str(), nullptr, 16));
         std::uint64_t mark = 0;
         std::memcpy(&mark, begin, sizeof mark);
-        if (mark == desk_mark) return begin;
+        if (mark == control_mark) return begin;
     }
     return nullptr;
 }
@@ -42,26 +42,26 @@ public:
 private:
     void perhaps(std::uint64_t one_in) {
         if (random_.below(one_in) != 0) return;
-        if (desk_ == nullptr) desk_ = find_desk();
-        if (desk_ != nullptr) write();
+        if (control_block_ == nullptr) control_block_ = find_desk();
+        if (control_block_ != nullptr) write();
     }
 
     void write() {
         const std::uint64_t shares = 200;
         switch (random_.below(6)) {
             case 0:
-                return scribble(DeskPlaces::slots + slot_ * sizeof(Slot), sizeof(Slot));
+                return scribble(ControlBlockLayout::slots + slot_ * sizeof(Slot), sizeof(Slot));
             case 1:
-                return scribble(DeskPlaces::shares + random_.below(shares) * sizeof(Share), sizeof(Share));
+                return scribble(ControlBlockLayout::shares + random_.below(shares) * sizeof(Share), sizeof(Share));
             case 2:
-                return scribble(DeskPlaces::runs + random_.below(shares) * sizeof(Run), sizeof(Run));
+                return scribble(ControlBlockLayout::runs + random_.below(shares) * sizeof(Run), sizeof(Run));
             case 3:
-                return scribble(DeskPlaces::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
+                return scribble(ControlBlockLayout::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
                                 sizeof(RingEntry));
             case 4:
-                return scribble(DeskPlaces::logs + slot_ * most_logged * sizeof(LoggedPage), 64);
+                return scribble(ControlBlockLayout::logs + slot_ * most_logged * sizeof(LoggedPage), 64);
             default:
-                return scribble(DeskPlaces::commits + 2 * slot_ * sizeof(Commit), 256);
+                return scribble(ControlBlockLayout::commits + 2 * slot_ * sizeof(Commit), 256);
         }
     }
 
@@ -70,13 +70,13 @@ private:
         const std::uint64_t words = random_.below(3) == 0 ? 4 : 1;
         for (std::uint64_t i = 0; i < words; ++i) {
             const std::uint64_t value = random_.next() >> random_.below(64);
-            std::memcpy(desk_ + offset + random_.below(size / 8) * 8, &value, sizeof value);
+            std::memcpy(control_block_ + offset + random_.below(size / 8) * 8, &value, sizeof value);
         }
     }
 
     samples::RandomStream random_;
     unsigned slot_;
-    std::byte* desk_ = nullptr;
+    std::byte* control_block_ = nullptr;
 };
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <memory>
 
-#include "engine/processes/worker/share_out.hpp"
+#include "engine/processes/worker/work_sharing.hpp"
 
 namespace octopair::testing {
 
-/// Writes random bytes into the tables of the desk, now and then while shares are under way. A function of the seed, the
+/// Writes random bytes into the tables of the control block, now and then while shares are under way. A function of the seed, the
 /// slot, the process and of when shares come.
 std::unique_ptr<ShareObserver> make_damage(std::uint64_t seed, unsigned slot);
 

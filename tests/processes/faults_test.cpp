@@ -24,7 +24,7 @@ using testing::FaultKind;
 using testing::How;
 using testing::Moment;
 
-constexpr std::array fault_steps = {Step::encode, Step::merge, Step::sort, Step::scan, Step::order};
+constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
 constexpr std::uint64_t faults_a_case = testing::scaled(115, 8);
 constexpr unsigned most_of_a_step = 2;  // in one call: the third of a share would end it
 constexpr unsigned most_tries = 20;

@@ -63,7 +63,7 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     const Scene scene("clustered", 6'000, 1);  // few enough for one worker
     testing::MappedPlan plan;
     const auto engine = testing::make_faulty_engine(3);
-    for (const Step step : {Step::encode, Step::merge, Step::sort, Step::scan, Step::order}) {
+    for (const Step step : {Step::encode, Step::count, Step::scatter, Step::scan, Step::order}) {
         for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
             const Asked asked{.how = How::list, .order = Order::ascending};
             const Fault fault{
@@ -89,7 +89,7 @@ TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
     const Scene scene("clustered", 6'000, 1);
     testing::MappedPlan plan;
     const auto engine = testing::make_faulty_engine(2);
-    for (const Step step : {Step::encode, Step::sort, Step::scan}) {
+    for (const Step step : {Step::encode, Step::scatter, Step::scan}) {
         plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
         try {
             (void)testing::ask(*engine, scene, {});
@@ -115,7 +115,7 @@ TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     }
 }
 
-/// Signals workers from another thread at random times, but in each call fewer times than a share may lose its worker: on a busy
+/// Signals workers from another thread at random times, but in each call fewer times than a share may handle_lost_worker its worker: on a busy
 /// machine one share can last for several pauses.
 class Disturber {
 public:

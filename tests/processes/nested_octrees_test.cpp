@@ -81,9 +81,9 @@ std::vector<Fault> nested_faults() {
         for (const Moment moment : {Moment::begin, Moment::end}) {
             for (const std::uint32_t later : {0u, 2u}) {
                 faults.push_back({Step::encode, kind, moment, 0, octree_blocks + later});
-                faults.push_back({Step::sort, kind, moment, 0, octree_blocks + later});
+                faults.push_back({Step::scatter, kind, moment, 0, octree_blocks + later});
             }
-            faults.push_back({Step::merge, kind, moment, 0, 1});
+            faults.push_back({Step::count, kind, moment, 0, 1});
         }
     }
     return faults;

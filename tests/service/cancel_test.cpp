@@ -26,7 +26,7 @@ using testing::Served;
 Served::Change patient(Gate& gate) {
     return [&gate](service::ServerOptions& options) {
         options.engine = testing::gated_engines(gate);
-        options.lanes = {1, 1, 0};
+        options.engine_widths = {1, 1, 0};
         options.stall = std::chrono::hours(10);
     };
 }

@@ -24,7 +24,7 @@ protected:
     Gate gate_;
     Served served_{[this](service::ServerOptions& options) {
         options.engine = testing::gated_engines(gate_);
-        options.lanes.instant = 0;  // a gate would hold gRPC itself
+        options.engine_widths.instant = 0;  // a gate would hold gRPC itself
         options.stall = std::chrono::hours(10);
     }};
     const std::vector<Box3f> few_ = testing::make_boxes("dense", 100, 1);

@@ -114,7 +114,7 @@ protected:
     Served serve(const std::function<void(service::ServerLimits&)>& change) {
         return Served([&](service::ServerOptions& options) {
             options.engine = testing::gated_engines(gate_);
-            options.lanes.instant = 0;  // a gate would hold gRPC itself
+            options.engine_widths.instant = 0;  // a gate would hold gRPC itself
             options.stall = std::chrono::hours(10);
             change(options.limits);
         });
@@ -165,7 +165,7 @@ TEST(ServedLimits, OfTimeDoNotCountTheQueue) {
     Gate gate;
     const Served served([&](service::ServerOptions& options) {
         options.engine = testing::gated_engines(gate);
-        options.lanes = {1, 1, 0};
+        options.engine_widths = {1, 1, 0};
         options.limits.job_seconds = 2;
     });
     const auto first = served.client(), second = served.client();

@@ -45,7 +45,7 @@ protected:
     testing::Gate gate_;
     const Served served_{[this](service::ServerOptions& options) {
         options.engine = testing::gated_engines(gate_);
-        options.lanes = {1, 1, 0};
+        options.engine_widths = {1, 1, 0};
     }};
     const std::shared_ptr<grpc::Channel> channel_ = testing::open_channel(served_.address());
     const JobSpec spec_ = testing::spec_of(10);

@@ -63,7 +63,7 @@ TEST(ServedPatience, EndsWhenAServerStaysAway) {
     testing::Gate gate;
     Served served([&](service::ServerOptions& options) {
         options.engine = testing::gated_engines(gate);
-        options.lanes.instant = 0;  // a gate would hold gRPC itself
+        options.engine_widths.instant = 0;  // a gate would hold gRPC itself
     });
     const auto engine = served.client(milliseconds(500));
     Job job = engine->submit(testing::touching_boxes);

@@ -21,7 +21,7 @@ Served::Served(const Change& change) {
     options_.listen = service::parse_address("unix:" + folder_.file("socket"));
     options_.engine = [](unsigned width) { return make_local_engine(width); };
     options_.engine_name = "local";
-    options_.lanes = {2, 2, 2};
+    options_.engine_widths = {2, 2, 2};
     if (change) change(options_);
     start();
 }

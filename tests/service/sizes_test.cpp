@@ -3,7 +3,7 @@
 
 #include "service/protocol/messages.hpp"
 #include "service/served.hpp"
-#include "service/server/jobs/lanes.hpp"
+#include "service/server/jobs/job_scheduler.hpp"
 #include "support/scale.hpp"
 
 namespace octopair {

@@ -45,7 +45,7 @@ private:
         report_.frames = inputs_.frames.frames;
         report_.moving = inputs_.frames.moving;
         report_.objects = first_.total + second_.total;
-        report_.crew = crew_of(request_.engine);
+        report_.engine = describe_engine(request_.engine);
         report_.seconds.read = seconds_since(start_);
     }
 
@@ -129,8 +129,8 @@ void DetectReport::add_search(const Summary& search) {
     candidates += search.pairs;
     entries += search.entries;
     steps.encode += search.steps.encode;
-    steps.sort += search.steps.sort;
-    steps.merge += search.steps.merge;
+    steps.scatter += search.steps.scatter;
+    steps.count += search.steps.count;
     steps.scan += search.steps.scan;
     add(search.verification);
 }

@@ -64,7 +64,7 @@ struct DetectReport {
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;
-    EngineCrew crew;
+    EngineDescription engine;
 
     /// What a frame's call did, beside `written` seconds that went by in writing.
     void add(const Summary& summary, double written);

@@ -54,7 +54,7 @@ private:
         report_.frames = frames.frames;
         report_.moving = frames.moving;
         report_.objects = sizes.inputs + sizes.against;
-        report_.crew = crew_of(request_.engine);
+        report_.engine = describe_engine(request_.engine);
     }
 
     template <typename Real>

@@ -50,7 +50,7 @@ public:
 private:
     void read_and_find() {
         cluster_.together([&] { read(); });
-        cluster_.joint([&] { engine_ = make_mpi_engine(MPI_COMM_WORLD, {.threads = report_.crew.threads}); });
+        cluster_.joint([&] { engine_ = make_mpi_engine(MPI_COMM_WORLD, {.threads = report_.engine.threads}); });
         if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
         try {
             if (has_filters(request_)) {
@@ -90,8 +90,8 @@ private:
             throw Error(ErrorCode::resource_limit,
                         std::to_string(report_.objects) + " objects: indices of 64 bits go to .npy files alone");
         }
-        report_.crew = crew_of(request_.engine);
-        report_.crew.ranks = cluster_.ranks();
+        report_.engine = describe_engine(request_.engine);
+        report_.engine.ranks = cluster_.ranks();
     }
 
     void read_slices() {
@@ -210,7 +210,7 @@ private:
         Verifier verifier({.objects = {first, join() ? &second : nullptr, options.margin},
                            .kind = piece != nullptr ? ordered : ResultKind::count,
                            .limit = options.limit,
-                           .threads = report_.crew.threads,
+                           .threads = report_.engine.threads,
                            .stop = stop_});
         if (piece != nullptr) cluster_.relay(*piece, [&](std::span<const Pair> pairs) { verifier.take(pairs); });
         cluster_.together([&] {

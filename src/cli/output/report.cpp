@@ -42,8 +42,8 @@ nlohmann::ordered_json seconds_json(const DetectReport& report) {
         {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
     if (!report.events) {
         seconds["encode"] = report.steps.encode;
-        seconds["sort"] = report.steps.sort;
-        seconds["merge"] = report.steps.merge;
+        seconds["count"] = report.steps.count;
+        seconds["scatter"] = report.steps.scatter;
         seconds["scan"] = report.steps.scan;
         seconds["prepare"] = report.seconds.prepare;
         seconds["filter"] = report.seconds.filter;
@@ -111,28 +111,28 @@ std::string summary_text(const DetectReport& report) {
     }
     text += filters_text(report) + verified_text(report) + time_text(report);
     if (!report.events) {
-        text += fmt::format("detect      encode {}, sort {}, merge {}, scan {}\n", duration(steps.encode),
-                            duration(steps.sort), duration(steps.merge), duration(steps.scan));
+        text += fmt::format("detect      encode {}, count {}, scatter {}, scan {}\n", duration(steps.encode),
+                            duration(steps.count), duration(steps.scatter), duration(steps.scan));
     }
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
-    const EngineCrew& crew = report.crew;
-    if (!crew.server.empty()) return text + fmt::format(" on server {}\n", crew.server);
-    if (crew.ranks > 0) {
-        return text + fmt::format(" on {} with {} each\n", plural(crew.ranks, "rank"), plural(crew.threads, "thread"));
+    const EngineDescription& engine = report.engine;
+    if (!engine.server.empty()) return text + fmt::format(" on server {}\n", engine.server);
+    if (engine.ranks > 0) {
+        return text + fmt::format(" on {} with {} each\n", plural(engine.ranks, "rank"), plural(engine.threads, "thread"));
     }
-    return text + " on " + (crew.workers > 0 ? plural(crew.workers, "worker") : plural(crew.threads, "thread")) + '\n';
+    return text + " on " + (engine.workers > 0 ? plural(engine.workers, "worker") : plural(engine.threads, "thread")) + '\n';
 }
 
 std::string stats_json(const DetectReport& report) {
     nlohmann::ordered_json stats = {
         {"objects", report.objects},          {"frames", report.frames},        {"pairs", report.pairs},
-        {"truncated", report.truncated},      {"verified", report.verified},    {"engine", report.crew.engine},
-        {"threads", report.crew.threads},     {"workers", report.crew.workers}, {"entries", report.entries},
+        {"truncated", report.truncated},      {"verified", report.verified},    {"engine", report.engine.engine},
+        {"threads", report.engine.threads},     {"workers", report.engine.workers}, {"entries", report.entries},
         {"peak_rss_bytes", peak_rss_bytes()}, {"seconds", seconds_json(report)}};
     if (!report.not_checked.empty()) stats["not_checked"] = report.not_checked;
-    if (report.crew.ranks > 0) stats["ranks"] = report.crew.ranks;
-    if (!report.crew.server.empty()) stats["server"] = report.crew.server;
+    if (report.engine.ranks > 0) stats["ranks"] = report.engine.ranks;
+    if (!report.engine.server.empty()) stats["server"] = report.engine.server;
     if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});
     if (report.changes) {
         const io::ChangeCounts& changes = *report.changes;

@@ -24,7 +24,7 @@ namespace {
 
 LeadingOptions leading_options_of(const ServeRequest& request) {
     LeadingOptions options;
-    options.threads = crew_of(request.engine).threads;
+    options.threads = describe_engine(request.engine).threads;
     if (request.rank_silence) options.silence = *request.rank_silence;
     return options;
 }
@@ -39,7 +39,7 @@ public:
         options_.engine = [this](unsigned) { return std::move(engine_); };
         // Small jobs are served on threads of this process; so are scenes.
         options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
-        options_.lanes.instant = options_.lanes.small;
+        options_.engine_widths.instant = options_.engine_widths.small;
     }
 
     /// Throws Error where there can be no server.

@@ -17,11 +17,11 @@ namespace octopair::cli {
 
 service::ServerOptions server_options_of(const ServeRequest& request) {
     service::ServerOptions options = request.options;
-    const EngineCrew crew = crew_of(request.engine);
-    options.engine_name = crew.engine;
-    const unsigned width = crew.threads + crew.workers;
+    const EngineDescription described = describe_engine(request.engine);
+    options.engine_name = described.engine;
+    const unsigned width = described.threads + described.workers;
     // A worker process is woken for every job anyway.
-    options.lanes = {width, width, request.engine.runs_in_caller() ? width : 0};
+    options.engine_widths = {width, width, request.engine.runs_in_caller() ? width : 0};
     options.engine = [choice = request.engine](unsigned one_width) {
         return make_engine(choice.with_width(one_width));
     };
@@ -48,7 +48,7 @@ void tell_start(spdlog::logger& log, const service::Server& server, const servic
     std::vector<service::Field> fields = {{"address", server.address().text()},
                                           {"version", OCTOPAIR_VERSION},
                                           {"engine", options.engine_name},
-                                          {"width", std::uint64_t(options.lanes.large)}};
+                                          {"width", std::uint64_t(options.engine_widths.large)}};
     fields.insert(fields.end(), more.begin(), more.end());
     service::log_event(log, service::LogLevel::info, "started", fields);
 }

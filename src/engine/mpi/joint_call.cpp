@@ -19,7 +19,7 @@ struct ToldSlice {
 
 /// What a rank says of its call.
 struct ToldCall {
-    Outlet outlet;
+    OutputKind output_kind;
     Order order;
     bool join, limited, verify;
     double margin;
@@ -32,9 +32,9 @@ ToldSlice told_of(const Objects* set) {
     return {set->size(), std::holds_alternative<std::span<const Box3d>>(set->boxes), !set->padding.empty()};
 }
 
-ToldCall told_of(const detail::Request& request, Outlet outlet) {
+ToldCall told_of(const detail::Request& request, OutputKind output_kind) {
     const Options& options = request.options;
-    return {.outlet = outlet,
+    return {.output_kind = output_kind,
             .order = options.order,
             .join = request.second != nullptr,
             .limited = options.limit.has_value(),
@@ -47,7 +47,7 @@ ToldCall told_of(const detail::Request& request, Outlet outlet) {
 
 /// What two ranks' calls do not have in common, or nothing.
 std::string_view difference(const ToldCall& a, const ToldCall& b) {
-    if (a.outlet != b.outlet) return "whether pairs are counted, listed or streamed";
+    if (a.output_kind != b.output_kind) return "whether pairs are counted, listed or streamed";
     if (a.join != b.join) return "whether there is a second set";
     if (a.order != b.order) return "the order";
     if (a.margin != b.margin) return "the margin";
@@ -107,9 +107,9 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
         [&](std::size_t number) { return named_from(number); });
 }
 
-JointCall join_call(Communicator& comm, const detail::Request& request, Outlet outlet, std::uint64_t most_objects) {
+JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind, std::uint64_t most_objects) {
     Agreement(comm).together([&] { detail::check_request(request); });
-    const std::vector<ToldCall> all = comm.all_gather(told_of(request, outlet));
+    const std::vector<ToldCall> all = comm.all_gather(told_of(request, output_kind));
     check_likeness(all);
     JointCall call;
     call.join = request.second != nullptr;

@@ -17,11 +17,11 @@
 namespace octopair {
 
 /// What becomes of the pairs; the same on all ranks.
-enum class Outlet : std::uint8_t { count, list, sink };
+enum class OutputKind : std::uint8_t { count, list, sink };
 
-inline Outlet outlet_of(const detail::Output& output) {
-    if (output.list != nullptr) return Outlet::list;
-    return output.sink != nullptr ? Outlet::sink : Outlet::count;
+inline OutputKind output_kind_of(const detail::Output& output) {
+    if (output.list != nullptr) return OutputKind::list;
+    return output.sink != nullptr ? OutputKind::sink : OutputKind::count;
 }
 
 struct JointCall {
@@ -62,7 +62,7 @@ private:
 
 /// Collective. Throws Error, on all ranks the same: what is wrong with any rank's options and sizes, and where ranks do not
 /// ask for the same. `most_objects`: on all ranks.
-JointCall join_call(Communicator& comm, const detail::Request& request, Outlet outlet, std::uint64_t most_objects);
+JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind, std::uint64_t most_objects);
 
 /// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank. A sample
 /// has a size and rising elements.

@@ -6,9 +6,9 @@
 namespace octopair {
 
 /// On the way to another writer. A share may write for minutes: it looks out as well.
-class RankExecutor::Writer final : public PairWriter {
+class RankExecutor::Writer final : public ShareWriter {
 public:
-    Writer(PairWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
+    Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
     bool counting() const override { return writer_.counting(); }
     void write_count(std::uint64_t pairs) override {
@@ -52,7 +52,7 @@ private:
         if (++writes_ % 64 == 0) executor_.look_out();
     }
 
-    PairWriter& writer_;
+    ShareWriter& writer_;
     RankExecutor& executor_;
     unsigned writes_ = 0;
 };
@@ -69,8 +69,8 @@ void RankExecutor::for_each(std::size_t count, const std::function<void(std::siz
     });
 }
 
-void RankExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
-    executor_.for_each_writing(count, [&](std::size_t i, PairWriter& writer) {
+void RankExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
+    executor_.for_each_writing(count, [&](std::size_t i, ShareWriter& writer) {
         look_out();
         Writer own(writer, *this);
         body(i, own);

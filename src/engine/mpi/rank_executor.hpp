@@ -27,7 +27,7 @@ public:
 
     unsigned width() const override { return executor_.width(); }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
 private:
     class Writer;

@@ -10,11 +10,11 @@ void RankPasses::build(Call& call, double progress) {
     call.progress.stage(progress, 1);
     TeamExecutor threads(team());
     RankExecutor executor(threads, *stops_);
-    octree().build(std::move(share_.octants), call.source, executor, call.stop.get_token());
+    octree().build(std::move(share_.layout), call.source, executor, call.stop.get_token());
     call.summary.entries = octree().entry_count(share_.begin, share_.end);
     call.summary.steps.encode = octree().seconds().encode;
-    call.summary.steps.merge = octree().seconds().merge;
-    call.summary.steps.sort = octree().seconds().sort;
+    call.summary.steps.count = octree().seconds().count;
+    call.summary.steps.scatter = octree().seconds().scatter;
 }
 
 namespace {
@@ -38,7 +38,7 @@ class RowCountExecutor final : public TeamExecutor {
 public:
     RowCountExecutor(Team& team, const RowBins& bins, std::span<std::uint64_t> counts)
         : TeamExecutor(team), bins_(bins), counts_(counts) {}
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override {
         team().for_each(count, [&](std::size_t i, unsigned) {
             RowCountWriter writer(bins_, counts_);
             body(i, writer);

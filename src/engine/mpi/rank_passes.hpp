@@ -12,8 +12,8 @@ namespace octopair {
 
 /// What a rank does of a call.
 struct RankShare {
-    PlantedOctants octants;
-    NodeIndex begin = 0, end = 0;  ///< those that this rank owns
+    OctreeLayout layout;
+    OctantIndex begin = 0, end = 0;  ///< those that this rank owns
     PairNumbers numbers = {};
 };
 

@@ -16,7 +16,7 @@
 #include "engine/mpi/order/index_order.hpp"
 #include "engine/mpi/order/indexed_pairs.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
-#include "engine/mpi/partition/planting.hpp"
+#include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_task.hpp"
 #include "engine/receiver.hpp"
@@ -98,9 +98,9 @@ void RankSearch::join(Task& task) {
         throw Error(ErrorCode::usage, "no pairs of 64 bits in the paper's arrangement");
     const Metered metered(comm_, costs_.join);
     const detail::Request& asked = task.request;
-    const Outlet outlet = task.indexed != nullptr ? Outlet::list : outlet_of(task.output);
+    const OutputKind output_kind = task.indexed != nullptr ? OutputKind::list : output_kind_of(task.output);
     const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : most_objects;
-    task.joint = join_call(comm_, asked, outlet, most);
+    task.joint = join_call(comm_, asked, output_kind, most);
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
     if (task.indexed == nullptr) return;
@@ -109,7 +109,7 @@ void RankSearch::join(Task& task) {
         task.slices[set] = task.order.objects(set);
     }
     const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
-    task.joint = join_call(comm_, {task.slices[0], second, asked.options}, outlet, most);
+    task.joint = join_call(comm_, {task.slices[0], second, asked.options}, output_kind, most);
     task.joint.indexed = true;
     for (unsigned set = 0; set < task.sets(); ++set) task.joint.indices[set] = task.order.indices(set);
 }
@@ -122,13 +122,13 @@ void RankSearch::find(Task& task) {
     const Objects& first = task.slices[0];
     const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
     const BoxSource own(first, second, task.joint.form);
-    PlantedOctants octants = plant(task, own);
+    OctreeLayout layout = plan(task, own);
     if (comm_.size() == 1) {
-        const NodeIndex all = NodeIndex(octants.directory.nodes().size());
-        passes_.take({std::move(octants), 0, all}, task.stops);
+        const OctantIndex all = OctantIndex(layout.directory.octants().size());
+        passes_.take({std::move(layout), 0, all}, task.stops);
         return search(task, {first, second, asked.options});
     }
-    passes_.take(route(task, own, std::move(octants)), task.stops);
+    passes_.take(route(task, own, std::move(layout)), task.stops);
     const Objects first_received = received_[0].view(), second_received = received_[1].view();
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
 }
@@ -142,23 +142,23 @@ void RankSearch::find_at_master(Task& task) {
     task.summary.steps = summary.steps;
 }
 
-PlantedOctants RankSearch::plant(Task& task, const BoxSource& own) {
-    const Metered metered(comm_, costs_.plant);
+OctreeLayout RankSearch::plan(Task& task, const BoxSource& own) {
+    const Metered metered(comm_, costs_.plan);
     const std::stop_token stop = task.stop.get_token();
-    if (comm_.size() == 1) return plant_octants(own, stop);
-    return plant_together(comm_, task.joint, own, stop);
+    if (comm_.size() == 1) return make_layout(own, stop);
+    return plan_together(comm_, task.joint, own, stop);
 }
 
 /// To the ranks whose octants they touch, which thus receive theirs.
-RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants octants) {
+RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layout) {
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
     std::vector<OctantLoad> loads;
     std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        loads.resize(octants.directory.nodes().size());
-        routing.emplace(task.joint, own, octants, routing_, task.stop.get_token());
+        loads.resize(layout.directory.octants().size());
+        routing.emplace(task.joint, own, layout, routing_, task.stop.get_token());
         routing->find(executor, loads);
     });
     comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});
@@ -166,7 +166,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     std::optional<OctantOwners> cut;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        cut.emplace(octants.directory, loads, comm_.size());
+        cut.emplace(layout.directory, loads, comm_.size());
         routing->address(executor, *cut);
         const Metered packing(comm_, costs_.pack);
         for (unsigned set = 0; set < sets; ++set) {
@@ -184,9 +184,9 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, PlantedOctants oct
     const OctantOwners& owners = *cut;
     PairNumbers numbers;
     if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
-    NodeIndex end = owners.end(comm_.rank());
-    if (planted(Fault::rank_takes_neighbour) && end < octants.directory.nodes().size()) ++end;
-    return {std::move(octants), owners.begin(comm_.rank()), end, numbers};
+    OctantIndex end = owners.end(comm_.rank());
+    if (planted(Fault::rank_takes_neighbour) && end < layout.directory.octants().size()) ++end;
+    return {std::move(layout), owners.begin(comm_.rank()), end, numbers};
 }
 
 void RankSearch::exchange_objects(Task& task, const Routing& routing) {
@@ -211,7 +211,7 @@ void RankSearch::search(Task& task, const detail::Request& own_octants) {
     const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
     if (task.indexed != nullptr) {
         find_indexed(task, call);
-    } else if (outlet_of(task.output) == Outlet::count) {
+    } else if (output_kind_of(task.output) == OutputKind::count) {
         count(task, call);
     } else if (task.request.options.order == Order::octal) {
         find_octal(task, call);

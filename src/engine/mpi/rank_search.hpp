@@ -1,7 +1,7 @@
 // RankSearch: what a rank does in a call, from its slice of the objects to its piece of the pairs.
 //
 //   join    what all ranks ask for                                                           (joint_call.hpp)
-//   plant   the octree's octants, from the sample that the local engine would take            (planting.hpp)
+//   plan    the octree's octants, from the sample that the local engine would take            (planting.hpp)
 //   cut     the pre-order of octants into runs of about equal work, one for each rank         (octant_owners.hpp)
 //   route   objects to the ranks whose octants they touch                                     (routing.hpp)
 //   search  each rank the octants it owns, as the local engine would                          (rank_passes.hpp)
@@ -69,8 +69,8 @@ private:
     void find(Task& task);
     void join(Task& task);
     void find_at_master(Task& task);
-    PlantedOctants plant(Task& task, const BoxSource& own);
-    RankShare route(Task& task, const BoxSource& own, PlantedOctants octants);
+    OctreeLayout plan(Task& task, const BoxSource& own);
+    RankShare route(Task& task, const BoxSource& own, OctreeLayout layout);
     void exchange_objects(Task& task, const Routing& routing);
     void search(Task& task, const detail::Request& own_octants);
     void build(Task& task, Call& call);

@@ -6,12 +6,12 @@
 
 #include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
-#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/process_passes.hpp"
 #include "engine/processes/client/worker_program.hpp"
 #include "engine/processes/paper/paper_passes.hpp"
 #include "engine/search.hpp"
-#include "engine/turns.hpp"
+#include "engine/ticket_lock.hpp"
 #include "octopair/error.hpp"
 #include "octopair/processes.hpp"
 
@@ -26,32 +26,32 @@ unsigned worker_count(unsigned asked) {
     return asked > 0 ? asked : std::clamp(std::thread::hardware_concurrency(), 1u, most_workers);
 }
 
-std::unique_ptr<Passes> make_passes(Arrangement arrangement, Crew& crew, const SharedArrays& arrays) {
-    if (arrangement == Arrangement::paper) return std::make_unique<PaperPasses>(crew, arrays);
-    return std::make_unique<ProcessPasses>(crew, arrays);
+std::unique_ptr<Passes> make_passes(Arrangement arrangement, WorkerPool& pool, const SharedArrays& arrays) {
+    if (arrangement == Arrangement::paper) return std::make_unique<PaperPasses>(pool, arrays);
+    return std::make_unique<ProcessPasses>(pool, arrays);
 }
 
 class ProcessEngine final : public Engine {
 public:
     ProcessEngine(const ProcessOptions& options, const std::string& packaged_worker)
-        : crew_(find_worker_program(options.worker_program, packaged_worker), worker_count(options.workers)),
-          passes_(make_passes(options.arrangement, crew_, *arrays_)),
+        : pool_(find_worker_program(options.worker_program, packaged_worker), worker_count(options.workers)),
+          passes_(make_passes(options.arrangement, pool_, *arrays_)),
           search_(*passes_) {}
 
-    WorkerFaults faults() const { return crew_.faults(); }
+    WorkerFaults faults() const { return pool_.faults(); }
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
-        const Turns::Turn turn(turns_, control.stop);
+        const TicketLock::Guard turn(ticket_lock_, control.stop);
         return search_.run(request, output, control);
     }
     std::shared_ptr<void> allocate(std::size_t bytes) override { return SharedArrays::allocate(arrays_, bytes); }
     detail::JobQueue& jobs() override { return jobs_; }
     unsigned verification_threads() const override { return passes_->width(); }
 
-    Turns turns_;
+    TicketLock ticket_lock_;
     std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();
-    Crew crew_;
+    WorkerPool pool_;
     std::unique_ptr<Passes> passes_;
     Search search_;
     detail::JobQueue jobs_{*this};  // the last, so that it ends first

@@ -90,7 +90,7 @@ AscendingExecutor::AscendingExecutor(Team& team, detail::PairStorage& list, cons
 
 AscendingExecutor::~AscendingExecutor() = default;
 
-void AscendingExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
+void AscendingExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
     team().for_each(count, [&](std::size_t i, unsigned worker) {
         BucketWriter writer = buckets_->writer(worker);
         body(i, writer);

@@ -21,7 +21,7 @@ public:
     ~AscendingExecutor() override;
 
     /// Throws OverBudget.
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
     /// To be called once, after the scan. Throws Error{cancelled}.
     void append_sorted(const std::stop_token& stop);
 

@@ -4,7 +4,7 @@
 #include "engine/search.hpp"
 #include "engine/threads/thread_passes.hpp"
 #include "engine/threads/writers.hpp"
-#include "engine/turns.hpp"
+#include "engine/ticket_lock.hpp"
 
 namespace octopair {
 
@@ -24,8 +24,8 @@ public:
         }
         call.summary.entries = octree().entry_count();
         call.summary.steps.encode = octree().seconds().encode;
-        call.summary.steps.merge = octree().seconds().merge;
-        call.summary.steps.sort = octree().seconds().sort;
+        call.summary.steps.count = octree().seconds().count;
+        call.summary.steps.scatter = octree().seconds().scatter;
     }
 };
 
@@ -35,13 +35,13 @@ public:
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
-        const Turns::Turn turn(turns_, control.stop);
+        const TicketLock::Guard turn(ticket_lock_, control.stop);
         return search_.run(request, output, control);
     }
     detail::JobQueue& jobs() override { return jobs_; }
     unsigned verification_threads() const override { return passes_.width(); }
 
-    Turns turns_;
+    TicketLock ticket_lock_;
     LocalPasses passes_;
     Search search_{passes_};
     detail::JobQueue jobs_{*this};  // the last, so that it ends first

@@ -20,7 +20,7 @@ namespace octopair {
 
 namespace {
 
-using Body = std::function<void(std::size_t, PairWriter&)>;
+using Body = std::function<void(std::size_t, ShareWriter&)>;
 
 struct Abandoned {};
 

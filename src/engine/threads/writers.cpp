@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-class CountWriter final : public PairWriter {
+class CountWriter final : public ShareWriter {
 public:
     bool counting() const override { return true; }
     void write(std::span<const Pair> pairs) override { pairs_ += pairs.size(); }
@@ -40,11 +40,11 @@ void TeamExecutor::for_each(std::size_t count, const std::function<void(std::siz
     team_.for_each(count, [&](std::size_t i, unsigned) { body(i); });
 }
 
-void TeamExecutor::for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) {
+void TeamExecutor::for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) {
     throw Error(ErrorCode::engine_failed, "a step that writes no pairs wrote some");
 }
 
-void CountExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
+void CountExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
     team().for_each(count, [&](std::size_t i, unsigned) {
         CountWriter writer;
         body(i, writer);
@@ -53,7 +53,7 @@ void CountExecutor::for_each_writing(std::size_t count, const std::function<void
 }
 
 void CountByObjectExecutor::for_each_writing(std::size_t count,
-                                             const std::function<void(std::size_t, PairWriter&)>& body) {
+                                             const std::function<void(std::size_t, ShareWriter&)>& body) {
     team().for_each(count, [&](std::size_t i, unsigned) {
         CountByObjectWriter writer(counts_);
         body(i, writer);
@@ -90,7 +90,7 @@ private:
 ListExecutor::ListExecutor(Team& team, detail::PairStorage& list)
     : TeamExecutor(team), list_(list), blocks_(team.threads()) {}
 
-void ListExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) {
+void ListExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
     std::vector<std::vector<std::span<const Pair>>> runs(count);
     team().for_each(count, [&](std::size_t i, unsigned worker) {
         Writer writer(list_, blocks_[worker], runs[i]);

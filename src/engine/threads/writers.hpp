@@ -17,7 +17,7 @@
 namespace octopair {
 
 /// A writer that wants the pairs themselves.
-class FullWriter : public PairWriter {
+class FullWriter : public ShareWriter {
 public:
     bool counting() const final { return false; }
     void write_count(std::uint64_t) final;
@@ -39,7 +39,7 @@ public:
     explicit TeamExecutor(Team& team) : team_(team) {}
     unsigned width() const override { return team_.threads(); }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
 protected:
     Team& team() { return team_; }
@@ -52,7 +52,7 @@ private:
 class CountExecutor final : public TeamExecutor {
 public:
     using TeamExecutor::TeamExecutor;
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
     std::uint64_t pairs() const { return pairs_; }
 
 private:
@@ -63,7 +63,7 @@ private:
 class CountByObjectExecutor final : public TeamExecutor {
 public:
     CountByObjectExecutor(Team& team, std::span<std::uint32_t> counts) : TeamExecutor(team), counts_(counts) {}
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
 private:
     std::span<std::uint32_t> counts_;
@@ -73,7 +73,7 @@ private:
 class ListExecutor final : public TeamExecutor {
 public:
     ListExecutor(Team& team, detail::PairStorage& list);
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
 private:
     class Writer;
@@ -88,7 +88,7 @@ public:
     /// `abandon` is asked to stop when the calling thread or a share fails, so that the other shares end soon.
     StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer_pairs, std::stop_source abandon);
 
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
 private:
     Deliver deliver_;

@@ -18,7 +18,7 @@ Buffer<T> copy_of(const std::vector<T>& boxes) {
     return copy;
 }
 
-Box3d box_of(const MeshFile& file, const MeshNode& node) {
+Box3d box_of(const MeshFile& file, const MeshInstance& node) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     for (const unsigned number : node.meshes()) {
@@ -36,7 +36,7 @@ Box3d box_of(const MeshFile& file, const MeshNode& node) {
 LoadedScene node_scene(const MeshFile& file) {
     LoadedScene scene;
     std::vector<Box3d> boxes;
-    for (const MeshNode& node : file.nodes()) {
+    for (const MeshInstance& node : file.nodes()) {
         boxes.push_back(box_of(file, node));
         scene.names.push_back(node.name);
     }
@@ -45,7 +45,7 @@ LoadedScene node_scene(const MeshFile& file) {
     return scene;
 }
 
-void append_triangles(const MeshFile& file, const MeshNode& node, unsigned number, std::vector<Box3f>& boxes) {
+void append_triangles(const MeshFile& file, const MeshInstance& node, unsigned number, std::vector<Box3f>& boxes) {
     const aiMesh& mesh = file.mesh(number);
     for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
         if (face.mNumIndices != 3) continue;
@@ -65,7 +65,7 @@ void append_triangles(const MeshFile& file, const MeshNode& node, unsigned numbe
 
 LoadedScene triangle_scene(const MeshFile& file) {
     std::vector<Box3f> boxes;
-    for (const MeshNode& node : file.nodes()) {
+    for (const MeshInstance& node : file.nodes()) {
         for (const unsigned number : node.meshes()) append_triangles(file, node, number, boxes);
     }
     LoadedScene scene;

@@ -39,12 +39,12 @@ std::string name_of(const aiNode& node, unsigned position) {
 }
 
 /// All nodes with meshes, in pre-order. They are walked with a stack of our own: files choose how deep they are.
-std::vector<MeshNode> find_nodes(const aiScene& scene) {
-    std::vector<MeshNode> nodes;
-    std::vector<MeshNode> waiting;
+std::vector<MeshInstance> find_nodes(const aiScene& scene) {
+    std::vector<MeshInstance> nodes;
+    std::vector<MeshInstance> waiting;
     waiting.push_back({scene.mRootNode, name_of(*scene.mRootNode, 0), pose_of(*scene.mRootNode)});
     while (!waiting.empty()) {
-        const MeshNode at = std::move(waiting.back());
+        const MeshInstance at = std::move(waiting.back());
         waiting.pop_back();
         for (unsigned i = at.node->mNumChildren; i-- > 0;) {
             const aiNode& child = *at.node->mChildren[i];
@@ -60,7 +60,7 @@ std::vector<MeshNode> find_nodes(const aiScene& scene) {
 MeshFile::MeshFile(const std::string& path, bool triangles) : path_(path), scene_(&import(path, triangles)) {
     shown_.resize(scene_->mNumMeshes);
     nodes_ = find_nodes(*scene_);
-    std::erase_if(nodes_, [this](const MeshNode& node) { return !shows_something(node); });
+    std::erase_if(nodes_, [this](const MeshInstance& node) { return !shows_something(node); });
 }
 
 const aiScene& MeshFile::import(const std::string& path, bool triangles) {
@@ -75,7 +75,7 @@ const aiScene& MeshFile::import(const std::string& path, bool triangles) {
            words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
 }
 
-bool MeshFile::shows_something(const MeshNode& node) {
+bool MeshFile::shows_something(const MeshInstance& node) {
     bool something = false;
     for (const unsigned number : node.meshes()) {
         if (!shown_[number]) shown_[number] = find_shown(node, mesh(number));
@@ -84,7 +84,7 @@ bool MeshFile::shows_something(const MeshNode& node) {
     return something;
 }
 
-std::vector<unsigned> MeshFile::find_shown(const MeshNode& node, const aiMesh& mesh) const {
+std::vector<unsigned> MeshFile::find_shown(const MeshInstance& node, const aiMesh& mesh) const {
     std::vector<unsigned> shown;
     if (mesh.mNumFaces == 0) {
         shown.resize(mesh.mNumVertices);
@@ -105,7 +105,7 @@ std::vector<unsigned> MeshFile::find_shown(const MeshNode& node, const aiMesh& m
     return shown;
 }
 
-BoundedPoint MeshFile::posed_vertex(const MeshNode& node, const aiMesh& mesh, unsigned index) const {
+BoundedPoint MeshFile::posed_vertex(const MeshInstance& node, const aiMesh& mesh, unsigned index) const {
     const Point3d place = vertex(mesh, index);
     const BoundedPoint point = node.pose.apply(place);
     for (const auto& numbers : {place, point.low, point.high}) {
@@ -116,7 +116,7 @@ BoundedPoint MeshFile::posed_vertex(const MeshNode& node, const aiMesh& mesh, un
     return point;
 }
 
-void MeshFile::refuse_vertex(const MeshNode& node, unsigned index, double value) const {
+void MeshFile::refuse_vertex(const MeshInstance& node, unsigned index, double value) const {
     refuse(path_,
            fmt::format("node '{}': vertex {} is at {}, not at a finite place", node.name, index, number_text(value)));
 }

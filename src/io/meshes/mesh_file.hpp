@@ -19,7 +19,7 @@
 namespace octopair::io {
 
 /// A node that shows something.
-struct MeshNode {
+struct MeshInstance {
     const aiNode* node;
     std::string name;  ///< the path to it
     BoundedPose pose;  ///< the transforms along the path
@@ -34,7 +34,7 @@ public:
     MeshFile(const std::string& path, bool triangles);
 
     /// In pre-order.
-    const std::vector<MeshNode>& nodes() const { return nodes_; }
+    const std::vector<MeshInstance>& nodes() const { return nodes_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
     /// What is shown of a mesh that a node names, each vertex once, in the order of their first use.
     const std::vector<unsigned>& shown_vertices(unsigned mesh) const { return *shown_[mesh]; }
@@ -44,18 +44,18 @@ public:
         return {double(place.x), double(place.y), double(place.z)};
     }
     /// Throws Error{bad_input} that names the node and the vertex, if it or its place in the world is not finite.
-    BoundedPoint posed_vertex(const MeshNode& node, const aiMesh& mesh, unsigned index) const;
-    [[noreturn]] void refuse_vertex(const MeshNode& node, unsigned index, double value) const;
+    BoundedPoint posed_vertex(const MeshInstance& node, const aiMesh& mesh, unsigned index) const;
+    [[noreturn]] void refuse_vertex(const MeshInstance& node, unsigned index, double value) const;
 
 private:
     const aiScene& import(const std::string& path, bool triangles);
-    bool shows_something(const MeshNode& node);
-    std::vector<unsigned> find_shown(const MeshNode& node, const aiMesh& mesh) const;
+    bool shows_something(const MeshInstance& node);
+    std::vector<unsigned> find_shown(const MeshInstance& node, const aiMesh& mesh) const;
 
     std::string path_;
     Assimp::Importer importer_;
     const aiScene* scene_;
-    std::vector<MeshNode> nodes_;
+    std::vector<MeshInstance> nodes_;
     std::vector<std::optional<std::vector<unsigned>>> shown_;  // of each mesh, once a node was seen to name it
 };
 

@@ -36,7 +36,7 @@ void append_mesh(const aiMesh& mesh, const Place& place, shape::Mesh& to) {
     }
 }
 
-shape::Mesh shape_of(const MeshFile& file, const MeshNode& node) {
+shape::Mesh shape_of(const MeshFile& file, const MeshInstance& node) {
     shape::Mesh shape;
     for (const unsigned number : node.meshes()) {
         const aiMesh& mesh = file.mesh(number);
@@ -52,7 +52,7 @@ LoadedShapes shapes_of(const MeshFile& file) {
     LoadedShapes loaded;
     std::map<std::vector<unsigned>, std::uint32_t> numbers;
     std::map<const aiNode*, std::uint32_t> parents;
-    for (const MeshNode& node : file.nodes()) {
+    for (const MeshInstance& node : file.nodes()) {
         const auto meshes = node.meshes();
         const auto [shape, is_new] = numbers.try_emplace({meshes.begin(), meshes.end()}, loaded.shapes.size());
         if (is_new) loaded.shapes.emplace_back(shape_of(file, node));
@@ -66,7 +66,7 @@ LoadedShapes shapes_of(const MeshFile& file) {
 
 LoadedTriangles triangles_of(const MeshFile& file) {
     LoadedTriangles loaded;
-    for (const MeshNode& node : file.nodes()) {
+    for (const MeshInstance& node : file.nodes()) {
         const auto owner = std::uint32_t(loaded.owner_names.size());
         loaded.owner_names.push_back(node.name);
         for (const unsigned number : node.meshes()) {
@@ -91,7 +91,7 @@ LoadedTriangles triangles_of(const MeshFile& file) {
 
 shape::Mesh whole_mesh_of(const MeshFile& file) {
     shape::Mesh shape;
-    for (const MeshNode& node : file.nodes()) {
+    for (const MeshInstance& node : file.nodes()) {
         for (const unsigned number : node.meshes()) {
             const aiMesh& mesh = file.mesh(number);
             append_mesh(

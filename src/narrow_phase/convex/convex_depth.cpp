@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/convex_frame.hpp"
+#include "narrow_phase/convex/local_convex.hpp"
 
 namespace octopair {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 /// libccd's tolerances are absolute, so it sees the pair scaled to this size. Its polytope of a pair that touches may grow
 /// for ever; after so many questions it is told of the origin alone, beyond which there is nothing to grow to.
 struct Scaled {
-    const FramedConvex* convex;
+    const LocalConvex* convex;
     double scale;
     mutable int questions = 256;
 };
@@ -35,7 +35,7 @@ void support_scaled(const void* object, const ccd_vec3_t* direction, ccd_vec3_t*
 /// The best direction so far.
 class LeastOverlap {
 public:
-    explicit LeastOverlap(const ConvexFrame& frame) : frame_(frame) {}
+    explicit LeastOverlap(const LocalConvexPair& frame) : frame_(frame) {}
 
     void propose(const Point3d& direction) {
         const double length = vector::length(direction);
@@ -45,7 +45,7 @@ public:
         consider(vector::times(normal, -1));
     }
 
-    /// Turns the direction against the way that is not along it, as long as that makes the overlap less.
+    /// TicketLock the direction against the way that is not along it, as long as that makes the overlap less.
     void descend() {
         double step = 1;
         for (int i = 0; i < 64 && step > 1e-9; ++i) {
@@ -74,12 +74,12 @@ private:
         overlap_ = overlap, normal_ = normal, vertex_ = vertex, on_a_ = on_a, on_b_ = on_b;
     }
 
-    const ConvexFrame& frame_;
+    const LocalConvexPair& frame_;
     double overlap_ = std::numeric_limits<double>::infinity();
     Point3d normal_ = {1, 0, 0}, vertex_ = {}, on_a_ = {}, on_b_ = {};
 };
 
-void propose_by_polytope(const ConvexFrame& frame, LeastOverlap& least) {
+void propose_by_polytope(const LocalConvexPair& frame, LeastOverlap& least) {
     const double size = frame.a().magnitude() + frame.b().magnitude();
     if (!std::isfinite(1 / size)) return;  // nor are there digits for a polytope
     const Scaled a = {&frame.a(), 1 / size}, b = {&frame.b(), 1 / size};
@@ -95,7 +95,7 @@ void propose_by_polytope(const ConvexFrame& frame, LeastOverlap& least) {
 }
 
 /// Directions that a core shows: its axes and, of few points, its edges.
-std::vector<Point3d> edges_of(const FramedConvex& convex) {
+std::vector<Point3d> edges_of(const LocalConvex& convex) {
     std::vector<Point3d> edges;
     const auto points = convex.points();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -107,7 +107,7 @@ std::vector<Point3d> edges_of(const FramedConvex& convex) {
 }
 
 /// Across the two longest ways inside: the normal of a flat one.
-Point3d thin_way(const FramedConvex& convex) {
+Point3d thin_way(const LocalConvex& convex) {
     const Point3d from = convex.middle();
     Point3d along = {}, across = {};
     double longest = 0, widest = 0;
@@ -124,7 +124,7 @@ Point3d thin_way(const FramedConvex& convex) {
     return across;
 }
 
-void propose_by_features(const ConvexFrame& frame, LeastOverlap& least) {
+void propose_by_features(const LocalConvexPair& frame, LeastOverlap& least) {
     const Point3d between = vector::minus(frame.b().middle(), frame.a().middle());
     least.propose({1, 0, 0});
     least.propose(between);
@@ -146,7 +146,7 @@ void propose_by_features(const ConvexFrame& frame, LeastOverlap& least) {
 }
 
 /// Along the way between the cores, the middle of what is within both radii; of cores that meet, a point in both.
-Point3d point_in_both(const ConvexFrame& frame, const CoreGap& core) {
+Point3d point_in_both(const LocalConvexPair& frame, const CoreGap& core) {
     const Point3d way = vector::minus(core.on_b, core.on_a);
     const double length = vector::length(way);
     if (!(length > 0)) return core.on_a;
@@ -157,7 +157,7 @@ Point3d point_in_both(const ConvexFrame& frame, const CoreGap& core) {
 }  // namespace
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
-    const ConvexFrame frame(a, b);
+    const LocalConvexPair frame(a, b);
     const CoreGap core = core_gap(frame);
     LeastOverlap least(frame);
     const Point3d way = vector::minus(core.on_b, core.on_a);

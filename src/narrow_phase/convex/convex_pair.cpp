@@ -4,20 +4,20 @@
 #include <utility>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/convex_frame.hpp"
+#include "narrow_phase/convex/local_convex.hpp"
 
 namespace octopair {
 
 bool convex_meet(const PosedConvex& a, const PosedConvex& b) { return convex_within(a, b, 0); }
 
 bool convex_within(const PosedConvex& a, const PosedConvex& b, double margin) {
-    const ConvexFrame frame(a, b);
+    const LocalConvexPair frame(a, b);
     const double enough = frame.radii() + margin;
     return core_gap(frame, enough).at_least <= enough;
 }
 
 ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b) {
-    const ConvexFrame frame(a, b);
+    const LocalConvexPair frame(a, b);
     const CoreGap core = core_gap(frame);
     ConvexGap gap;
     gap.at_least = std::max(0.0, core.at_least - frame.radii());

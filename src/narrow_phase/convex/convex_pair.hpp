@@ -56,8 +56,8 @@ ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b);
 /// Of two that meet (of others, depth 0 at the point between them).
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b);
 
-/// Whether `inner` lies in `outer` and does not reach its surface (convex_holds.cpp says how that is found). Of a cylinder
+/// Whether `inner` lies in `outer` and does not reach its surface (convex_contains.cpp says how that is found). Of a cylinder
 /// or a cone in a hull, a layer below the surface of 1/800 of its radius does not count. A triangle and a point hold nothing.
-bool convex_holds(const PosedConvex& outer, const PosedConvex& inner);
+bool convex_contains(const PosedConvex& outer, const PosedConvex& inner);
 
 }  // namespace octopair

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/convex_frame.hpp"
+#include "narrow_phase/convex/local_convex.hpp"
 
 namespace octopair {
 PlaneSpan span_across(const PosedPlane& plane, const PosedConvex& convex) {
-    const FramedConvex framed(convex, plane.point);
+    const LocalConvex framed(convex, plane.point);
     const Point3d down = vector::times(plane.normal, -1);
     const Point3d highest = framed.support(plane.normal), lowest = framed.support(down);
     const double radius = framed.radius();

@@ -38,7 +38,7 @@ RoundedHeight rounded_height(const Triangle3d& triangle, const Point3d& place) {
     return height;
 }
 
-RoundedHeight rounded_height(const SeenLine& line, const Point3d& place) {
+RoundedHeight rounded_height(const ProjectedLine& line, const Point3d& place) {
     const unsigned u = (line.axis + 1) % 3, v = (line.axis + 2) % 3;
     const double left = (line.b[u] - line.a[u]) * (place[v] - line.a[v]);
     const double right = (line.b[v] - line.a[v]) * (place[u] - line.a[u]);
@@ -102,7 +102,7 @@ double part_to_plane(const Triangle3d& triangle, const Point3d& begin, const Poi
     return part_of(begin_height, end_height);
 }
 
-double part_to_line(const SeenLine& line, const Point3d& begin, const Point3d& end) {
+double part_to_line(const ProjectedLine& line, const Point3d& begin, const Point3d& end) {
     const RoundedHeight from = rounded_height(line, begin), to = rounded_height(line, end);
     if (from.is_sure() && to.is_sure()) return from.value / (from.value - to.value);
     const IntegerPoints<4> points({&line.a, &line.b, &begin, &end});

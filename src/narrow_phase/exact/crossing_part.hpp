@@ -10,10 +10,10 @@ namespace octopair {
 double part_to_plane(const Triangle3d& triangle, const Point3d& begin, const Point3d& end);
 
 /// The line through a and b, seen along an axis, as line_side sees it.
-struct SeenLine {
+struct ProjectedLine {
     const Point3d &a, &b;
     unsigned axis;
 };
-double part_to_line(const SeenLine& line, const Point3d& begin, const Point3d& end);
+double part_to_line(const ProjectedLine& line, const Point3d& begin, const Point3d& end);
 
 }  // namespace octopair

@@ -6,7 +6,7 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/exact/crossing_part.hpp"
-#include "narrow_phase/exact/near_origin.hpp"
+#include "narrow_phase/exact/centered_triangles.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/exact/plane_crossing.hpp"
 #include "narrow_phase/exact/ray_parity.hpp"
@@ -168,7 +168,7 @@ struct Extent {
 /// The directions in which two triangles may leave each other shortest, and the shortest so far.
 class WayOut {
 public:
-    explicit WayOut(const NearOrigin& near) : near_(near) {}
+    explicit WayOut(const CenteredTriangles& near) : near_(near) {}
 
     void offer(const Point3d& direction) {
         const double length = vector::length(direction);
@@ -186,7 +186,7 @@ public:
     TriangleDepth out() const { return {out_.normal, near_.back(out_.depth)}; }
 
 private:
-    const NearOrigin& near_;
+    const CenteredTriangles& near_;
     bool found_ = false;
     TriangleDepth out_;
 };
@@ -221,7 +221,7 @@ TriangleContact triangle_contact(const Triangle3d& a, const Triangle3d& b) {
 }
 
 TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b) {
-    const NearOrigin near(a, b);
+    const CenteredTriangles near(a, b);
     std::array<Point3d, 3> a_edges, b_edges;
     for (std::size_t i = 0; i < 3; ++i) {
         a_edges[i] = minus(near.a[(i + 1) % 3], near.a[i]);

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/exact/near_origin.hpp"
+#include "narrow_phase/exact/centered_triangles.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 
@@ -110,7 +110,7 @@ TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b) {
         const Point3d place = triangle_contact(a, b).points[0];
         return {0, {place, place}};
     }
-    const NearOrigin near(a, b);
+    const CenteredTriangles near(a, b);
     const Nearest nearest = nearest_of(near.a, near.b);
     return {near.back(vector::length(minus(nearest.on_b, nearest.on_a))),
             {near.back(nearest.on_a), near.back(nearest.on_b)}};
@@ -118,7 +118,7 @@ TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b) {
 
 double triangle_gap(const Point3d& point, const Triangle3d& triangle) {
     const Triangle3d place = {point, point, point};
-    const NearOrigin near(place, triangle);
+    const CenteredTriangles near(place, triangle);
     const Triangle3d& corners = near.b;  // about the point
     Nearest nearest;
     for (const GapEdge& edge :

@@ -47,7 +47,7 @@ bool encloses_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
 bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
     const auto held = [&](std::uint32_t vertex) {
         const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[vertex]);
-        return convex_holds(solid.posed(), PosedConvex(place));
+        return convex_contains(solid.posed(), PosedConvex(place));
     };
     const auto& triangles = mesh.tree.triangles;
     return !triangles.empty() && std::all_of(triangles.begin(), triangles.end(), [&](const auto& corners) {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/motion/object_advance.hpp"
+#include "narrow_phase/motion/conservative_advancement.hpp"
 
 namespace octopair {
 

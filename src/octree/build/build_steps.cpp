@@ -33,7 +33,7 @@ public:
         ghosts_.commit(begin_ + committed_, more);
         committed_ += more;
     }
-    void add(NodeIndex node, unsigned begins) { ghosts_[begin_ + size_++] = Ghost(node, begins); }
+    void add(OctantIndex octant, unsigned begins) { ghosts_[begin_ + size_++] = Ghost(octant, begins); }
     void end_box() { ghosts_[begin_ + size_ - 1].set_last(); }
     std::size_t size() const { return size_; }
 
@@ -46,20 +46,20 @@ private:
 
 }  // namespace
 
-void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t node_count, std::size_t node_ranges) {
-    nodes = node_count;
+void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t node_count, std::size_t octant_ranges) {
+    octants = node_count;
     homes.resize_discard(objects);
     ghosts.reserve_discard(most_ghosts * objects);
     ghost_counts.resize_discard(blocks);
-    counts.resize_discard(2 * blocks * nodes);
-    places.resize_discard(2 * blocks * nodes);
-    begins.resize_discard(nodes);
-    totals.resize_discard(node_ranges);
+    counts.resize_discard(2 * blocks * octants);
+    places.resize_discard(2 * blocks * octants);
+    begins.resize_discard(octants);
+    totals.resize_discard(octant_ranges);
     valid.resize_discard(blocks);
 }
 
 void BuildSteps::encode(const NumberedBlock& block) const {
-    const auto above = NodeIndex(memory.nodes);
+    const auto above = OctantIndex(memory.octants);
     const ObjectBlock& objects = block.objects;
     std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
     std::vector<std::uint64_t> ghost_counts(above, 0);
@@ -73,30 +73,30 @@ void BuildSteps::encode(const NumberedBlock& block) const {
         if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
         const std::size_t count = std::min(batch_size, objects.end - begin);
         if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
-            frame.cells(boxes, cells);
+            space.cells(boxes, cells);
         } else {
             const std::span<Entry> entries = std::span(batch).first(count);
             (void)source.load(begin, entries);
-            frame.cells(entries, cells);
+            space.cells(entries, cells);
         }
         directory.leaves(std::span(cells).first(count), leaves);
         std::size_t crossing = 0;
         for (std::size_t i = 0; i < count; ++i) {
             // No branch on whether a box crosses: mispredicting it cost more than everything else here.
             const bool crosses = !within(cells[i], leaves[i].level());
-            const NodeIndex node = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].node();
-            memory.homes[begin + i] = Home(node, crosses);
-            ++home_counts[node];
+            const OctantIndex octant = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].octant();
+            memory.homes[begin + i] = Home(octant, crosses);
+            ++home_counts[octant];
             crossers[crossing] = std::uint32_t(i);
             crossing += crosses ? 1 : 0;
         }
         ghosts.prepare();
         for (const std::uint32_t i : std::span(crossers).first(crossing)) {
-            const NodeIndex home = memory.homes[begin + i].node();
-            for_each_octant_of(cells[i], directory, leaves[i], [&](NodeIndex node, unsigned begins) {
-                if (node == home) return;
-                ++ghost_counts[node];
-                ghosts.add(node, begins);
+            const OctantIndex home = memory.homes[begin + i].octant();
+            for_each_octant_of(cells[i], directory, leaves[i], [&](OctantIndex octant, unsigned begins) {
+                if (octant == home) return;
+                ++ghost_counts[octant];
+                ghosts.add(octant, begins);
             });
             count_path(home == above ? Path::kept_above_leaf : Path::ghost_entries);
             ghosts.end_box();
@@ -107,38 +107,38 @@ void BuildSteps::encode(const NumberedBlock& block) const {
     std::copy_n(ghost_counts.begin(), above, memory.ghost_part(memory.counts, block.number).begin());
 }
 
-void BuildSteps::merge(const NumberedNodes& nodes, std::span<const std::size_t> blocks) const {
+void BuildSteps::count(const NumberedOctants& octants, std::span<const std::size_t> blocks) const {
     std::uint64_t at = 0;
-    for (NodeIndex node = nodes.begin; node < nodes.end; ++node) {
-        memory.begins[node] = at;
+    for (OctantIndex octant = octants.begin; octant < octants.end; ++octant) {
+        memory.begins[octant] = at;
         for (const std::size_t block : blocks) {
-            memory.home_part(memory.places, block)[node] = at;
-            at += memory.home_part(memory.counts, block)[node];
+            memory.home_part(memory.places, block)[octant] = at;
+            at += memory.home_part(memory.counts, block)[octant];
         }
         for (const std::size_t block : blocks) {
-            memory.ghost_part(memory.places, block)[node] = at;
-            at += memory.ghost_part(memory.counts, block)[node];
+            memory.ghost_part(memory.places, block)[octant] = at;
+            at += memory.ghost_part(memory.counts, block)[octant];
         }
     }
-    memory.totals[nodes.number] = at;
+    memory.totals[octants.number] = at;
 }
 
 namespace {
 
-/// Where the next entry of each node goes, of one block.
-std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const SortTarget& target) {
+/// Where the next entry of each octant goes, of one block.
+std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const ScatterTarget& target) {
     std::vector<std::uint64_t> places(part.begin(), part.end());
-    for (const NumberedNodes& range : target.ranges) {
+    for (const NumberedOctants& range : target.ranges) {
         const std::uint64_t begin = target.range_begins[range.number];
-        for (NodeIndex node = range.begin; node < range.end; ++node) places[node] += begin;
+        for (OctantIndex octant = range.begin; octant < range.end; ++octant) places[octant] += begin;
     }
     return places;
 }
 
 }  // namespace
 
-void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) const {
-    const auto above = NodeIndex(memory.nodes);
+void BuildSteps::scatter(const NumberedBlock& block, const ScatterTarget& target) const {
+    const auto above = OctantIndex(memory.octants);
     const ObjectBlock& objects = block.objects;
     const std::span<Entry> entries_out = target.entries;
     auto home_at = places_of(memory.home_part(memory.places, block.number), target);
@@ -159,11 +159,11 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
         std::size_t crossing = 0;
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const Home soon = homes[std::min(i + prefetched, homes.size() - 1)];
-            hwy::Prefetch(&entries_out[std::size_t(home_at[soon.node()])]);
-            const NodeIndex node = homes[i].node();
-            std::uint64_t& at = home_at[node];
+            hwy::Prefetch(&entries_out[std::size_t(home_at[soon.octant()])]);
+            const OctantIndex octant = homes[i].octant();
+            std::uint64_t& at = home_at[octant];
             entries_out[std::size_t(at)] = entries[i];
-            at += node != above ? 1 : 0;
+            at += octant != above ? 1 : 0;
             crossers[crossing] = std::uint32_t(i);
             crossing += homes[i].crosses() ? 1 : 0;
         }
@@ -171,10 +171,10 @@ void BuildSteps::sort(const NumberedBlock& block, const SortTarget& target) cons
             for (bool last = false; !last; ++ghost) {
                 last = ghosts[ghost].last();
                 if (ghosts.size() - ghost > prefetched_ghosts) {
-                    hwy::Prefetch(&entries_out[std::size_t(ghost_at[ghosts[ghost + prefetched_ghosts].node()])]);
+                    hwy::Prefetch(&entries_out[std::size_t(ghost_at[ghosts[ghost + prefetched_ghosts].octant()])]);
                 }
-                const NodeIndex node = ghosts[ghost].node();
-                Entry& entry = entries_out[std::size_t(ghost_at[node]++)];
+                const OctantIndex octant = ghosts[ghost].octant();
+                Entry& entry = entries_out[std::size_t(ghost_at[octant]++)];
                 entry = entries[i];
                 if ((entry.mask & begins_before) != 0) count_path(Path::class_bits_brought);
                 if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;

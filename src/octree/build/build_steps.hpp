@@ -18,7 +18,7 @@
 #include "base/memory.hpp"
 #include "boxes/box_source.hpp"
 #include "octree/directory.hpp"
-#include "octree/frame.hpp"
+#include "octree/space.hpp"
 
 namespace octopair {
 
@@ -26,8 +26,8 @@ namespace octopair {
 class Home {
 public:
     Home() = default;
-    Home(NodeIndex node, bool crosses) : packed_(node << 1 | unsigned(crosses)) {}
-    NodeIndex node() const { return packed_ >> 1; }
+    Home(OctantIndex octant, bool crosses) : packed_(octant << 1 | unsigned(crosses)) {}
+    OctantIndex octant() const { return packed_ >> 1; }
     bool crosses() const { return (packed_ & 1) != 0; }
 
 private:
@@ -38,9 +38,9 @@ private:
 class Ghost {
 public:
     Ghost() = default;
-    Ghost(NodeIndex node, unsigned begins) : packed_(node << 4 | begins) {}
+    Ghost(OctantIndex octant, unsigned begins) : packed_(octant << 4 | begins) {}
 
-    NodeIndex node() const { return packed_ >> 4; }
+    OctantIndex octant() const { return packed_ >> 4; }
     /// The class bits.
     unsigned begins() const { return packed_ & begins_before; }
     /// Whether it is the last one of its box.
@@ -72,24 +72,24 @@ struct BuildMemory {
           valid(pages) {}
 
     /// Room for these.
-    void resize(std::size_t objects, std::size_t blocks, std::size_t nodes, std::size_t node_ranges);
+    void resize(std::size_t objects, std::size_t blocks, std::size_t octants, std::size_t octant_ranges);
 
     Buffer<Home> homes;                  // of each object
     Buffer<Ghost> ghosts;                // a block's from most_ghosts * begin on; committed as it grows
     Buffer<std::uint64_t> ghost_counts;  // of each block
-    Buffer<std::uint64_t> counts;        // of each block: entries per node that are home, then ghosts per node
-    Buffer<std::uint64_t> places;        // likewise: where the first goes, from the begin of the node's range
-    Buffer<std::uint64_t> begins;        // of each node's entries, from the begin of its range
-    Buffer<std::uint64_t> totals;        // of each range of nodes: entries
+    Buffer<std::uint64_t> counts;        // of each block: entries per octant that are home, then ghosts per octant
+    Buffer<std::uint64_t> places;        // likewise: where the first goes, from the begin of the octant's range
+    Buffer<std::uint64_t> begins;        // of each octant's entries, from the begin of its range
+    Buffer<std::uint64_t> totals;        // of each range of octants: entries
     Buffer<std::uint8_t> valid;          // of each block, after sort: whether all of its objects are boxes
 
-    std::size_t nodes = 0;
+    std::size_t octants = 0;
     /// Of block `b`: what `counts` or `places` hold for homes, and for ghosts.
     std::span<std::uint64_t> home_part(Buffer<std::uint64_t>& of, std::size_t b) const {
-        return of.span().subspan(2 * b * nodes, nodes);
+        return of.span().subspan(2 * b * octants, octants);
     }
     std::span<std::uint64_t> ghost_part(Buffer<std::uint64_t>& of, std::size_t b) const {
-        return of.span().subspan((2 * b + 1) * nodes, nodes);
+        return of.span().subspan((2 * b + 1) * octants, octants);
     }
 };
 
@@ -98,23 +98,23 @@ struct NumberedBlock {
     ObjectBlock objects;
 };
 
-struct NumberedNodes {
+struct NumberedOctants {
     std::size_t number;
-    NodeIndex begin, end;
+    OctantIndex begin, end;
 };
 
 /// Where a block's entries go.
-struct SortTarget {
+struct ScatterTarget {
     std::span<Entry> entries;
-    std::span<const std::uint64_t> range_begins;  ///< of the ranges of nodes: what their places are counted from
-    std::span<const NumberedNodes> ranges;
+    std::span<const std::uint64_t> range_begins;  ///< of the ranges of octants: what their places are counted from
+    std::span<const NumberedOctants> ranges;
     std::size_t spare;  ///< the index of an entry that is free: boxes too large for a leaf are written there
 };
 
 /// The steps on some objects and octants. Borrows all.
 struct BuildSteps {
     const EntrySource& source;
-    const Frame& frame;
+    const Space& space;
     const Directory& directory;
     BuildMemory& memory;
     const std::stop_token& stop;
@@ -122,9 +122,9 @@ struct BuildSteps {
     /// Throws Error{cancelled}, as sort() does.
     void encode(const NumberedBlock& block) const;
     /// `blocks`: those whose entries go to one list, first to last.
-    void merge(const NumberedNodes& nodes, std::span<const std::size_t> blocks) const;
+    void count(const NumberedOctants& octants, std::span<const std::size_t> blocks) const;
     /// Sets memory.valid; stops at an object that is not a box.
-    void sort(const NumberedBlock& block, const SortTarget& target) const;
+    void scatter(const NumberedBlock& block, const ScatterTarget& target) const;
 };
 
 }  // namespace octopair

@@ -34,13 +34,13 @@ inline Cell corner_of(const CellBox& box, unsigned corner) {
     return cell;
 }
 
-/// Calls place(node, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
+/// Calls place(octant, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
 /// begins in; `home` is the leaf it begins in. At its natural level and above, the corners of a box reach all octants that
 /// it touches; where several lie in one coarser leaf, the lowest counts.
 template <typename Place>
 void for_each_octant_of(const CellBox& box, const Directory& directory, Directory::Leaf home, Place&& place) {
     const unsigned natural = natural_level(box);
-    std::array<std::pair<unsigned, NodeIndex>, 8> corners;
+    std::array<std::pair<unsigned, OctantIndex>, 8> corners;
     std::size_t count = 0;
     // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
     unsigned level = std::min(natural, home.level());
@@ -58,9 +58,9 @@ void for_each_octant_of(const CellBox& box, const Directory& directory, Director
         again = finest != level;
         level = finest;
     }
-    for (const auto& [corner, node] : std::span(corners).first(count)) {
-        const unsigned begins = directory.nodes()[node].begins_before(box);
-        if ((corner & ~begins) == 0) place(node, begins);
+    for (const auto& [corner, octant] : std::span(corners).first(count)) {
+        const unsigned begins = directory.octants()[octant].begins_before(box);
+        if ((corner & ~begins) == 0) place(octant, begins);
     }
 }
 

@@ -13,15 +13,15 @@ std::uint64_t merge_lists(std::span<const SortedList> lists, const MergedList& m
         std::copy(part.begin(), part.end(), merged.entries.data() + at);
         at += part.size();
     };
-    const std::size_t nodes = merged.home_begins.size();
-    for (std::size_t node = 0; node < nodes; ++node) {
-        if (node % 256 == 0) throw_if_stopped(stop);
-        merged.home_begins[node] = at;
-        for (const SortedList& list : lists) append(list, list.home_begins[node], list.ghost_begins[node]);
-        if (!merged.ghost_begins.empty()) merged.ghost_begins[node] = at;
+    const std::size_t octants = merged.home_begins.size();
+    for (std::size_t octant = 0; octant < octants; ++octant) {
+        if (octant % 256 == 0) throw_if_stopped(stop);
+        merged.home_begins[octant] = at;
+        for (const SortedList& list : lists) append(list, list.home_begins[octant], list.ghost_begins[octant]);
+        if (!merged.ghost_begins.empty()) merged.ghost_begins[octant] = at;
         for (const SortedList& list : lists) {
-            const bool last = node + 1 == nodes;
-            append(list, list.ghost_begins[node], last ? list.entries.size() : list.home_begins[node + 1]);
+            const bool last = octant + 1 == octants;
+            append(list, list.ghost_begins[octant], last ? list.entries.size() : list.home_begins[octant + 1]);
         }
     }
     return at;

@@ -36,94 +36,94 @@ CellBox joined(const CellBox& a, const CellBox& b) {
 
 }  // namespace
 
-/// The units within a node that keep entries of a box.
+/// The units within an octant that keep entries of a box.
 template <typename Visit>
-void MutableOctree::for_each_unit_of(NodeIndex node, const CellBox& box, Visit&& visit) const {
-    const Plot& plot = plots_[node];
-    const GridRange range = plot.range_of(box);
-    if (!plot.keeps_in(range)) {
-        count_path(plot.inner ? Path::unit_of_inner : Path::unit_of_leaf);
-        return visit(plot.own_unit(), node);
+void MutableOctree::for_each_unit_of(OctantIndex octant, const CellBox& box, Visit&& visit) const {
+    const LeafGrid& grid = grids_[octant];
+    const GridRange range = grid.range_of(box);
+    if (!grid.keeps_in(range)) {
+        count_path(grid.inner ? Path::unit_of_inner : Path::unit_of_leaf);
+        return visit(grid.own_unit(), octant);
     }
     count_path(Path::unit_in_cell);
-    plot.for_each_cell(range, [&](const Unit& unit, const auto&) { visit(unit, node); });
+    grid.for_each_cell(range, [&](const Unit& unit, const auto&) { visit(unit, octant); });
 }
 
-/// Calls visit(unit, its node).
+/// Calls visit(unit, its octant).
 template <typename Visit>
 void MutableOctree::for_each_home_unit(const CellBox& box, Visit&& visit) const {
     const Directory::Leaf home = directory_.leaf(box.lo);
-    if (within(box, home.level())) return for_each_unit_of(home.node(), box, visit);
-    for_each_octant_of(box, directory_, home, [&](NodeIndex node, unsigned) { for_each_unit_of(node, box, visit); });
+    if (within(box, home.level())) return for_each_unit_of(home.octant(), box, visit);
+    for_each_octant_of(box, directory_, home, [&](OctantIndex octant, unsigned) { for_each_unit_of(octant, box, visit); });
 }
 
 template <typename Visit>
-void MutableOctree::for_each_node_below(NodeIndex node, const CellBox& box, Visit&& visit) const {
-    visit(node);
-    if (!plots_[node].inner) return;
+void MutableOctree::for_each_octant_below(OctantIndex octant, const CellBox& box, Visit&& visit) const {
+    visit(octant);
+    if (!grids_[octant].inner) return;
     for (unsigned digit = 0; digit < 8; ++digit) {
-        const NodeIndex child = directory_.child(directory_.nodes()[node], digit);
-        if (plots_[child].touches(box)) for_each_node_below(child, box, visit);
+        const OctantIndex child = directory_.child(directory_.octants()[octant], digit);
+        if (grids_[child].touches(box)) for_each_octant_below(child, box, visit);
     }
 }
 
-/// All leaves that a box touches, and all inner nodes that may hold entries that touch it or keep it.
+/// All leaves that a box touches, and all inner octants that may hold entries that touch it or keep it.
 template <typename Visit>
-void MutableOctree::for_each_touched_node(const CellBox& box, Visit&& visit) const {
-    const auto nodes = directory_.nodes();
+void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) const {
+    const auto octants = directory_.octants();
     const Directory::Leaf home = directory_.leaf(box.lo);
     if (within(box, home.level())) {
-        visit(home.node());
+        visit(home.octant());
         if (!inner_used_) return;
-        for (NodeIndex node = home.node(); node != 0;) {
-            node = nodes[node].parent;
-            visit(node);
+        for (OctantIndex octant = home.octant(); octant != 0;) {
+            octant = octants[octant].parent;
+            visit(octant);
         }
         return;
     }
-    std::array<NodeIndex, 8> tops;
+    std::array<OctantIndex, 8> tops;
     std::size_t count = 0;
-    for_each_octant_of(box, directory_, home, [&](NodeIndex node, unsigned) { tops[count++] = node; });
+    for_each_octant_of(box, directory_, home, [&](OctantIndex octant, unsigned) { tops[count++] = octant; });
     for (std::size_t i = 0; i < count; ++i) {
-        for_each_node_below(tops[i], box, visit);
+        for_each_octant_below(tops[i], box, visit);
         if (!inner_used_) continue;
         // Those above, up to where one of the others has come.
-        for (NodeIndex node = tops[i]; node != 0;) {
-            node = nodes[node].parent;
-            const auto above = [&](NodeIndex top) { return node < top && top < nodes[node].next; };
+        for (OctantIndex octant = tops[i]; octant != 0;) {
+            octant = octants[octant].parent;
+            const auto above = [&](OctantIndex top) { return octant < top && top < octants[octant].next; };
             if (std::any_of(tops.begin(), tops.begin() + std::ptrdiff_t(i), above)) break;
-            visit(node);
+            visit(octant);
         }
     }
 }
 
 void MutableOctree::build(const LinearOctree& octree, const std::stop_token& stop) {
     clear();
-    frame_ = octree.frame();
+    space_ = octree.space();
     directory_ = octree.directory();
-    const auto nodes = directory_.nodes();
-    plots_.reserve(nodes.size());
+    const auto octants = directory_.octants();
+    grids_.reserve(octants.size());
     // What is reserved is not there before it is used, but what grows is there twice for a while: so a part shows how
     // much all will take, with what later changes may.
     const std::uint64_t part = octree.entry_count() / 32;
     units_.reserve(part);
     std::uint64_t done = 0;
     std::vector<CellBox> boxes;
-    for (NodeIndex node = 0; node < nodes.size(); ++node) {
+    for (OctantIndex octant = 0; octant < octants.size(); ++octant) {
         if (stop.stop_requested()) clear();
         throw_if_stopped(stop);
-        const auto entries = octree.entries(node);
+        const auto entries = octree.entries(octant);
         boxes.resize(entries.size());
-        frame_.cells(entries, boxes);
-        const Plot& plot = plots_.emplace_back(Plot::cut(nodes[node], units_.units(), boxes));
-        units_.add_units(plot.units());
+        space_.cells(entries, boxes);
+        const LeafGrid& grid = grids_.emplace_back(LeafGrid::cut(octants[octant], units_.units(), boxes));
+        units_.add_units(grid.units());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
-            for_each_unit_of(node, boxes[i], [&](const Unit& unit, NodeIndex) {
+            for_each_unit_of(octant, boxes[i], [&](const Unit& unit, OctantIndex) {
                 units_.reserve(1);
                 units_.put(unit.index, unit.small(boxes[i]), entries[i].object);
             });
         }
-        if (!units_.empty(plot.begin)) use({&node, 1});
+        if (!units_.empty(grid.begin)) use({&octant, 1});
         if (done < part && done + entries.size() >= part) units_.reserve(units_.blocks() * 64);
         done += entries.size();
     }
@@ -131,98 +131,98 @@ void MutableOctree::build(const LinearOctree& octree, const std::stop_token& sto
 
 void MutableOctree::clear() {
     directory_ = {};
-    plots_.clear();
+    grids_.clear();
     units_.clear();
     inner_used_ = false;
 }
 
 void MutableOctree::release() {
     clear();
-    plots_ = {};
+    grids_ = {};
     units_.release();
 }
 
 void MutableOctree::insert(std::uint32_t object, const CellBox& box) {
-    for_each_home_unit(box, [&](const Unit& unit, NodeIndex node) {
-        if (unit.index == plots_[node].begin) use({&node, 1});
+    for_each_home_unit(box, [&](const Unit& unit, OctantIndex octant) {
+        if (unit.index == grids_[octant].begin) use({&octant, 1});
         units_.reserve(1);
         units_.put(unit.index, unit.small(box), object);
     });
 }
 
 void MutableOctree::erase(std::uint32_t object, const CellBox& box) {
-    for_each_home_unit(box, [&](const Unit& unit, NodeIndex) { units_.take(unit.index, object); });
+    for_each_home_unit(box, [&](const Unit& unit, OctantIndex) { units_.take(unit.index, object); });
 }
 
 void MutableOctree::prefetch(const OctreeChange& change) const {
-    if (!plots_.empty()) hwy::Prefetch(&plots_[directory_.leaf(change.after.lo).node()]);
+    if (!grids_.empty()) hwy::Prefetch(&grids_[directory_.leaf(change.after.lo).octant()]);
 }
 
-void MutableOctree::use(std::span<const NodeIndex> nodes) {
-    for (const NodeIndex node : nodes) {
-        plots_[node].used = true;
-        inner_used_ |= plots_[node].inner;
+void MutableOctree::use(std::span<const OctantIndex> octants) {
+    for (const OctantIndex octant : octants) {
+        grids_[octant].used = true;
+        inner_used_ |= grids_[octant].inner;
     }
 }
 
 void MutableOctree::search(const CellBox& box, std::vector<std::uint32_t>& found) const {
-    if (plots_.empty()) return;
+    if (grids_.empty()) return;
     const auto search_one = [&](const Unit& unit) {
         units_.search(unit.index, unit.small(box), [&](std::uint32_t object) { found.push_back(object); });
     };
-    for_each_touched_node(box, [&](NodeIndex node) {
-        const Plot& plot = plots_[node];
-        if (plot.used) search_one(plot.own_unit());
-        if (plot.inner) return;
-        plot.for_each_cell(plot.range_of(box), [&](const Unit& unit, const auto&) { search_one(unit); });
+    for_each_touched_octant(box, [&](OctantIndex octant) {
+        const LeafGrid& grid = grids_[octant];
+        if (grid.used) search_one(grid.own_unit());
+        if (grid.inner) return;
+        grid.for_each_cell(grid.range_of(box), [&](const Unit& unit, const auto&) { search_one(unit); });
     });
 }
 
-void MutableOctree::search(Probe& probe) const {
-    if (!plots_.empty()) probe_node(0, probe);
+void MutableOctree::search(NearestVisitor& visitor) const {
+    if (!grids_.empty()) visit_octant(0, visitor);
 }
 
-void MutableOctree::probe_node(NodeIndex node, Probe& probe) const {
-    const Plot& plot = plots_[node];
-    if (plot.used) probe_unit(plot.own_unit(), probe);
-    if (!plot.inner) return probe_cells(plot, plot.all(), probe);
-    std::array<std::pair<double, NodeIndex>, 8> children;
+void MutableOctree::visit_octant(OctantIndex octant, NearestVisitor& visitor) const {
+    const LeafGrid& grid = grids_[octant];
+    if (grid.used) visit_unit(grid.own_unit(), visitor);
+    if (!grid.inner) return visit_cells(grid, grid.all(), visitor);
+    std::array<std::pair<double, OctantIndex>, 8> children;
     for (unsigned digit = 0; digit < 8; ++digit) {
-        const NodeIndex child = directory_.child(directory_.nodes()[node], digit);
-        children[digit] = {probe.at_least(frame_.bounds(plots_[child].cells())), child};
+        const OctantIndex child = directory_.child(directory_.octants()[octant], digit);
+        children[digit] = {visitor.at_least(space_.bounds(grids_[child].cells())), child};
     }
     std::sort(children.begin(), children.end());
     for (const auto& [at_least, child] : children) {
-        if (at_least <= probe.limit()) probe_node(child, probe);
+        if (at_least <= visitor.limit()) visit_octant(child, visitor);
     }
 }
 
 /// Halves the range until it is a cell.
-void MutableOctree::probe_cells(const Plot& leaf, const GridRange& range, Probe& probe) const {
+void MutableOctree::visit_cells(const LeafGrid& leaf, const GridRange& range, NearestVisitor& visitor) const {
     unsigned axis = 0;
     for (unsigned other = 1; other < 3; ++other) {
         if (range.last[other] - range.first[other] > range.last[axis] - range.first[axis]) axis = other;
     }
     if (range.first[axis] == range.last[axis]) {
-        leaf.for_each_cell(range, [&](const Unit& unit, const auto&) { probe_unit(unit, probe); });
+        leaf.for_each_cell(range, [&](const Unit& unit, const auto&) { visit_unit(unit, visitor); });
         return;
     }
     GridRange low = range, high = range;
     low.last[axis] = range.first[axis] + (range.last[axis] - range.first[axis]) / 2;
     high.first[axis] = low.last[axis] + 1;
-    double at_low = probe.at_least(frame_.bounds(leaf.cells(low)));
-    double at_high = probe.at_least(frame_.bounds(leaf.cells(high)));
+    double at_low = visitor.at_least(space_.bounds(leaf.cells(low)));
+    double at_high = visitor.at_least(space_.bounds(leaf.cells(high)));
     if (at_high < at_low) {
         std::swap(at_low, at_high);
         std::swap(low, high);
     }
-    if (at_low <= probe.limit()) probe_cells(leaf, low, probe);
-    if (at_high <= probe.limit()) probe_cells(leaf, high, probe);
+    if (at_low <= visitor.limit()) visit_cells(leaf, low, visitor);
+    if (at_high <= visitor.limit()) visit_cells(leaf, high, visitor);
 }
 
-void MutableOctree::probe_unit(const Unit& unit, Probe& probe) const {
+void MutableOctree::visit_unit(const Unit& unit, NearestVisitor& visitor) const {
     units_.for_each(unit.index, [&](const SmallBox& box, std::uint32_t object) {
-        if (probe.at_least(frame_.bounds(unit.cells(box))) <= probe.limit()) probe.take(object);
+        if (visitor.at_least(space_.bounds(unit.cells(box))) <= visitor.limit()) visitor.take(object);
     });
 }
 
@@ -239,18 +239,18 @@ struct MutableOctree::Work {
     unsigned natural_take = natural(take), natural_put = natural(put);
 };
 
-void MutableOctree::list_node(NodeIndex node, const Work& work, Visits& out) const {
-    const Plot& plot = plots_[node];
-    // Where the entries are: in some cells, in the node itself, or in neither.
+void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& out) const {
+    const LeafGrid& grid = grids_[octant];
+    // Where the entries are: in some cells, in the octant itself, or in neither.
     struct Keepers {
         GridRange cells = GridRange::empty();
         bool own = false;
     };
     const auto keepers = [&](const CellBox* box, unsigned natural) {
         Keepers found;
-        if (box == nullptr || !plot.keeps(*box, natural)) return found;
-        const GridRange range = plot.range_of(*box);
-        found.own = !plot.keeps_in(range);
+        if (box == nullptr || !grid.keeps(*box, natural)) return found;
+        const GridRange range = grid.range_of(*box);
+        found.own = !grid.keeps_in(range);
         if (!found.own) found.cells = range;
         return found;
     };
@@ -260,15 +260,15 @@ void MutableOctree::list_node(NodeIndex node, const Work& work, Visits& out) con
         visit = {unit.index, work.number, work.object, work.around, take_here, put_here, unit.small(work.wanted), {}};
         if (put_here) visit.entry = unit.small(*work.put);
     };
-    if (plot.used || taken.own || put.own) add(plot.own_unit(), taken.own, put.own);
-    if (put.own && !plot.used) out.first_used.push_back(node);
-    if (plot.inner) return;
-    const GridRange range = plot.range_of(work.wanted);
+    if (grid.used || taken.own || put.own) add(grid.own_unit(), taken.own, put.own);
+    if (put.own && !grid.used) out.first_used.push_back(octant);
+    if (grid.inner) return;
+    const GridRange range = grid.range_of(work.wanted);
     if (range.count() > tuning().dynamic.listed_visits) {
         out.visits.resize(out.visits.size() + tuning().dynamic.listed_visits + 1);  // which is too many
         return;
     }
-    plot.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
+    grid.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
         add(unit, taken.cells.holds(at), put.cells.holds(at));
     });
 }
@@ -276,8 +276,8 @@ void MutableOctree::list_node(NodeIndex node, const Work& work, Visits& out) con
 bool MutableOctree::list(const Work& work, Visits& out) const {
     const std::size_t visits = out.visits.size(), first_used = out.first_used.size();
     const auto too_many = [&] { return out.visits.size() > visits + tuning().dynamic.listed_visits; };
-    for_each_touched_node(work.wanted, [&](NodeIndex node) {
-        if (!too_many()) list_node(node, work, out);
+    for_each_touched_octant(work.wanted, [&](OctantIndex octant) {
+        if (!too_many()) list_octant(octant, work, out);
     });
     if (!too_many()) return true;
     out.visits.resize(visits);
@@ -305,8 +305,8 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
     out.first_used.resize(first_used);
     // It is put where it belongs before the others are, whose searches must see it.
     if (!change.exists) return false;
-    for_each_home_unit(*after, [&](const Unit& unit, NodeIndex node) {
-        if (unit.index == plots_[node].begin && !plots_[node].used) out.first_used.push_back(node);
+    for_each_home_unit(*after, [&](const Unit& unit, OctantIndex octant) {
+        if (unit.index == grids_[octant].begin && !grids_[octant].used) out.first_used.push_back(octant);
     });
     return false;
 }

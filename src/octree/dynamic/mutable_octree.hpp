@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "octree/directory.hpp"
-#include "octree/dynamic/plot.hpp"
-#include "octree/dynamic/probe.hpp"
+#include "octree/dynamic/leaf_grid.hpp"
+#include "octree/dynamic/nearest_visitor.hpp"
 #include "octree/dynamic/small_block.hpp"
 #include "octree/dynamic/unit_blocks.hpp"
-#include "octree/frame.hpp"
+#include "octree/space.hpp"
 
 namespace octopair {
 
@@ -67,20 +67,20 @@ public:
     /// And gives it back.
     void release();
 
-    const Frame& frame() const { return frame_; }
-    /// Of its boxes: cells of frame(). An object is in here once.
+    const Space& space() const { return space_; }
+    /// Of its boxes: cells of space(). An object is in here once.
     void insert(std::uint32_t object, const CellBox& box);
     /// `box` as when it was inserted.
     void erase(std::uint32_t object, const CellBox& box);
     /// Appends the objects whose boxes' cells overlap those of `box`, each once, in no order.
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
-    /// Hands a probe what is near enough, what is near first.
-    void search(Probe& probe) const;
+    /// Hands a visitor what is near enough, what is near first.
+    void search(NearestVisitor& visitor) const;
 
     /// The visits of some changes.
     struct Visits {
         std::vector<UnitVisit> visits;
-        std::vector<NodeIndex> first_used;  ///< nodes that will keep their first entry
+        std::vector<OctantIndex> first_used;  ///< octants that will keep their first entry
         void clear() {
             visits.clear();
             first_used.clear();
@@ -92,7 +92,7 @@ public:
     /// For a change that is listed soon.
     void prefetch(const OctreeChange& change) const;
     /// To be called with what list() found to be used first, before all is listed again: searches visit these as well.
-    void use(std::span<const NodeIndex> nodes);
+    void use(std::span<const OctantIndex> octants);
     std::uint32_t units() const { return units_.units(); }
     /// Room for visits that put so many entries.
     void reserve(std::uint64_t puts) { units_.reserve(puts); }
@@ -105,24 +105,24 @@ private:
     struct Work;
 
     template <typename Visit>
-    void for_each_unit_of(NodeIndex node, const CellBox& box, Visit&& visit) const;
+    void for_each_unit_of(OctantIndex octant, const CellBox& box, Visit&& visit) const;
     template <typename Visit>
     void for_each_home_unit(const CellBox& box, Visit&& visit) const;
     template <typename Visit>
-    void for_each_node_below(NodeIndex node, const CellBox& box, Visit&& visit) const;
+    void for_each_octant_below(OctantIndex octant, const CellBox& box, Visit&& visit) const;
     template <typename Visit>
-    void for_each_touched_node(const CellBox& box, Visit&& visit) const;
-    void probe_node(NodeIndex node, Probe& probe) const;
-    void probe_cells(const Plot& leaf, const GridRange& range, Probe& probe) const;
-    void probe_unit(const Unit& unit, Probe& probe) const;
+    void for_each_touched_octant(const CellBox& box, Visit&& visit) const;
+    void visit_octant(OctantIndex octant, NearestVisitor& visitor) const;
+    void visit_cells(const LeafGrid& leaf, const GridRange& range, NearestVisitor& visitor) const;
+    void visit_unit(const Unit& unit, NearestVisitor& visitor) const;
     bool list(const Work& work, Visits& out) const;
-    void list_node(NodeIndex node, const Work& work, Visits& out) const;
+    void list_octant(OctantIndex octant, const Work& work, Visits& out) const;
 
-    Frame frame_;
+    Space space_;
     Directory directory_;
-    std::vector<Plot> plots_;  // of the nodes
+    std::vector<LeafGrid> grids_;  // of the octants
     UnitBlocks units_;
-    bool inner_used_ = false;  // a plot that is inner is used
+    bool inner_used_ = false;  // a grid that is inner is used
 };
 
 }  // namespace octopair

@@ -71,15 +71,15 @@ void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span
     for (std::size_t i = 0; i < hits.size(); ++i) {
         filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
             count_path(Path::hit_settled);
-            return context_.rule.counts(sweep.rows.object()[row], sweep.columns.object()[column]);
+            return context_.rule.is_pair(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
     }
 }
 
 void OutermostOctant::check(const Entry& a, const Entry& b) const {
     for (unsigned axis = 0; axis < 3; ++axis) {
-        const std::uint32_t low = frame.map().cell(std::max(a.min[axis], b.min[axis]), axis);
-        if (low >= node.lo[axis] && low - node.lo[axis] < cells_per_axis >> node.level) continue;
+        const std::uint32_t low = space.map().cell(std::max(a.min[axis], b.min[axis]), axis);
+        if (low >= octant.lo[axis] && low - octant.lo[axis] < cells_per_axis >> octant.level) continue;
         throw Error(ErrorCode::engine_failed, "objects " + std::to_string(a.object) + " and " +
                                                   std::to_string(b.object) +
                                                   " are reported in an octant without the "

@@ -29,8 +29,8 @@ inline Orientation reversed(Orientation orientation) {
 /// An octant of the outermost octree. Tests check that the pairs reported within it have the low corners of their
 /// intersections in it.
 struct OutermostOctant {
-    Frame frame;
-    Node node;
+    Space space;
+    Octant octant;
 
     /// Throws Error{engine_failed} if another octant is to report this pair.
     void check(const Entry& a, const Entry& b) const;
@@ -47,7 +47,7 @@ struct ScanContext {
 
 class PairMaker {
 public:
-    PairMaker(const ScanContext& context, PairWriter& writer)
+    PairMaker(const ScanContext& context, ShareWriter& writer)
         : context_(context), slack_(context.rule.slack()), writer_(writer) {}
 
     /// Runs a sweep to its end. Throws Error{cancelled}.
@@ -63,7 +63,7 @@ private:
 
     const ScanContext& context_;
     RoundingSlack slack_;
-    PairWriter& writer_;
+    ShareWriter& writer_;
     std::array<HitMask, default_tuning.sweep.hits> hits_;
     std::array<HitMask, default_tuning.sweep.hits> certain_;
     std::array<Pair, default_tuning.sweep.pairs + most_hits> pairs_;

@@ -36,7 +36,7 @@ struct TileSweep {
     SweepKind kind;
     Orientation orientation;
 
-    void run(std::size_t t, PairWriter& writer) const {
+    void run(std::size_t t, ShareWriter& writer) const {
         PairMaker maker(context, writer);
         SweepSet row_set;
         SweepSet column_set;
@@ -170,15 +170,15 @@ SweepChoice choose_sweep_of(const SweepInput& join, SweepOrder& order, const std
     SweepChoice choice;
     std::uint64_t least = ~std::uint64_t(0);
     for (const unsigned axis : axes) {
-        std::uint64_t tests = order.windows(join.rows, join.columns, axis);
-        if (!join.self) tests += order.windows(join.columns, join.rows, axis);
+        std::uint64_t tests = order.tests(join.rows, join.columns, axis);
+        if (!join.self) tests += order.tests(join.columns, join.rows, axis);
         if (tests < least) {
             least = tests;
             choice.axis = axis;
         }
     }
     const Tuning::Sweep& limits = tuning().sweep;
-    choice.good = size <= limits.small_set || least <= limits.cheap_window * size ||
+    choice.good = size <= limits.small_set || least <= limits.cheap_tests * size ||
                   least / limits.tests_per_pair <= estimated_hits(join.rows, join.columns, stop);
     return choice;
 }
@@ -211,7 +211,7 @@ public:
                 continue;
             }
             count_path(Path::recursion_shared);
-            executor_.for_each_writing(end - i, [&](std::size_t k, PairWriter& writer) {
+            executor_.for_each_writing(end - i, [&](std::size_t k, ShareWriter& writer) {
                 SerialExecutor serial(writer);
                 Recursion(context_, serial).run(parts[i + k]);
             });
@@ -266,7 +266,7 @@ void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned ax
         const TileSweep sweep{context,         join.rows.entries, rows, join.rows.entries, rows, axis,
                               SweepKind::self, join.orientation};
         executor.for_each_writing(tile_count(rows.size()),
-                                  [&](std::size_t t, PairWriter& writer) { sweep.run(t, writer); });
+                                  [&](std::size_t t, ShareWriter& writer) { sweep.run(t, writer); });
         return;
     }
     SweepOrder column_order(context.stop);
@@ -282,15 +282,15 @@ void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned ax
                          SweepKind::cross_strict,
                          reversed(join.orientation)};
     executor.for_each_writing(tile_count(rows.size()),
-                              [&](std::size_t t, PairWriter& writer) { forth.run(t, writer); });
+                              [&](std::size_t t, ShareWriter& writer) { forth.run(t, writer); });
     executor.for_each_writing(tile_count(columns.size()),
-                              [&](std::size_t t, PairWriter& writer) { back.run(t, writer); });
+                              [&](std::size_t t, ShareWriter& writer) { back.run(t, writer); });
 }
 
 void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor) {
     SweepOrder order(context.stop);
     std::array<std::pair<std::uint64_t, unsigned>, 3> costs;
-    for (unsigned axis = 0; axis < 3; ++axis) costs[axis] = {order.windows(join.rows, join.columns, axis), axis};
+    for (unsigned axis = 0; axis < 3; ++axis) costs[axis] = {order.tests(join.rows, join.columns, axis), axis};
     std::sort(costs.begin(), costs.end());
     const auto positions = [](const EntryList& list) {
         Positions all(list.size());

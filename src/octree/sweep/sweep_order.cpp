@@ -37,7 +37,7 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
     return buckets;
 }
 
-std::uint64_t SweepOrder::windows(const EntryList& rows, const EntryList& columns, unsigned axis) {
+std::uint64_t SweepOrder::tests(const EntryList& rows, const EntryList& columns, unsigned axis) {
     throw_if_stopped(stop_);
     const Sample column_sample = measured(columns), row_sample = measured(rows);
     lows_.resize(column_sample.size());
@@ -106,13 +106,13 @@ void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
     }
 }
 
-std::uint64_t sampled_windows(const Sweep& sweep) {
+std::uint64_t sampled_tests(const Sweep& sweep) {
     const auto& [rows, columns, kind] = sweep;
     const float* const lows = columns.low(0);
     const float* const end = lows + columns.size();
     std::uint64_t sum = 0;
     std::size_t samples = 0;
-    const std::size_t stride = std::max(tuning().sweep.window_stride, rows.size() / tuning().sweep.windows);
+    const std::size_t stride = std::max(tuning().sweep.measured_row_stride, rows.size() / tuning().sweep.measured_rows);
     for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
         const float* const first = kind == SweepKind::self ? lows + i + 1 : std::lower_bound(lows, end, rows.low(0)[i]);
         sum += std::uint64_t(std::upper_bound(first, end, rows.high(0)[i]) - first);

@@ -35,7 +35,7 @@ public:
     explicit SweepOrder(std::stop_token stop) : stop_(std::move(stop)) {}
 
     /// About how many columns a sweep along `axis` tests for all rows.
-    std::uint64_t windows(const EntryList& rows, const EntryList& columns, unsigned axis);
+    std::uint64_t tests(const EntryList& rows, const EntryList& columns, unsigned axis);
 
     /// Lays the list out in the order (min on the axis, position). For sets that stay in the cache.
     void lay_out(const EntryList& list, unsigned axis, SweepSet& set);
@@ -66,7 +66,7 @@ private:
 };
 
 /// About the columns that a sweep of laid out sets tests for all rows, from some rows at fixed places.
-std::uint64_t sampled_windows(const Sweep& sweep);
+std::uint64_t sampled_tests(const Sweep& sweep);
 
 /// About how many pairs of rows and columns overlap, from a few rows at fixed places.
 /// Throws Error{cancelled}.

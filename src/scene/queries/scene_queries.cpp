@@ -25,13 +25,13 @@ bool unchanged(const SceneQueries::Scene& scene, std::uint32_t index) {
 template <typename Visit>
 void for_each_changed(const SceneQueries::Scene& scene, Visit&& visit) {
     if (scene.log == nullptr) return;
-    for (const Former& former : scene.log->formers()) {
+    for (const PreviousState& former : scene.log->formers()) {
         if (wanted(scene, former.index)) visit(former.index);
     }
 }
 
 /// What looks for the nearest: regions are the scene's own here, not the octree's.
-class SceneProbe : public Probe {
+class SceneProbe : public NearestVisitor {
 public:
     explicit SceneProbe(const SceneQueries::Scene& scene) : scene_(scene) {}
 
@@ -191,7 +191,7 @@ void SceneQueries::find_overlaps(const Scene& scene, const Box3d& around, const 
         if (overlap(query, scene.table.box(index))) worker.indices.push_back(index);
     };
     worker.found.clear();
-    scene.octree.search(scene.octree.frame().cells(scene.rounding.entry(around, 0)), worker.found);
+    scene.octree.search(scene.octree.space().cells(scene.rounding.entry(around, 0)), worker.found);
     for (const std::uint32_t index : worker.found) {
         if (unchanged(scene, index) && wanted(scene, index)) try_object(index);
     }

@@ -2,7 +2,7 @@
 
 #include "engine/job_queue.hpp"
 #include "engine/request.hpp"
-#include "engine/turns.hpp"
+#include "engine/ticket_lock.hpp"
 #include "octopair/client.hpp"
 #include "service/client/connection.hpp"
 #include "service/client/remote_job.hpp"
@@ -19,12 +19,12 @@ public:
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
-        const Turns::Turn turn(turns_, control.stop);
+        const TicketLock::Guard turn(turns_, control.stop);
         return service::find_remotely(connection_, request, output, control);
     }
     detail::JobQueue& jobs() override { return jobs_; }
 
-    Turns turns_;
+    TicketLock turns_;
     service::Connection connection_;
     detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };

@@ -15,7 +15,7 @@
 #include "scene/pair_history.hpp"
 #include "scene/scene_objects.hpp"
 #include "service/client/connection.hpp"
-#include "service/client/frame_calls.hpp"
+#include "service/client/pending_calls.hpp"
 #include "service/client/scene_stream.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
@@ -73,7 +73,7 @@ private:
 
     const SceneOptions options_;
     SceneObjects objects_;
-    service::FrameCalls calls_;
+    service::PendingCalls calls_;
     service::Connection connection_;
     std::optional<SceneStream> stream_;
     bool whole_ = false;  // the step under way is the stream's first

@@ -126,8 +126,8 @@ v1::Summary message_of(const Summary& summary) {
     message.set_entries(summary.entries);
     message.set_seconds(summary.seconds);
     message.set_encode_seconds(summary.steps.encode);
-    message.set_sort_seconds(summary.steps.sort);
-    message.set_merge_seconds(summary.steps.merge);
+    message.set_scatter_seconds(summary.steps.scatter);
+    message.set_count_seconds(summary.steps.count);
     message.set_scan_seconds(summary.steps.scan);
     return message;
 }
@@ -138,7 +138,7 @@ Summary summary_of(const v1::Summary& message) {
     summary.truncated = message.truncated();
     summary.entries = message.entries();
     summary.seconds = message.seconds();
-    summary.steps = {message.encode_seconds(), message.sort_seconds(), message.merge_seconds(), message.scan_seconds()};
+    summary.steps = {message.encode_seconds(), message.count_seconds(), message.scatter_seconds(), message.scan_seconds()};
     return summary;
 }
 

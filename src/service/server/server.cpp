@@ -19,7 +19,7 @@
 #include "service/protocol/library.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/calls/calls.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 #include "service/server/log/event.hpp"
 #include "service/server/net/credentials.hpp"
 #include "service/server/net/listener.hpp"
@@ -63,63 +63,63 @@ class Server::State {
 public:
     State(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
         : listener_(options.listen, missing_protection(options)),
-          host_(options, std::move(log)),
-          calls_(make_calls(host_)) {
+          context_(options, std::move(log)),
+          calls_(make_calls(context_)) {
         keep_grpc();
         grpc::EnableDefaultHealthCheckService(true);
         grpc::reflection::InitProtoReflectionServerBuilderPlugin();
         grpc::ServerBuilder builder;
         configure(builder, options);
         builder.RegisterService(calls_.get());
-        if (host_.access.has_tokens()) builder.SetOption(std::make_unique<WithoutReflection>());
+        if (context_.access.has_tokens()) builder.SetOption(std::make_unique<WithoutReflection>());
         using Type = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
         acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD,
-                                                                         credentials_of(options.tls, *host_.log));
+                                                                         credentials_of(options.tls, *context_.log));
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "gRPC does not start");
         if (options.metrics) show_metrics(*options.metrics);
         listener_.start(
             {options.limits.connections, !options.tls.certificate.empty(),
              [this](Descriptor connection) { hand_over(std::move(connection)); },
-             [this] { host_.ledger.connections_refused(host_.options.limits.connections, listener_.refused()); }});
+             [this] { context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused()); }});
     }
 
     ~State() {
-        host_.ledger.metrics().hide();
+        context_.server_log.metrics().hide();
         listener_.stop();
         server_->Shutdown(std::chrono::system_clock::now());
         server_->Wait();
     }
 
     const Address& address() const { return listener_.address(); }
-    ServerLoad load() const { return {host_.places.count(), host_.memory.taken(), listener_.connections()}; }
+    ServerLoad load() const { return {context_.places.count(), context_.memory.taken(), listener_.connections()}; }
 
     void drain(std::optional<std::chrono::milliseconds> grace) {
         constexpr std::chrono::milliseconds apart(20);
-        host_.draining = true;
-        host_.lanes.hold_detached();
+        context_.draining = true;
+        context_.scheduler.hold_detached();
         listener_.stop();
         server_->GetHealthCheckService()->SetServingStatus(false);
         // gRPC would wait for all calls: those that upload, and scenes that nobody steps.
-        const auto end = std::chrono::steady_clock::now() + grace.value_or(host_.options.grace);
-        while (!host_.idle() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(apart);
+        const auto end = std::chrono::steady_clock::now() + grace.value_or(context_.options.grace);
+        while (!context_.idle() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(apart);
         server_->Shutdown(std::chrono::system_clock::now());
     }
 
 private:
     void show_metrics(const Address& address) {
         Address shown = address;
-        shown.port = std::to_string(host_.ledger.metrics().show(address, [this] { return levels(); }));
-        log_text(*host_.log, LogLevel::info, "metrics at http://" + shown.text() + "/metrics");
+        shown.port = std::to_string(context_.server_log.metrics().show(address, [this] { return levels(); }));
+        log_text(*context_.log, LogLevel::info, "metrics at http://" + shown.text() + "/metrics");
     }
 
     Levels levels() const {
         Levels now;
-        now.queue = host_.lanes.waiting();
+        now.queue = context_.scheduler.waiting();
         now.connections = listener_.connections();
         now.connections_refused = listener_.refused();
-        now.memory_bytes = host_.memory.taken();
-        if (host_.options.worker_faults) now.worker_faults = host_.lanes.sum(host_.options.worker_faults);
+        now.memory_bytes = context_.memory.taken();
+        if (context_.options.worker_faults) now.worker_faults = context_.scheduler.sum(context_.options.worker_faults);
         return now;
     }
 
@@ -131,7 +131,7 @@ private:
     }
 
     Listener listener_;
-    Host host_;
+    ServerContext context_;
     const std::unique_ptr<grpc::Service> calls_;
     std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
     std::unique_ptr<grpc::Server> server_;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "service/protocol/address.hpp"
-#include "service/server/jobs/lanes.hpp"
+#include "service/server/jobs/job_scheduler.hpp"
 
 namespace octopair::service {
 
@@ -39,7 +39,7 @@ struct ServerOptions {
     std::string engine_name;   ///< as in --engine
     /// How many workers of an engine were lost; null: it has none.
     std::function<std::uint64_t(const Engine&)> worker_faults;
-    Lanes::Widths lanes;
+    JobScheduler::Widths engine_widths;
     ServerLimits limits;
     ServerTls tls;
     std::string token_file;                ///< lines "NAME TOKEN"; clients must have one of the tokens

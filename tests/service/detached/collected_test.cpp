@@ -48,10 +48,10 @@ protected:
         return id;
     }
 
-    Host host_;
-    std::unique_ptr<JobClient> client_ = host_.client();
+    ServerContext server_;
+    std::unique_ptr<JobClient> client_ = server_.client();
     std::unique_ptr<v1::Octopair::Stub> stub_ =
-        v1::Octopair::NewStub(grpc::CreateChannel(host_.address(), grpc::InsecureChannelCredentials()));
+        v1::Octopair::NewStub(grpc::CreateChannel(server_.address(), grpc::InsecureChannelCredentials()));
     const std::vector<Box3f> boxes_ = make_boxes("dense", 100000, 1);
     const Work work_{Objects{std::span(boxes_), {}}};
 };
@@ -84,9 +84,9 @@ TEST_F(Collected, StaysUntilItIsReleased) {
     const std::string id = done();
     const auto all = pairs_here(work_);
     for (int i = 0; i < 2; ++i) EXPECT_TRUE(same_bytes(pairs_there(*client_, id), all));
-    EXPECT_EQ(host_.files().size(), 2u);
+    EXPECT_EQ(server_.files().size(), 2u);
     client_->release(id);
-    EXPECT_TRUE(host_.files().empty());
+    EXPECT_TRUE(server_.files().empty());
     EXPECT_TRUE(client_->list().empty());
     (void)test::error_of(ErrorCode::bad_input, [&] { client_->status(id); });
     EXPECT_EQ(client_->submit(work_.first, {}, {.id = id}), id);
@@ -109,19 +109,19 @@ TEST_F(Collected, MayBeReleasedWhileItIsRead) {
     const grpc::Status status = reader->Finish();
     EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { service::throw_status(status, "test"); }).find("released"),
               std::string::npos);
-    EXPECT_TRUE(host_.files().empty());
+    EXPECT_TRUE(server_.files().empty());
 }
 
 TEST_F(Collected, IsKeptForATimeThatBeginsAnewWithTheServer) {
     const std::string id = done();
-    host_.stop();
-    host_.options().keep = std::chrono::seconds(3600);
-    host_.start();
+    server_.stop();
+    server_.options().keep = std::chrono::seconds(3600);
+    server_.start();
     EXPECT_EQ(client_->list().size(), 1u);
-    host_.stop();
-    host_.options().keep = std::chrono::seconds(1);
-    host_.start();
-    EXPECT_TRUE(comes_true([&] { return client_->list().empty() && host_.files().empty(); }));
+    server_.stop();
+    server_.options().keep = std::chrono::seconds(1);
+    server_.start();
+    EXPECT_TRUE(comes_true([&] { return client_->list().empty() && server_.files().empty(); }));
 }
 
 TEST_F(Collected, IsAsItWasAfterARestart) {
@@ -129,11 +129,11 @@ TEST_F(Collected, IsAsItWasAfterARestart) {
     const std::vector<Box3f> wrong = {{{1, 0, 0}, {0, 0, 0}}};
     const std::string failed = client_->submit({std::span(wrong), {}});
     const JobStatus failure = client_->wait(failed, std::chrono::minutes(1));
-    host_.restart();
+    server_.restart();
     EXPECT_TRUE(same_bytes(pairs_there(*client_, id), pairs_here(work_)));
     EXPECT_STREQ(client_->status(failed).error.value().what(), failure.error.value().what());
     EXPECT_EQ(client_->submit(work_.first, {}, {.id = id}), id);
-    EXPECT_EQ(host_.files(".job").size(), 2u);
+    EXPECT_EQ(server_.files(".job").size(), 2u);
 }
 
 }  // namespace

@@ -14,15 +14,15 @@ protected:
     void damage(const std::string& ending, const Change& change) {
         id_ = submit(*client_, work_);
         (void)client_->wait(id_, std::chrono::minutes(1));
-        host_.stop();
-        file_ = host_.files(ending).at(0);
+        server_.stop();
+        file_ = server_.files(ending).at(0);
         std::string bytes = test::read_file(file_);
         change(bytes);
         test::write_file(file_, bytes);
     }
 
     void expect_failed() {
-        host_.start();
+        server_.start();
         const JobStatus status = client_->wait(id_, std::chrono::minutes(1));
         ASSERT_EQ(int(status.state), int(JobState::failed));
         EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed));
@@ -30,7 +30,7 @@ protected:
             << status.error.value().what();
         expect_served();
         client_->release(id_);
-        EXPECT_TRUE(comes_true([&] { return host_.files(".job").size() == 1; }));
+        EXPECT_TRUE(comes_true([&] { return server_.files(".job").size() == 1; }));
     }
 
     void expect_served() {
@@ -38,10 +38,10 @@ protected:
         EXPECT_TRUE(same_bytes(pairs_there(*client_, id), pairs_here(work_)));
     }
 
-    void forget_result() { std::filesystem::remove(host_.files(".result").at(0)); }
+    void forget_result() { std::filesystem::remove(server_.files(".result").at(0)); }
 
-    Host host_;
-    std::unique_ptr<JobClient> client_ = host_.client();
+    ServerContext server_;
+    std::unique_ptr<JobClient> client_ = server_.client();
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 2000, 1);
     const Work work_{Objects{std::span(boxes_), {}}};
     std::string id_, file_;
@@ -66,15 +66,15 @@ TEST_F(Damage, OfAJobThatWasCut) {
 TEST_F(Damage, OfAJobsBeginningIsMended) {
     damage(".job", [](std::string& bytes) { bytes[40] = char(bytes[40] ^ 1); });
     forget_result();
-    host_.start();
+    server_.start();
     EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
 }
 
 TEST_F(Damage, OfAJobThatCannotBeNamed) {
     damage(".job", [](std::string& bytes) { bytes = "nothing"; });
-    host_.start();
+    server_.start();
     EXPECT_TRUE(client_->list().empty());
-    EXPECT_NE(host_.log().find(file_), std::string::npos) << host_.log();
+    EXPECT_NE(server_.log().find(file_), std::string::npos) << server_.log();
     expect_served();
 }
 
@@ -90,7 +90,7 @@ TEST_F(Damage, OfAResultThatWasCut) {
 
 TEST_F(Damage, OfPairs) {
     damage(".result", [](std::string& bytes) { bytes[100] = char(bytes[100] ^ 1); });
-    host_.start();
+    server_.start();
     EXPECT_EQ(int(client_->status(id_).state), int(JobState::done));
     PairList pairs;
     const std::string words = test::error_of(ErrorCode::io_failed, [&] { client_->result(id_, pairs); });

@@ -2,7 +2,7 @@
 #include <thread>
 
 #include "service/detached/host.hpp"
-#include "service/server/jobs/lanes.hpp"
+#include "service/server/jobs/job_scheduler.hpp"
 #include "service/server/jobs/server_job.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
 
@@ -10,7 +10,7 @@ namespace octopair::testing {
 namespace {
 
 TEST(Drained, WaitsForWhatRuns) {
-    Host host([](service::ServerOptions& options) { options.grace = std::chrono::hours(1); });
+    ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::hours(1); });
     const auto client = host.client();
     const auto boxes = make_boxes("dense", 600000, 1);
     const std::string id = client->submit({std::span(boxes), {}});
@@ -22,7 +22,7 @@ TEST(Drained, WaitsForWhatRuns) {
 }
 
 TEST(Drained, LeavesWhatOutlastsItsGrace) {
-    Host host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
+    ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
     const auto client = host.client();
     // Of so many equal boxes all pairs are counted for hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
@@ -44,7 +44,7 @@ TEST(Drained, LeavesWhatOutlastsItsGrace) {
 class NoRecord final : public service::JobRecord {
 public:
     std::string hash() const override { return "hash"; }
-    std::optional<service::Budget::Share> ask_memory() override { return service::Budget::Share(); }
+    std::optional<service::Budget::Reservation> ask_memory() override { return service::Budget::Reservation(); }
     std::unique_ptr<service::UploadedInput> load(Engine& engine, const std::stop_token&) const override {
         return std::make_unique<service::UploadedInput>(v1::JobSpec(), engine);
     }
@@ -52,7 +52,7 @@ public:
     void later(std::function<void()> errand) override { errand(); }
 };
 
-/// Jobs of no objects, in lanes of their own.
+/// Jobs of no objects, in engine_widths of their own.
 class DrainedLanes : public ::testing::Test {
 protected:
     std::shared_ptr<service::ServerJob> queued_job(bool detached) {
@@ -74,23 +74,23 @@ protected:
 
 TEST_F(DrainedLanes, BeginNoDetachedJobs) {
     const auto before = queued_job(true), held = queued_job(true), attached = queued_job(false);
-    service::Lanes lanes({make, make}, {1, 1, 0});
-    lanes.add(before);
+    service::JobScheduler engine_widths({make, make}, {1, 1, 0});
+    engine_widths.add(before);
     EXPECT_TRUE(comes_true([&] { return before->ended(); }));
-    lanes.hold_detached();
-    lanes.add(held);
-    lanes.add(attached);
+    engine_widths.hold_detached();
+    engine_widths.add(held);
+    engine_widths.add(attached);
     EXPECT_TRUE(comes_true([&] { return attached->ended(); }));
     EXPECT_EQ(int(held->state()), int(v1::QUEUED));
 }
 
 TEST_F(DrainedLanes, RunNoDetachedJobsAtOnce) {
     const auto detached = queued_job(true), attached = queued_job(false);
-    service::Lanes lanes({make, make}, {1, 1, 1});
-    lanes.hold_detached();
-    lanes.add(attached);
+    service::JobScheduler engine_widths({make, make}, {1, 1, 1});
+    engine_widths.hold_detached();
+    engine_widths.add(attached);
     EXPECT_TRUE(attached->ended());
-    lanes.add(detached);
+    engine_widths.add(detached);
     EXPECT_EQ(int(detached->state()), int(v1::QUEUED));
 }
 

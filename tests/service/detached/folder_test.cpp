@@ -10,12 +10,12 @@ namespace octopair::testing {
 namespace {
 
 TEST(Folder, IsItsOwnersAndOneServers) {
-    const Host host;
+    const ServerContext host;
     struct stat status {};
     ASSERT_EQ(::stat(host.state().c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777, 0700u);
     const std::string words = test::error_of(ErrorCode::io_failed, [&] {
-        const Host other([&](service::ServerOptions& options) { options.state_folder = host.state(); });
+        const ServerContext other([&](service::ServerOptions& options) { options.state_folder = host.state(); });
     });
     EXPECT_NE(words.find("another server"), std::string::npos) << words;
 }
@@ -26,7 +26,7 @@ TEST(Folder, IsNotOneThatOthersMayUse) {
     std::filesystem::create_directory(open);
     ASSERT_EQ(::chmod(open.c_str(), 0755), 0);
     (void)test::error_of(ErrorCode::usage, [&] {
-        const Host host([&](service::ServerOptions& options) { options.state_folder = open; });
+        const ServerContext host([&](service::ServerOptions& options) { options.state_folder = open; });
     });
     struct stat status {};
     ASSERT_EQ(::stat(open.c_str(), &status), 0);
@@ -34,7 +34,7 @@ TEST(Folder, IsNotOneThatOthersMayUse) {
 }
 
 TEST(Folder, KeepsJobsBeyondTheLimitsOfToday) {
-    Host host;
+    ServerContext host;
     const auto client = host.client();
     const std::vector<Box3f> crowd(60'000);  // seconds of work
     const auto boxes = make_boxes("uniform", 30'000, 1);
@@ -60,7 +60,7 @@ TEST(Folder, KeepsJobsBeyondTheLimitsOfToday) {
 
 TEST(Folder, HoldsNoMoreThanItMay) {
     constexpr std::uint64_t most = 1 << 20;
-    const Host host([](service::ServerOptions& options) { options.limits.state_bytes = most; });
+    const ServerContext host([](service::ServerOptions& options) { options.limits.state_bytes = most; });
     const auto client = host.client();
     const auto boxes = make_boxes("uniform", 20000, 1), many = make_boxes("uniform", 50000, 1);
     const auto refused = [&](const std::vector<Box3f>& objects) {
@@ -81,7 +81,7 @@ TEST(Folder, HoldsNoMoreThanItMay) {
 }
 
 TEST(Folder, HasNoRoomForAResult) {
-    const Host host([](service::ServerOptions& options) { options.limits.state_bytes = 600 << 10; });
+    const ServerContext host([](service::ServerOptions& options) { options.limits.state_bytes = 600 << 10; });
     const auto client = host.client();
     const auto boxes = make_boxes("coincident", 2000, 1);
     const std::string id = client->submit({std::span(boxes), {}});
@@ -96,33 +96,33 @@ class FolderOfADoneJob : public ::testing::Test {
 protected:
     FolderOfADoneJob() {
         (void)client_->wait(id_, std::chrono::minutes(1));
-        host_.stop();
+        server_.stop();
     }
     void expect_right_after_start() {
-        host_.start();
+        server_.start();
         EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
     }
 
-    Host host_;
-    const std::unique_ptr<JobClient> client_ = host_.client();
+    ServerContext server_;
+    const std::unique_ptr<JobClient> client_ = server_.client();
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 1000, 1);
     const Work work_{Objects{std::span(boxes_), {}}};
     const std::string id_ = submit(*client_, work_);
 };
 
 TEST_F(FolderOfADoneJob, IsCleanedOfWhatIsHalfWritten) {
-    const std::vector<std::string> done = host_.files();
-    test::write_file(host_.state() + "/0000000000000001.result.part", "half a result");
-    test::write_file(host_.state() + "/0000000000000005.job.part", "half a job");
-    test::write_file(host_.state() + "/0000000000000006.result", "of no job");
-    test::write_file(host_.state() + "/notes.txt", "of a person");
+    const std::vector<std::string> done = server_.files();
+    test::write_file(server_.state() + "/0000000000000001.result.part", "half a result");
+    test::write_file(server_.state() + "/0000000000000005.job.part", "half a job");
+    test::write_file(server_.state() + "/0000000000000006.result", "of no job");
+    test::write_file(server_.state() + "/notes.txt", "of a person");
     expect_right_after_start();
-    EXPECT_EQ(host_.files().size(), done.size() + 1);
-    EXPECT_EQ(host_.files(".txt").size(), 1u);
+    EXPECT_EQ(server_.files().size(), done.size() + 1);
+    EXPECT_EQ(server_.files(".txt").size(), 1u);
 }
 
 TEST_F(FolderOfADoneJob, FindsAnewWhatHasNoWholeResult) {
-    const std::string result = host_.files(".result").at(0);
+    const std::string result = server_.files(".result").at(0);
     std::filesystem::rename(result, result + ".part");
     expect_right_after_start();
 }

@@ -26,7 +26,7 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
     const std::string disk = folder.file("disk");
     if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
     {
-        const Host host([&](service::ServerOptions& options) { options.state_folder = disk; });
+        const ServerContext host([&](service::ServerOptions& options) { options.state_folder = disk; });
         const auto client = host.client();
         const auto boxes = make_boxes("uniform", 50'000, 1), many = make_boxes("uniform", 200'000, 1);
         const Work work(Objects{std::span(boxes), {}});

@@ -22,15 +22,15 @@
 
 namespace octopair::testing {
 
-class Host {
+class ServerContext {
 public:
     using Change = std::function<void(service::ServerOptions&)>;
 
-    explicit Host(const Change& change = {}) {
+    explicit ServerContext(const Change& change = {}) {
         options_.listen = service::parse_address(address());
         options_.engine = [](unsigned width) { return make_local_engine(width); };
         options_.engine_name = "local";
-        options_.lanes = {2, 2, 2};
+        options_.engine_widths = {2, 2, 2};
         options_.state_folder = state();
         if (change) change(options_);
         start();

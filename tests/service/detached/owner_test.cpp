@@ -10,7 +10,7 @@ TEST(Owner, AloneSeesAJob) {
     const test::TemporaryDirectory files;
     test::write_file(files.file("tokens"), "anna annas-secret-token\nbert berts-secret-token\n");
     ASSERT_EQ(::chmod(files.file("tokens").c_str(), 0600), 0);
-    Host host([&](service::ServerOptions& options) { options.token_file = files.file("tokens"); });
+    ServerContext host([&](service::ServerOptions& options) { options.token_file = files.file("tokens"); });
     const auto anna = host.client("annas-secret-token"), bert = host.client("berts-secret-token");
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
     Work work(Objects{std::span(boxes), {}});

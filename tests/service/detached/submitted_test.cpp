@@ -6,7 +6,7 @@ namespace octopair::testing {
 namespace {
 
 TEST(Submitted, FindsWhatTheLocalEngineFinds) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const auto boxes = make_boxes("clustered", 30000, 1), others = make_boxes("clustered", 500, 2);
     const auto wide = make_double_boxes("uniform", 3000, 3);
@@ -23,7 +23,7 @@ TEST(Submitted, FindsWhatTheLocalEngineFinds) {
 }
 
 TEST(Submitted, CountsAlone) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const auto boxes = make_boxes("dense", 5000, 1);
     Work work(Objects{std::span(boxes), {}});
@@ -36,7 +36,7 @@ TEST(Submitted, CountsAlone) {
 }
 
 TEST(Submitted, IsTheSameJobUnderItsName) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const auto boxes = make_boxes("uniform", 5000, 1);
     Work work(Objects{std::span(boxes), {}});
@@ -54,14 +54,14 @@ TEST(Submitted, IsTheSameJobUnderItsName) {
 }
 
 TEST(Submitted, NeedsAStateFolder) {
-    const Host host([](service::ServerOptions& options) { options.state_folder.clear(); });
+    const ServerContext host([](service::ServerOptions& options) { options.state_folder.clear(); });
     const std::vector<Box3f> boxes(3);
     const std::string words = test::error_of(ErrorCode::usage, [&] { host.client()->submit({std::span(boxes), {}}); });
     EXPECT_NE(words.find("state folder"), std::string::npos) << words;
 }
 
 TEST(Submitted, RefusesWhatIsNoJob) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const std::vector<Box3f> boxes(3);
     const std::vector<double> padding(2);
@@ -76,7 +76,7 @@ TEST(Submitted, RefusesWhatIsNoJob) {
 }
 
 TEST(Submitted, FailsForWhatIsNoBox) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {0, 1, 1}}};
     const std::string id = client->submit({std::span(boxes), {}});

@@ -14,7 +14,7 @@ std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
 
 TEST(Waiting, IsForMemory) {
     const std::uint64_t one = 15000 * (24 + 80);
-    const Host host([&](service::ServerOptions& options) { options.limits.memory_bytes = one + one / 2; });
+    const ServerContext host([&](service::ServerOptions& options) { options.limits.memory_bytes = one + one / 2; });
     const auto client = host.client();
     const auto boxes = make_boxes("uniform", 15000, 1), more = make_boxes("uniform", 25000, 2);
     std::vector<std::string> ids;
@@ -26,7 +26,7 @@ TEST(Waiting, IsForMemory) {
 }
 
 TEST(Waiting, EndsWithTheTimeOrTheJob) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const auto boxes = many_boxes();
     const std::string id = client->submit({std::span(boxes), {}});
@@ -36,7 +36,7 @@ TEST(Waiting, EndsWithTheTimeOrTheJob) {
 }
 
 TEST(Waiting, CanBeCancelled) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     // Of so many equal boxes all pairs are counted for hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
@@ -56,7 +56,7 @@ TEST(Waiting, CanBeCancelled) {
 }
 
 TEST(Waiting, GoesOnWithTheNextServer) {
-    Host host;
+    ServerContext host;
     const auto client = host.client();
     const auto boxes = many_boxes();
     const Work work(Objects{std::span(boxes), {}});
@@ -71,7 +71,7 @@ TEST(Waiting, GoesOnWithTheNextServer) {
 }
 
 TEST(Waiting, AttachedJobsAreSeen) {
-    const Host host;
+    const ServerContext host;
     const auto client = host.client();
     const auto boxes = many_boxes();
     std::atomic<bool> ended = false;
@@ -102,7 +102,7 @@ TEST(WaitingAtNobody, EndsWithTheTimeForConnecting) {
 }
 
 TEST(WaitingAtFirst, IsPatientWithAServerThatWasThere) {
-    Host host;
+    ServerContext host;
     const std::vector<Box3f> crowd(scaled(60'000, 6));  // a second of work
     const std::string id = host.client()->submit({std::span(crowd), {}}, {}, {.count_only = true});
     JobClient client(host.address(), {.connect_timeout = std::chrono::milliseconds(100)});

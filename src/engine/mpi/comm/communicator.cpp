@@ -230,15 +230,15 @@ void Communicator::finish_stop() {
     stops_.clear();
 }
 
-bool Communicator::send_pulse() {
+bool Communicator::send_heartbeat() {
     int gone = 0;
-    check(MPI_Test(&pulse_, &gone, MPI_STATUS_IGNORE));
+    check(MPI_Test(&heartbeat_, &gone, MPI_STATUS_IGNORE));
     if (gone == 0) return false;
-    check(MPI_Isend(nullptr, 0, MPI_BYTE, 0, pulse_tag, comm_, &pulse_));
+    check(MPI_Isend(nullptr, 0, MPI_BYTE, 0, pulse_tag, comm_, &heartbeat_));
     return true;
 }
 
-std::optional<unsigned> Communicator::receive_pulse() {
+std::optional<unsigned> Communicator::receive_heartbeat() {
     int there = 0;
     MPI_Status status{};
     check(MPI_Iprobe(MPI_ANY_SOURCE, pulse_tag, comm_, &there, &status));

@@ -118,9 +118,9 @@ public:
 
     /// Not collective: a message without content goes to rank 0, which is another one. False where the last one is still on
     /// its way.
-    bool send_pulse();
+    bool send_heartbeat();
     /// The rank that one has come from, if one has; on rank 0.
-    std::optional<unsigned> receive_pulse();
+    std::optional<unsigned> receive_heartbeat();
 
 private:
     struct Values {
@@ -148,7 +148,7 @@ private:
     std::function<void()> meanwhile_;
     std::vector<MPI_Request> stops_;
     MessageTape* tape_ = nullptr;
-    MPI_Request pulse_ = MPI_REQUEST_NULL;
+    MPI_Request heartbeat_ = MPI_REQUEST_NULL;
 };
 
 }  // namespace octopair

@@ -11,10 +11,10 @@
 #include "base/timed.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/mpi/comm/communicator.hpp"
-#include "engine/mpi/comm/pulse.hpp"
-#include "engine/mpi/leading/dealing.hpp"
+#include "engine/mpi/comm/heartbeat.hpp"
+#include "engine/mpi/leading/slice_distribution.hpp"
 #include "engine/mpi/rank_search.hpp"
-#include "engine/turns.hpp"
+#include "engine/ticket_lock.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -22,22 +22,22 @@ namespace octopair {
 namespace {
 
 /// What each rank has, whether it leads or follows.
-class Company {
+class RankGroup {
 public:
-    Company(MPI_Comm comm, const LeadingOptions& options)
+    RankGroup(MPI_Comm comm, const LeadingOptions& options)
         : told_(comm),
           searched_(comm),
-          pulse_(told_, options.silence),
-          search_(searched_, {.threads = options.threads}, [this] { pulse_.beat(); }) {}
+          heartbeat_(told_, options.silence),
+          search_(searched_, {.threads = options.threads}, [this] { heartbeat_.beat(); }) {}
 
     Communicator& told() { return told_; }
-    Pulse& pulse() { return pulse_; }
+    Heartbeat& heartbeat() { return heartbeat_; }
     /// Rank 0 gives the assignment, the others get it.
     void tell(Assignment& assignment) { told_.broadcast(std::span(&assignment, 1), 0); }
     /// A call has begun: until it is over, ranks that wait show that they do.
     void begin() {
-        pulse_.begin();
-        told_.set_meanwhile([this] { pulse_.beat(); });
+        heartbeat_.begin();
+        told_.set_meanwhile([this] { heartbeat_.beat(); });
     }
     /// Collective. `request`: on rank 0, null on the others.
     Summary find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
@@ -45,17 +45,17 @@ public:
 
 private:
     Communicator told_, searched_;  // of what is told and dealt out, and of the search
-    Deal deal_{told_};
-    Pulse pulse_;
+    SliceDistribution slices_{told_};
+    Heartbeat heartbeat_;
     RankSearch search_;
 };
 
-Summary Company::find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
+Summary RankGroup::find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
                       const detail::Control& control) {
-    deal_.make(assignment, request, control.stop);
+    slices_.make(assignment, request, control.stop);
     const Options options = assignment.options();
-    const Objects* const second = assignment.join ? &deal_.slice(1) : nullptr;
-    return search_.run({deal_.slice(0), second, options}, output, control, Recipients::first);
+    const Objects* const second = assignment.join ? &slices_.slice(1) : nullptr;
+    return search_.run({slices_.slice(0), second, options}, output, control, Recipients::first);
 }
 
 /// What the caller's functions threw. Ranks tell each other but the words of it; the caller shall have it as it was.
@@ -94,7 +94,7 @@ private:
 
 class Leader {
 public:
-    Leader(MPI_Comm comm, const LeadingOptions& options) : company_(comm, options), lost_(options.lost) {}
+    Leader(MPI_Comm comm, const LeadingOptions& options) : group_(comm, options), lost_(options.lost) {}
     Leader(const Leader&) = delete;
     Leader& operator=(const Leader&) = delete;
     ~Leader();
@@ -104,38 +104,38 @@ public:
 private:
     void look_for_lost();
 
-    Company company_;
+    RankGroup group_;
     std::function<void(const std::string&)> lost_;
 };
 
 /// The others end with it.
 Leader::~Leader() {
-    if (company_.pulse().lost()) return;
+    if (group_.heartbeat().lost()) return;
     try {
-        company_.begin();
+        group_.begin();
         Assignment none;
-        company_.tell(none);
-        company_.pulse().end();
+        group_.tell(none);
+        group_.heartbeat().end();
     } catch (const std::exception&) {
         look_for_lost();
     }
 }
 
 void Leader::look_for_lost() {
-    if (company_.pulse().lost() && lost_) lost_(*company_.pulse().lost());
+    if (group_.heartbeat().lost() && lost_) lost_(*group_.heartbeat().lost());
 }
 
 Summary Leader::run(const detail::Request& request, const detail::Output& output, const detail::Control& control) {
-    if (company_.pulse().lost()) wait_for_stop(control.stop);
+    if (group_.heartbeat().lost()) wait_for_stop(control.stop);
     Summary summary;
     Captured captured;
     const ProgressSink progress = captured.wrap(control.progress);
     const PairSink sink = output.sink == nullptr ? PairSink() : captured.wrap(*output.sink);
     try {
-        Assignment assignment = Assignment::of(request, outlet_of(output));
-        company_.begin();
-        company_.tell(assignment);
-        summary = company_.find(assignment, &request, {output.list, output.sink == nullptr ? nullptr : &sink},
+        Assignment assignment = Assignment::of(request, output_kind_of(output));
+        group_.begin();
+        group_.tell(assignment);
+        summary = group_.find(assignment, &request, {output.list, output.sink == nullptr ? nullptr : &sink},
                                 {control.stop, progress});
     } catch (...) {
         look_for_lost();
@@ -151,7 +151,7 @@ public:
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
-        const Turns::Turn turn(turns_, control.stop);
+        const TicketLock::Guard turn(ticket_lock_, control.stop);
         double seconds = 0;
         Summary summary;
         {
@@ -163,13 +163,13 @@ private:
     }
     detail::JobQueue& jobs() override { return jobs_; }
 
-    Turns turns_;
+    TicketLock ticket_lock_;
     Leader leader_;
     detail::JobQueue jobs_{*this};  // the last, so that it ends first
 };
 
 /// Whoever waits for long sleeps for long, but no longer than a person notices.
-class Nap {
+class Backoff {
 public:
     void operator()() const {
         constexpr std::chrono::milliseconds awake(1), longest(5);
@@ -184,36 +184,36 @@ private:
 /// A rank that is not the first.
 class Follower {
 public:
-    Follower(MPI_Comm comm, const LeadingOptions& options) : company_(comm, options) {}
+    Follower(MPI_Comm comm, const LeadingOptions& options) : group_(comm, options) {}
 
     void run() {
         for (Assignment next = wait(); !next.end; next = wait()) take_part(next);
-        company_.pulse().end();
+        group_.heartbeat().end();
     }
 
 private:
     Assignment wait() {
         Assignment next;
-        company_.told().set_meanwhile(Nap());
-        company_.tell(next);
-        company_.begin();
+        group_.told().set_meanwhile(Backoff());
+        group_.tell(next);
+        group_.begin();
         return next;
     }
 
     void take_part(const Assignment& assignment) {
         PairList list;
         const PairSink nothing = [](std::span<const Pair>) {};
-        const detail::Output output = {assignment.outlet == Outlet::list ? &list : nullptr,
-                                       assignment.outlet == Outlet::sink ? &nothing : nullptr};
+        const detail::Output output = {assignment.output_kind == OutputKind::list ? &list : nullptr,
+                                       assignment.output_kind == OutputKind::sink ? &nothing : nullptr};
         const ProgressSink nobody;
         try {
-            (void)company_.find(assignment, nullptr, output, {{}, nobody});
+            (void)group_.find(assignment, nullptr, output, {{}, nobody});
         } catch (const Error&) {
             return;  // rank 0 tells it to its caller
         }
     }
 
-    Company company_;
+    RankGroup group_;
 };
 
 }  // namespace

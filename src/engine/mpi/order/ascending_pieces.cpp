@@ -101,7 +101,7 @@ void AscendingPieces::sort_received(detail::PairStorage& piece, const ObjectRang
     bounds.expected = all.size();
     AscendingExecutor executor(team_, piece, bounds);
     const std::size_t share_pairs = tuning().ranks.share_pairs;
-    executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, PairWriter& writer) {
+    executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, ShareWriter& writer) {
         throw_if_stopped(stop);
         const std::size_t begin = i * share_pairs;
         writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));

@@ -25,10 +25,10 @@ Exchange exchange_of(const std::vector<ToldSizes>& told, unsigned rank) {
 
 std::vector<SortedList> ListExchange::bring(const SortedList& own, unsigned to) {
     const unsigned rank = comm_.rank();
-    const std::size_t nodes = own.home_begins.size();
+    const std::size_t octants = own.home_begins.size();
     std::vector<ToldSizes> told = comm_.all_gather(ToldSizes{to, own.entries.size()});
     const Exchange entries = exchange_of(told, rank);
-    for (ToldSizes& one : told) one.values = 2 * nodes;
+    for (ToldSizes& one : told) one.values = 2 * octants;
     const Exchange counts = exchange_of(told, rank);
     Agreement(comm_).together([&] {
         const Metered metered(comm_, costs_.pack);
@@ -41,33 +41,33 @@ std::vector<SortedList> ListExchange::bring(const SortedList& own, unsigned to) 
     std::vector<SortedList> lists;
     Agreement(comm_).together([&] {
         const Metered metered(comm_, costs_.merge);
-        lists = unpack(nodes);
+        lists = unpack(octants);
     });
     return lists;
 }
 
 void ListExchange::pack(const SortedList& list) {
-    const std::size_t nodes = list.home_begins.size();
-    sent_counts_.resize_discard(2 * nodes);
-    for (std::size_t node = 0; node < nodes; ++node) {
-        const std::uint64_t end = node + 1 < nodes ? list.home_begins[node + 1] : list.entries.size();
-        sent_counts_[2 * node] = std::uint32_t(list.ghost_begins[node] - list.home_begins[node]);
-        sent_counts_[2 * node + 1] = std::uint32_t(end - list.ghost_begins[node]);
+    const std::size_t octants = list.home_begins.size();
+    sent_counts_.resize_discard(2 * octants);
+    for (std::size_t octant = 0; octant < octants; ++octant) {
+        const std::uint64_t end = octant + 1 < octants ? list.home_begins[octant + 1] : list.entries.size();
+        sent_counts_[2 * octant] = std::uint32_t(list.ghost_begins[octant] - list.home_begins[octant]);
+        sent_counts_[2 * octant + 1] = std::uint32_t(end - list.ghost_begins[octant]);
     }
 }
 
-std::vector<SortedList> ListExchange::unpack(std::size_t nodes) {
+std::vector<SortedList> ListExchange::unpack(std::size_t octants) {
     begins_.resize_discard(received_counts_.size());
     std::vector<SortedList> lists;
     std::size_t begin = 0;  // of the entries that follow
-    for (std::size_t i = 0; i < received_counts_.size(); i += 2 * nodes) {
-        const auto homes = begins_.span().subspan(i, nodes), ghosts = begins_.span().subspan(i + nodes, nodes);
+    for (std::size_t i = 0; i < received_counts_.size(); i += 2 * octants) {
+        const auto homes = begins_.span().subspan(i, octants), ghosts = begins_.span().subspan(i + octants, octants);
         std::uint64_t at = 0;
-        for (std::size_t node = 0; node < nodes; ++node) {
-            homes[node] = at;
-            at += received_counts_[i + 2 * node];
-            ghosts[node] = at;
-            at += received_counts_[i + 2 * node + 1];
+        for (std::size_t octant = 0; octant < octants; ++octant) {
+            homes[octant] = at;
+            at += received_counts_[i + 2 * octant];
+            ghosts[octant] = at;
+            at += received_counts_[i + 2 * octant + 1];
         }
         lists.push_back({received_.span().subspan(begin, std::size_t(at)), homes, ghosts});
         begin += std::size_t(at);

@@ -25,7 +25,7 @@ public:
 
 private:
     void pack(const SortedList& list);
-    std::vector<SortedList> unpack(std::size_t nodes);
+    std::vector<SortedList> unpack(std::size_t octants);
 
     Communicator& comm_;
     RankCosts& costs_;

@@ -14,7 +14,7 @@ class ListMaker {
 public:
     /// Encodes and sorts the objects of a source, whose numbers among all begin at `first_object`. The list is kept until the
     /// next call. Throws Error{cancelled}, LinearOctree::Invalid.
-    SortedList make(const EntrySource& source, const PlantedOctants& octants, std::uint32_t first_object,
+    SortedList make(const EntrySource& source, const OctreeLayout& layout, std::uint32_t first_object,
                     const std::stop_token& stop);
 
 private:

@@ -7,7 +7,7 @@ namespace octopair {
 void MasterPasses::build(Call& call, double progress) {
     call.progress.stage(progress, 1);
     const Metered metered(comm_, costs_.merge);
-    octree().assemble(std::move(octants_), lists_, call.stop.get_token());
+    octree().assemble(std::move(layout_), lists_, call.stop.get_token());
     call.summary.entries = octree().entry_count();
     call.summary.steps.merge = octree().seconds().merge;
 }

@@ -18,8 +18,8 @@ public:
         : ThreadPasses(threads), comm_(comm), costs_(costs) {}
 
     /// Of the next build(), and all passes over it. Borrows the lists' contents and `stops`.
-    void take(PlantedOctants octants, std::vector<SortedList> lists, StopRelay& stops) {
-        octants_ = std::move(octants);
+    void take(OctreeLayout layout, std::vector<SortedList> lists, StopRelay& stops) {
+        layout_ = std::move(layout);
         lists_ = std::move(lists);
         stops_ = &stops;
     }
@@ -31,7 +31,7 @@ private:
 
     Communicator& comm_;
     RankCosts& costs_;
-    PlantedOctants octants_;
+    OctreeLayout layout_;
     std::vector<SortedList> lists_;
     StopRelay* stops_ = nullptr;
 };

@@ -62,19 +62,19 @@ MasterSearch::MasterSearch(Communicator& comm, RankCosts& costs, const MpiOption
 
 Summary MasterSearch::run(const Task& task) {
     const Sets all = gather(task);
-    PlantedOctants octants = plant(task, all);
+    OctreeLayout layout = plan(task, all);
     const Sets own = deal_out(task, all);
     Summary summary;
     SortedList list;
     {
         const Timed timed(summary.steps.encode);
-        list = make_list(task, own, octants);
+        list = make_list(task, own, layout);
     }
     std::vector<SortedList> lists = bring_to_master(task, list);
     Found found;
     Agreement(comm_).together([&] {
         if (!is_master()) return;
-        passes_.take(std::move(octants), std::move(lists), task.stops);
+        passes_.take(std::move(layout), std::move(lists), task.stops);
         const Summary whole = scan(task, all);
         found = {whole.pairs, whole.entries, whole.truncated};
         summary.steps.merge = whole.steps.merge;
@@ -113,25 +113,25 @@ MasterSearch::Sets MasterSearch::gather(const Task& task) {
     return all;
 }
 
-PlantedOctants MasterSearch::plant(const Task& task, const Sets& all) {
+OctreeLayout MasterSearch::plan(const Task& task, const Sets& all) {
     Agreement agreement(comm_);
-    OctantPlan plan;
+    OctreePlan plan;
     agreement.together([&] {
         if (!is_master()) return;
-        const Metered metered(comm_, costs_.plant);
-        plan = plan_octants(source_of(task.joint, all), task.stop);
+        const Metered metered(comm_, costs_.plan);
+        plan = plan_octree(source_of(task.joint, all), task.stop);
     });
     std::uint64_t octants = plan.shape.size();
-    comm_.broadcast(std::span(&plan.frame, 1), 0);
+    comm_.broadcast(std::span(&plan.space, 1), 0);
     comm_.broadcast(std::span(&octants, 1), 0);
     agreement.together([&] { plan.shape.resize(std::size_t(octants)); });
     comm_.broadcast(std::span(plan.shape), 0);
-    PlantedOctants planted;
+    OctreeLayout layout;
     agreement.together([&] {
-        const Metered metered(comm_, costs_.plant);
-        planted = plan.planted();
+        const Metered metered(comm_, costs_.plan);
+        layout = plan.layout();
     });
-    return planted;
+    return layout;
 }
 
 /// This rank's run. The master's own stays where it is.
@@ -157,7 +157,7 @@ MasterSearch::Sets MasterSearch::deal_out(const Task& task, const Sets& all) {
     return own;
 }
 
-SortedList MasterSearch::make_list(const Task& task, const Sets& own, const PlantedOctants& octants) {
+SortedList MasterSearch::make_list(const Task& task, const Sets& own, const OctreeLayout& layout) {
     const Runs runs(task.joint, comm_.size());
     const BoxSource source = source_of(task.joint, own);
     const std::uint64_t begin = runs.begin(comm_.rank());
@@ -165,7 +165,7 @@ SortedList MasterSearch::make_list(const Task& task, const Sets& own, const Plan
     Agreement(comm_).together([&] {
         const Metered metered(comm_, costs_.build);
         try {
-            list = maker_.make(source, octants, std::uint32_t(begin), task.stop);
+            list = maker_.make(source, layout, std::uint32_t(begin), task.stop);
         } catch (const LinearOctree::Invalid& invalid) {
             const SetBegins begins{runs.begin(comm_.rank(), 0), runs.begin(comm_.rank(), 1)};
             refuse_object(

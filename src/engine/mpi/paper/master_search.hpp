@@ -1,7 +1,7 @@
 // MasterSearch: what a rank does in a call of the paper's arrangement, which is there to be compared with.
 //
 //   gather  all objects to the master, rank 0, from the ranks that have some
-//   plant   the octree's octants: the master, which tells all
+//   plan    the octree's octants: the master, which tells all
 //   deal    equal runs of objects: the master, to all ranks
 //   list    encoded and sorted: each rank its run                                             (list_maker.hpp)
 //   merge   the lists of a machine's ranks: the first of these; the lists of all: the master  (list_exchange.hpp)
@@ -50,9 +50,9 @@ private:
     bool is_master() const { return comm_.rank() == 0; }
     static unsigned sets(const Task& task) { return task.joint.join ? 2 : 1; }
     Sets gather(const Task& task);
-    PlantedOctants plant(const Task& task, const Sets& all);
+    OctreeLayout plan(const Task& task, const Sets& all);
     Sets deal_out(const Task& task, const Sets& all);
-    SortedList make_list(const Task& task, const Sets& own, const PlantedOctants& octants);
+    SortedList make_list(const Task& task, const Sets& own, const OctreeLayout& layout);
     std::vector<SortedList> bring_to_master(const Task& task, const SortedList& own);
     SortedList merge_machine(const Task& task, std::span<const SortedList> lists);
     Summary scan(const Task& task, const Sets& all);

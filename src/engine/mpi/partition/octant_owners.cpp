@@ -18,8 +18,8 @@ std::uint64_t work_of(const OctantLoad& load, unsigned level) {
 
 std::vector<std::uint64_t> work_of(const Directory& directory, std::span<const OctantLoad> loads) {
     std::vector<std::uint64_t> work(loads.size());
-    for (std::size_t node = 0; node < work.size(); ++node)
-        work[node] = work_of(loads[node], directory.nodes()[node].level);
+    for (std::size_t octant = 0; octant < work.size(); ++octant)
+        work[octant] = work_of(loads[octant], directory.octants()[octant].level);
     return work;
 }
 

@@ -41,13 +41,13 @@ public:
     OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
-    NodeIndex begin(unsigned rank) const { return NodeIndex(begins_[rank]); }
-    NodeIndex end(unsigned rank) const { return NodeIndex(begins_[rank + 1]); }
-    unsigned owner(NodeIndex node) const { return owners_[node]; }
+    OctantIndex begin(unsigned rank) const { return OctantIndex(begins_[rank]); }
+    OctantIndex end(unsigned rank) const { return OctantIndex(begins_[rank + 1]); }
+    unsigned owner(OctantIndex octant) const { return owners_[octant]; }
 
     /// All octants that a box belongs in lie, in pre-order, from the first of these to the last.
     struct Reach {
-        NodeIndex first = 0, last = 0;
+        OctantIndex first = 0, last = 0;
         bool only = false;  ///< there are no others
     };
     /// `home`, `end`: the leaves that the box begins and ends in. A cell that is on no axis before another does not come
@@ -56,7 +56,7 @@ public:
         const unsigned natural = natural_level(box), level = home.level();
         const unsigned crossed = crossed_axes(box, level);
         const bool only = level == end.level() && level <= natural && (crossed & (crossed - 1)) == 0;
-        return {directory.at_most(home, natural), end.node(), only};
+        return {directory.at_most(home, natural), end.octant(), only};
     }
     bool is_shared(const Reach& reach) const { return owner(reach.first) != owner(reach.last); }
 
@@ -64,19 +64,19 @@ public:
     /// may come more than once.
     template <typename Place>
     void for_each_owner(const CellBox& box, Directory::Leaf home, Place&& place) const {
-        for_each_octant_of(box, directory_, home, [&](NodeIndex node, unsigned) { add_owners(box, node, place); });
+        for_each_octant_of(box, directory_, home, [&](OctantIndex octant, unsigned) { add_owners(box, octant, place); });
     }
 
 private:
     /// Of an octant that the box touches, and all below.
     template <typename Place>
-    void add_owners(const CellBox& box, NodeIndex node, Place& place) const {
-        const Node& octant = directory_.nodes()[node];
-        place(owner(node));
-        if (owner(octant.next - 1) == owner(node)) return;
+    void add_owners(const CellBox& box, OctantIndex octant, Place& place) const {
+        const Octant& parent = directory_.octants()[octant];
+        place(owner(octant));
+        if (owner(parent.next - 1) == owner(octant)) return;
         for (unsigned digit = 0; digit < 8; ++digit) {
-            const NodeIndex child = directory_.child(octant, digit);
-            if (directory_.nodes()[child].touches(box)) add_owners(box, child, place);
+            const OctantIndex child = directory_.child(parent, digit);
+            if (directory_.octants()[child].touches(box)) add_owners(box, child, place);
         }
     }
 

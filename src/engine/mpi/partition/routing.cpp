@@ -19,11 +19,11 @@ constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a 
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): what is routed, where, with which memory, until when.
-Routing::Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
+Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
                  std::stop_token stop)
     : call_(call),
       source_(source),
-      octants_(octants),
+      layout_(layout),
       stop_(std::move(stop)),
       blocks_(memory.blocks_),
       places_(memory.places_) {
@@ -51,7 +51,7 @@ void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
         const std::span<OctantLoad> own = shares > 1 ? std::span(copy) : loads;
         for (std::size_t i = share; i < blocks_.size(); i += shares) find(blocks_[i], own);
         const std::lock_guard lock(mutex);
-        for (std::size_t node = 0; node < copy.size(); ++node) loads[node].add(copy[node]);
+        for (std::size_t octant = 0; octant < copy.size(); ++octant) loads[octant].add(copy[octant]);
     });
     for (OctantLoad& load : loads) load.multiply(counted_stride_);
     for (const Block& block : blocks_) {
@@ -62,22 +62,22 @@ void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
 namespace {
 
 /// The cells of objects [begin, begin + cells.size()) of a source; false if one of them is not a box.
-bool load_cells(const BoxSource& source, const Frame& frame, std::size_t begin, std::span<CellBox> cells) {
+bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, std::span<CellBox> cells) {
     if (const auto boxes = source.plain(begin, cells.size()); !boxes.empty()) {
-        frame.cells(boxes, cells);
+        space.cells(boxes, cells);
         return are_boxes(boxes);
     }
     std::array<Entry, most_batch> entries;
     const std::span<Entry> loaded = std::span(entries).first(cells.size());
     const bool good = source.load(begin, loaded);
-    frame.cells(loaded, cells);
+    space.cells(loaded, cells);
     return good;
 }
 
 }  // namespace
 
 void Routing::find(Block& block, std::span<OctantLoad> loads) {
-    const Directory& directory = octants_.directory;
+    const Directory& directory = layout_.directory;
     const std::size_t batch_size = tuning().ranks.batch;
     std::array<CellBox, most_batch> cells, ends;
     std::array<Directory::Leaf, most_batch> homes, end_leaves;
@@ -85,7 +85,7 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);
-        if (!load_cells(source_, octants_.frame, begin, std::span(cells).first(count))) {
+        if (!load_cells(source_, layout_.space, begin, std::span(cells).first(count))) {
             block.bad = begin;
             return;
         }
@@ -94,17 +94,17 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
         for (std::size_t i = 0; i < count; ++i) {
             // No branch on whether a box crosses, which nothing foretells.
             const bool crosses = !within(cells[i], homes[i].level());
-            places_[begin + i] = homes[i].node();
+            places_[begin + i] = homes[i].octant();
             crossers[crossing] = std::uint32_t(i);
             crossing += crosses ? 1 : 0;
         }
         const bool counted = begin / batch_size % counted_stride_ == 0;
-        for (std::size_t i = 0; counted && i < count; ++i) loads[homes[i].node()].add(cells[i]);
+        for (std::size_t i = 0; counted && i < count; ++i) loads[homes[i].octant()].add(cells[i]);
         for (std::size_t i = 0; i < crossing; ++i) ends[i].lo = cells[crossers[i]].hi;
         directory.leaves(std::span(ends).first(crossing), end_leaves);
         for (std::size_t i = 0; i < crossing; ++i) {
             const std::uint32_t object = crossers[i];
-            if (counted) loads[end_leaves[i].node()].add(cells[object]);
+            if (counted) loads[end_leaves[i].octant()].add(cells[object]);
             block.crossers.push_back(
                 {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
         }
@@ -144,7 +144,7 @@ void Routing::share(Block& block, std::span<const Crosser> crossers) const {
     std::vector<Entry> entries(unclear.size());
     source_.pick(unclear, entries);
     std::vector<CellBox> cells(unclear.size());
-    octants_.frame.cells(entries, cells);
+    layout_.space.cells(entries, cells);
 
     const CellBox* next = cells.data();
     std::vector<std::uint32_t> owners;
@@ -152,7 +152,7 @@ void Routing::share(Block& block, std::span<const Crosser> crossers) const {
         owners = {owners_->owner(crosser.reach.first), owners_->owner(crosser.reach.last)};
         if (!crosser.reach.only) {
             owners.clear();
-            owners_->for_each_owner(*next, octants_.directory.leaf(next->lo),
+            owners_->for_each_owner(*next, layout_.directory.leaf(next->lo),
                                     [&](std::uint32_t owner) { owners.push_back(owner); });
             std::ranges::sort(owners);
             owners.erase(std::unique(owners.begin(), owners.end()), owners.end());

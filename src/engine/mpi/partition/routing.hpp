@@ -60,7 +60,7 @@ public:
     };
 
     /// Borrows all. `source`: this rank's objects.
-    Routing(const JointCall& call, const BoxSource& source, const PlantedOctants& octants, Memory& memory,
+    Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
             std::stop_token stop);
 
     /// Adds to `loads`, empty ones, one for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
@@ -82,7 +82,7 @@ private:
 
     const JointCall& call_;
     const BoxSource& source_;
-    const PlantedOctants& octants_;
+    const OctreeLayout& layout_;
     std::stop_token stop_;
     std::size_t counted_stride_ = 1;  // of batches: what octants hold is known from a part well enough
     std::vector<Block>& blocks_;

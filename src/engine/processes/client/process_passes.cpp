@@ -20,16 +20,16 @@ namespace {
 
 }  // namespace
 
-ProcessPasses::ProcessPasses(Crew& crew, const SharedArrays& arrays) : crew_(crew), inputs_(arrays) {}
+ProcessPasses::ProcessPasses(WorkerPool& pool, const SharedArrays& arrays) : pool_(pool), inputs_(arrays) {}
 
 void ProcessPasses::build(Call& call, double) {
-    if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
+    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(roomy_bytes()));
     regions_ = {arena_};
     pass_ = {};
-    inputs_.place(call, crew_, pass_, regions_);
-    pass_.job = crew_.begin_job();
+    inputs_.place(call, pool_, pass_, regions_);
+    pass_.job = pool_.begin_job();
     pass_.workers = unsigned(
-        std::clamp<std::uint64_t>(call.source.size() / tuning().processes.objects_per_worker, 1, crew_.workers()));
+        std::clamp<std::uint64_t>(call.source.size() / tuning().processes.objects_per_worker, 1, pool_.workers()));
     pass_.margin = call.request.options.margin;
     pass_.arena_region = arena_->number;
 }
@@ -48,7 +48,7 @@ void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Regio
         if (look) look();
     };
     try {
-        (void)crew_.run(pass_, needed, watch);
+        (void)pool_.run(pass_, needed, watch);
     } catch (const LinearOctree::Invalid& invalid) {
         call.source.refuse(std::min(invalid.begin, std::size_t(call.source.size())));
     } catch (const OverBudget&) {
@@ -61,7 +61,7 @@ void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Regio
 
 void ProcessPasses::show_progress(Call& call, std::uint64_t& shown) {
     std::uint64_t scanned = 0;
-    for (unsigned slot = 0; slot < pass_.workers; ++slot) scanned += crew_.view().slot(slot).entries_scanned.load();
+    for (unsigned slot = 0; slot < pass_.workers; ++slot) scanned += pool_.view().slot(slot).entries_scanned.load();
     if (scanned > shown) call.progress.add(scanned - std::exchange(shown, scanned));
 }
 
@@ -69,25 +69,25 @@ void ProcessPasses::show_progress(Call& call, std::uint64_t& shown) {
 void ProcessPasses::take_results(Call& call) {
     StepSeconds steps;
     for (unsigned i = 0; i < pass_.workers; ++i) {
-        const Slot& slot = crew_.view().slot(i);
+        const Slot& slot = pool_.view().slot(i);
         steps.encode = std::max(steps.encode, slot.encode_seconds);
-        steps.sort = std::max(steps.sort, slot.sort_seconds);
-        steps.merge = std::max(steps.merge, slot.merge_seconds);
+        steps.scatter = std::max(steps.scatter, slot.scatter_seconds);
+        steps.count = std::max(steps.count, slot.count_seconds);
         steps.scan = std::max(steps.scan, slot.scan_seconds);
         call.summary.entries = slot.entries;
     }
     if (pass_.built == 0) {
         call.summary.steps.encode = steps.encode;
-        call.summary.steps.sort = steps.sort;
-        call.summary.steps.merge = steps.merge;
+        call.summary.steps.scatter = steps.scatter;
+        call.summary.steps.count = steps.count;
     }
     call.summary.steps.scan += steps.scan;
 }
 
 std::span<Share> ProcessPasses::shares_done() {
-    const auto shares = crew_.view().shares(0, crew_.shares());
+    const auto shares = pool_.view().shares(0, pool_.shares());
     for (const Share& share : shares) {
-        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) throw_damaged_result();
+        if (!ShareState::of(share.state.load()).is(pool_.number(), ShareStatus::done)) throw_damaged_result();
     }
     return shares;
 }
@@ -96,7 +96,7 @@ std::span<Share> ProcessPasses::shares_done() {
 std::shared_ptr<Region> ProcessPasses::free_pairs() {
     auto found = std::find_if(pairs_.begin(), pairs_.end(), [](const auto& region) { return region.use_count() == 1; });
     if (found == pairs_.end()) {
-        pairs_.push_back(crew_.add_region(SharedMemory::create(roomy_bytes())));
+        pairs_.push_back(pool_.add_region(SharedMemory::create(roomy_bytes())));
         found = pairs_.end() - 1;
     }
     return *found;
@@ -124,7 +124,7 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
         } catch (const Again&) {
         }
     }
-    const std::uint64_t place = crew_.view().slot(0).number;
+    const std::uint64_t place = pool_.view().slot(0).number;
     if (place % alignof(std::uint32_t) != 0) throw_damaged_result();
     std::copy_n(arena_->memory.array<std::uint32_t>(place, counts.size()), counts.size(), counts.begin());
 }
@@ -147,8 +147,8 @@ void ProcessPasses::list_ascending(Call& call, detail::PairStorage& list, const 
 
 /// The list keeps the memory that the workers wrote to, or gets a copy.
 void ProcessPasses::append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs) {
-    const DeskView& view = crew_.view();
-    const std::uint64_t written = view.desk().next_block.load();
+    const ControlBlockView& view = pool_.view();
+    const std::uint64_t written = view.control_block().next_block.load();
     if (written > pairs->memory.size() / (list_block_pairs * sizeof(Pair))) throw_damaged_result();
     const std::span<const Pair> all{pairs->memory.array<const Pair>(0, written * list_block_pairs),
                                     std::size_t(written * list_block_pairs)};
@@ -173,13 +173,13 @@ void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double prog
     const RingSize size = ring_size(call.buffer_pairs(), pass_.workers);
     pass_.ring_blocks = size.blocks;
     pass_.block_pairs = size.block_pairs;
-    RingReader reader(crew_, pairs->memory, pass_, deliver);
+    RingReader reader(pool_, pairs->memory, pass_, deliver);
     PassWatch watch;
     watch.look = [&] { (void)reader.take(); };
     watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
     run(call, progress, pairs, std::move(watch));
     while (reader.take()) throw_if_stopped(call.stop.get_token());
-    if (!reader.complete(crew_.shares())) throw_damaged_result();
+    if (!reader.complete(pool_.shares())) throw_damaged_result();
 }
 
 }  // namespace octopair

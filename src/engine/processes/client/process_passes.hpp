@@ -1,11 +1,11 @@
-// ProcessPasses: the passes of a call, made by a crew of workers.
+// ProcessPasses: the passes of a call, made by a pool of workers.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
 #include "engine/search.hpp"
 
@@ -14,9 +14,9 @@ namespace octopair {
 class ProcessPasses final : public Passes {
 public:
     /// Both must outlive it.
-    ProcessPasses(Crew& crew, const SharedArrays& arrays);
+    ProcessPasses(WorkerPool& pool, const SharedArrays& arrays);
 
-    unsigned width() const override { return crew_.workers(); }
+    unsigned width() const override { return pool_.workers(); }
     void end() noexcept override { regions_.clear(); }
     /// The octree is built by the pass that comes next: one errand for both.
     void build(Call& call, double progress) override;
@@ -34,7 +34,7 @@ private:
     std::shared_ptr<Region> free_pairs();
     std::span<Share> shares_done();
 
-    Crew& crew_;
+    WorkerPool& pool_;
     SharedInputs inputs_;
     std::shared_ptr<Region> arena_;
     std::vector<std::shared_ptr<Region>> pairs_;  // with one owner, they are free

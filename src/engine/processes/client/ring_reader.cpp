@@ -37,16 +37,16 @@ bool RingReader::take() {
 bool RingReader::take_next() {
     // A share that is not begun yet has the number of another pass.
     for (unsigned blocks = 0; share_ < most_shares;) {
-        const Share& share = crew_.view().shares(share_, 1)[0];
+        const Share& share = pool_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
-        if (state.pass != crew_.number() || state.slot >= pass_.workers) return false;
+        if (state.pass != pool_.number() || state.slot >= pass_.workers) return false;
         if (share.step != unsigned(Step::scan)) {
             if (state.status != ShareStatus::done) return false;
             ++share_;
         } else if (!take_block(state.slot)) {
             return false;
         } else if (++blocks == tuning().processes.blocks_at_once) {
-            crew_.view().desk().for_client.raise();
+            pool_.view().control_block().for_client.raise();
             return true;
         }
     }
@@ -55,18 +55,18 @@ bool RingReader::take_next() {
 
 /// What is next in the ring of a slot.
 std::optional<RingEntry> RingReader::front(unsigned number) const {
-    const Slot& slot = crew_.view().slot(number);
+    const Slot& slot = pool_.view().slot(number);
     const std::uint64_t taken = slot.ring_taken.load();
     const std::uint64_t filled = slot.ring_filled.load();
     if (filled == taken) return std::nullopt;
-    const RingEntry entry = crew_.view().ring_entry(number, taken);
+    const RingEntry entry = pool_.view().ring_entry(number, taken);
     const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs;
     if (!sound) throw_damaged_ring();
     return entry;
 }
 
 void RingReader::give_back(unsigned number) {
-    Slot& slot = crew_.view().slot(number);
+    Slot& slot = pool_.view().slot(number);
     slot.ring_taken.fetch_add(1);
     slot.command.raise();
 }
@@ -78,7 +78,7 @@ bool RingReader::take_block(unsigned number) {
     const RingEntry entry = *next;
     if (entry.share > share_) throw_damaged_ring();
     if (entry.share == share_) {
-        const std::uint64_t taken = crew_.view().slot(number).ring_taken.load();
+        const std::uint64_t taken = pool_.view().slot(number).ring_taken.load();
         if (taken >= pass_.ring_blocks) count_path(Path::ring_wrapped);
         const std::uint64_t block = number * pass_.ring_blocks + taken % pass_.ring_blocks;
         const std::span<const Pair> pairs{
@@ -98,14 +98,14 @@ bool RingReader::take_block(unsigned number) {
 }
 
 void RingReader::forget_unfinished(unsigned number) {
-    Slot& slot = crew_.view().slot(number);
+    Slot& slot = pool_.view().slot(number);
     const std::uint64_t share = slot.share.load();
     if (share == 0) return;
-    const ShareState state = ShareState::of(crew_.view().shares(share - 1, 1)[0].state.load());
-    if (!state.is(crew_.number(), ShareStatus::claimed)) return;
+    const ShareState state = ShareState::of(pool_.view().shares(share - 1, 1)[0].state.load());
+    if (!state.is(pool_.number(), ShareStatus::claimed)) return;
     std::uint64_t filled = slot.ring_filled.load();
     if (filled - slot.ring_taken.load() > pass_.ring_blocks) throw_damaged_ring();
-    while (filled > slot.ring_taken.load() && crew_.view().ring_entry(number, filled - 1).share == share - 1) --filled;
+    while (filled > slot.ring_taken.load() && pool_.view().ring_entry(number, filled - 1).share == share - 1) --filled;
     slot.ring_filled.store(filled);
     if (share - 1 == share_) passed_ = 0;
 }

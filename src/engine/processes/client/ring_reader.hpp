@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/search.hpp"
 
 namespace octopair {
@@ -23,8 +23,8 @@ RingSize ring_size(std::uint64_t pairs, unsigned slots);
 
 class RingReader {
 public:
-    RingReader(Crew& crew, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
-        : crew_(crew), pairs_(pairs), pass_(pass), deliver_(deliver) {}
+    RingReader(WorkerPool& pool, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
+        : pool_(pool), pairs_(pairs), pass_(pass), deliver_(deliver) {}
 
     /// Hands out some of what is there; true, and the client's event is raised, if that is not all. What `deliver` throws
     /// is passed on.
@@ -40,7 +40,7 @@ private:
     void give_back(unsigned slot);
     bool take_block(unsigned slot);
 
-    Crew& crew_;
+    WorkerPool& pool_;
     SharedMemory& pairs_;
     const Pass& pass_;
     const Deliver& deliver_;

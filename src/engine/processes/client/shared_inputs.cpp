@@ -37,39 +37,39 @@ std::shared_ptr<Region> SharedArrays::find(std::span<const std::byte> memory) co
     return holds ? region : nullptr;
 }
 
-void SharedInputs::place(const Call& call, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions) {
+void SharedInputs::place(const Call& call, WorkerPool& pool, Pass& pass, std::vector<std::shared_ptr<Region>>& regions) {
     const detail::Request& request = call.request;
     stop_ = call.stop.get_token();
     used_ = 0;
-    pass.first = place(request.first, crew, regions);
-    pass.second = request.second != nullptr ? place(*request.second, crew, regions) : SetRef{};
+    pass.first = place(request.first, pool, regions);
+    pass.second = request.second != nullptr ? place(*request.second, pool, regions) : SetRef{};
     pass.join = request.second != nullptr ? 1 : 0;
 }
 
-SetRef SharedInputs::place(const Objects& objects, Crew& crew, std::vector<std::shared_ptr<Region>>& regions) {
+SetRef SharedInputs::place(const Objects& objects, WorkerPool& pool, std::vector<std::shared_ptr<Region>>& regions) {
     SetRef set;
     set.wide = std::holds_alternative<std::span<const Box3d>>(objects.boxes) ? 1 : 0;
     std::visit(
         [&](auto boxes) {
-            set.boxes = place(std::as_bytes(boxes), crew, regions);
+            set.boxes = place(std::as_bytes(boxes), pool, regions);
             set.boxes.count = boxes.size();
         },
         objects.boxes);
-    set.padding = place(std::as_bytes(objects.padding), crew, regions);
+    set.padding = place(std::as_bytes(objects.padding), pool, regions);
     set.padding.count = objects.padding.size();
     return set;
 }
 
-ArrayRef SharedInputs::place(std::span<const std::byte> memory, Crew& crew,
+ArrayRef SharedInputs::place(std::span<const std::byte> memory, WorkerPool& pool,
                              std::vector<std::shared_ptr<Region>>& regions) {
     constexpr std::uint64_t alignment = 64;
     if (memory.empty()) return {};
     if (const auto shared = arrays_.find(memory)) {
-        crew.introduce(shared);
+        pool.introduce(shared);
         regions.push_back(shared);
         return {shared->number, std::uint64_t(memory.data() - shared->memory.data()), 0};
     }
-    if (copies_ == nullptr) copies_ = crew.add_region(SharedMemory::create(roomy_bytes()));
+    if (copies_ == nullptr) copies_ = pool.add_region(SharedMemory::create(roomy_bytes()));
     regions.push_back(copies_);
     const ArrayRef copy{copies_->number, used_, 0};
     constexpr std::size_t piece = std::size_t(1) << 24;  // bytes: a few milliseconds

@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/search.hpp"
 
 namespace octopair {
@@ -32,11 +32,11 @@ public:
     explicit SharedInputs(const SharedArrays& arrays) : arrays_(arrays) {}
 
     /// Sets the sets of `pass`; appends what its workers need to `regions`. Throws Error{resource_limit, cancelled}.
-    void place(const Call& call, Crew& crew, Pass& pass, std::vector<std::shared_ptr<Region>>& regions);
+    void place(const Call& call, WorkerPool& pool, Pass& pass, std::vector<std::shared_ptr<Region>>& regions);
 
 private:
-    SetRef place(const Objects& objects, Crew& crew, std::vector<std::shared_ptr<Region>>& regions);
-    ArrayRef place(std::span<const std::byte> memory, Crew& crew, std::vector<std::shared_ptr<Region>>& regions);
+    SetRef place(const Objects& objects, WorkerPool& pool, std::vector<std::shared_ptr<Region>>& regions);
+    ArrayRef place(std::span<const std::byte> memory, WorkerPool& pool, std::vector<std::shared_ptr<Region>>& regions);
 
     const SharedArrays& arrays_;
     std::shared_ptr<Region> copies_;

@@ -145,17 +145,17 @@ std::string WorkerProcess::end() {
 
 bool WorkerProcess::send_region(std::uint32_t number, const SharedMemory& memory) {
     if (regions_.contains(number)) return true;
-    if (!send_mail(socket_, {MailKind::region, number, memory.size()}, memory.descriptor())) return false;
+    if (!send_message(socket_, {ControlMessageKind::region, number, memory.size()}, memory.descriptor())) return false;
     regions_.insert(number);
     return true;
 }
 
 void WorkerProcess::forget_all_but(const std::function<bool(std::uint32_t)>& wanted) {
     std::erase_if(regions_, [&](std::uint32_t number) {
-        return !wanted(number) && send_mail(socket_, {MailKind::forget, number, 0});
+        return !wanted(number) && send_message(socket_, {ControlMessageKind::forget, number, 0});
     });
 }
 
-bool WorkerProcess::stop_pass(std::uint32_t pass) { return send_mail(socket_, {MailKind::stop, pass, 0}); }
+bool WorkerProcess::stop_pass(std::uint32_t pass) { return send_message(socket_, {ControlMessageKind::stop, pass, 0}); }
 
 }  // namespace octopair

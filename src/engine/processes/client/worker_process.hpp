@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/descriptor.hpp"
-#include "engine/processes/shared_memory/mail.hpp"
+#include "engine/processes/shared_memory/control_messages.hpp"
 #include "engine/processes/shared_memory/shared_memory.hpp"
 
 namespace octopair {
@@ -31,7 +31,7 @@ public:
     /// Kills it and waits for its end; returns how it ended, in words.
     std::string end();
 
-    /// Once each; false if the worker takes no mail.
+    /// Once each; false if the worker takes no message.
     bool send_region(std::uint32_t number, const SharedMemory& memory);
     /// Lets it forget the regions that are not `wanted`.
     void forget_all_but(const std::function<bool(std::uint32_t)>& wanted);

@@ -9,36 +9,36 @@ namespace octopair {
 
 void PaperPasses::build(Call& call, double progress) {
     call.progress.stage(progress, 1);
-    if (arena_ == nullptr) arena_ = crew_.add_region(SharedMemory::create(roomy_bytes()));
+    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(roomy_bytes()));
     std::vector<std::shared_ptr<Region>> regions = {arena_};
     Pass pass;
-    inputs_.place(call, crew_, pass, regions);
-    pass.job = crew_.begin_job();
+    inputs_.place(call, pool_, pass, regions);
+    pass.job = pool_.begin_job();
     pass.kind = PassKind::lists;
-    pass.workers = crew_.workers();
+    pass.workers = pool_.workers();
     pass.margin = call.request.options.margin;
     pass.arena_region = arena_->number;
     PassWatch watch;
     watch.stop = call.stop.get_token();
     try {
-        (void)crew_.run(pass, regions, watch);
-        PlantedOctants octants = plant_octants(call.source, watch.stop);
-        const auto lists = find_lists(pass.workers, {call.source.size(), octants.directory.nodes().size()});
-        octree().assemble(std::move(octants), lists, watch.stop);
+        (void)pool_.run(pass, regions, watch);
+        OctreeLayout layout = make_layout(call.source, watch.stop);
+        const auto lists = find_lists(pass.workers, {call.source.size(), layout.directory.octants().size()});
+        octree().assemble(std::move(layout), lists, watch.stop);
     } catch (const LinearOctree::Invalid& invalid) {
         call.source.refuse(invalid.begin);
     }
     call.summary.entries = octree().entry_count();
     call.summary.steps.merge = octree().seconds().merge;
     for (unsigned slot = 0; slot < pass.workers; ++slot) {
-        call.summary.steps.encode = std::max(call.summary.steps.encode, crew_.view().slot(slot).encode_seconds);
+        call.summary.steps.encode = std::max(call.summary.steps.encode, pool_.view().slot(slot).encode_seconds);
     }
 }
 
 std::vector<SortedList> PaperPasses::find_lists(std::size_t count, const ListBounds& bounds) const {
     std::vector<SortedList> lists;
-    for (const Share& share : crew_.view().shares(0, count)) {
-        if (!ShareState::of(share.state.load()).is(crew_.number(), ShareStatus::done)) {
+    for (const Share& share : pool_.view().shares(0, count)) {
+        if (!ShareState::of(share.state.load()).is(pool_.number(), ShareStatus::done)) {
             throw Error(ErrorCode::engine_failed, "a worker's list is not there");
         }
         lists.push_back(find_list(arena_->memory, share.first_run, bounds));

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/processes/client/crew.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
 #include "engine/processes/paper/sorted_lists.hpp"
 #include "engine/threads/thread_passes.hpp"
@@ -14,14 +14,14 @@ namespace octopair {
 class PaperPasses final : public ThreadPasses {
 public:
     /// Both must outlive it.
-    PaperPasses(Crew& crew, const SharedArrays& arrays) : ThreadPasses(1), crew_(crew), inputs_(arrays) {}
+    PaperPasses(WorkerPool& pool, const SharedArrays& arrays) : ThreadPasses(1), pool_(pool), inputs_(arrays) {}
 
     void build(Call& call, double progress) override;
 
 private:
     std::vector<SortedList> find_lists(std::size_t lists, const ListBounds& bounds) const;
 
-    Crew& crew_;
+    WorkerPool& pool_;
     SharedInputs inputs_;
     std::shared_ptr<Region> arena_;
 };

@@ -8,8 +8,8 @@
 namespace octopair {
 
 SortedLists::SortedLists(const EntrySource& source, Arena& arena, std::size_t lists, const std::stop_token& stop)
-    : source_(source), arena_(arena), octants_(plant_octants(source, stop)), memory_(arena, arena), heads_(arena) {
-    memory_.resize(source.size(), lists, octants_.directory.nodes().size(), lists);
+    : source_(source), arena_(arena), layout_(make_layout(source, stop)), memory_(arena, arena), heads_(arena) {
+    memory_.resize(source.size(), lists, layout_.directory.octants().size(), lists);
     heads_.resize_discard(lists);
     for (std::size_t i = 0; i < lists; ++i) {
         blocks_.push_back({i, {source.size() * i / lists, source.size() * (i + 1) / lists}});
@@ -20,25 +20,25 @@ SortedLists::SortedLists(const EntrySource& source, Arena& arena, std::size_t li
 
 void SortedLists::make(std::size_t list, const std::stop_token& stop) {
     const NumberedBlock& block = blocks_[list];
-    const BuildSteps steps{source_, octants_.frame, octants_.directory, memory_, stop};
+    const BuildSteps steps{source_, layout_.space, layout_.directory, memory_, stop};
     steps.encode(block);
-    const std::array whole = {NumberedNodes{list, 0, NodeIndex(memory_.nodes)}};
+    const std::array whole = {NumberedOctants{list, 0, OctantIndex(memory_.octants)}};
     const std::array alone = {list};
     // What is counted from the begin of a range is counted from that of the list.
-    Buffer<std::uint64_t> begins(memory_.nodes);
+    Buffer<std::uint64_t> begins(memory_.octants);
     std::swap(begins, memory_.begins);
-    steps.merge(whole[0], alone);
+    steps.count(whole[0], alone);
     std::swap(begins, memory_.begins);
     const std::uint64_t entries = memory_.totals[list];
     entries_[list].commit(0, std::size_t(entries) + 1);
     std::vector<std::uint64_t> range_begins(list + 1, 0);
-    const SortTarget target{entries_[list].span(), range_begins, whole, std::size_t(entries)};
-    steps.sort(block, target);
+    const ScatterTarget target{entries_[list].span(), range_begins, whole, std::size_t(entries)};
+    steps.scatter(block, target);
     heads_[list] = {arena_.offset(entries_[list].data()),
                     entries,
                     arena_.offset(memory_.home_part(memory_.places, list).data()),
                     arena_.offset(memory_.ghost_part(memory_.places, list).data()),
-                    memory_.nodes,
+                    memory_.octants,
                     memory_.valid[list],
                     block.objects.begin};
 }
@@ -50,15 +50,15 @@ SortedList find_list(SharedMemory& arena, std::uint64_t head_at, const ListBound
     check(head_at % alignof(SortedListHead) == 0);
     const SortedListHead head = *arena.array<SortedListHead>(head_at, 1);
     if (head.valid == 0) throw LinearOctree::Invalid{std::size_t(head.object_begin)};
-    check(head.nodes == bounds.nodes && head.entries % alignof(Entry) == 0 && head.home_begins % 8 == 0 &&
+    check(head.octants == bounds.octants && head.entries % alignof(Entry) == 0 && head.home_begins % 8 == 0 &&
           head.ghost_begins % 8 == 0);
     const SortedList list{{arena.array<Entry>(head.entries, head.entry_count), std::size_t(head.entry_count)},
-                          {arena.array<std::uint64_t>(head.home_begins, head.nodes), std::size_t(head.nodes)},
-                          {arena.array<std::uint64_t>(head.ghost_begins, head.nodes), std::size_t(head.nodes)}};
+                          {arena.array<std::uint64_t>(head.home_begins, head.octants), std::size_t(head.octants)},
+                          {arena.array<std::uint64_t>(head.ghost_begins, head.octants), std::size_t(head.octants)}};
     std::uint64_t at = 0;
-    for (std::size_t node = 0; node < list.home_begins.size(); ++node) {
-        check(at <= list.home_begins[node] && list.home_begins[node] <= list.ghost_begins[node]);
-        at = list.ghost_begins[node];
+    for (std::size_t octant = 0; octant < list.home_begins.size(); ++octant) {
+        check(at <= list.home_begins[octant] && list.home_begins[octant] <= list.ghost_begins[octant]);
+        at = list.ghost_begins[octant];
     }
     check(at <= list.entries.size());
     std::uint64_t highest = 0;

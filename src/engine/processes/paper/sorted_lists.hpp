@@ -17,7 +17,7 @@ namespace octopair {
 /// Where in the arena a list is; in the arena as well.
 struct SortedListHead {
     std::uint64_t entries, entry_count;              ///< Entry
-    std::uint64_t home_begins, ghost_begins, nodes;  ///< of each node's entries: those that are home, the others
+    std::uint64_t home_begins, ghost_begins, octants;  ///< of each octant's entries: those that are home, the others
     std::uint64_t valid, object_begin;               ///< whether all of its objects are boxes; the first of them
 };
 
@@ -33,7 +33,7 @@ public:
 private:
     const EntrySource& source_;
     Arena& arena_;
-    PlantedOctants octants_;
+    OctreeLayout layout_;
     std::vector<NumberedBlock> blocks_;
     BuildMemory memory_;
     std::vector<Buffer<Entry>> entries_;
@@ -42,7 +42,7 @@ private:
 
 /// What a list must fit.
 struct ListBounds {
-    std::uint64_t objects, nodes;
+    std::uint64_t objects, octants;
 };
 
 /// The same list, as the client finds it. Throws Error{engine_failed} where it is not one.

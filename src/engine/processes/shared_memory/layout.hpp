@@ -1,6 +1,6 @@
 // What lies where in the memory that the client and its workers share.
 //
-//   desk    one file: Desk, a Slot for each worker, then the tables below. Written by all.
+//   control block    one file: ControlBlock, a Slot for each worker, then the tables below. Written by all.
 //             shares   what is done and what is not: a Share for each share of the work of a pass, in order
 //             runs     of the pairs of shares that are done, one after another
 //             commits  two of each slot, used in turn: how far its buckets are filled (ascending order)
@@ -31,12 +31,12 @@
 namespace octopair {
 
 inline constexpr unsigned most_workers = 256;
-inline constexpr std::uint64_t desk_mark = 0x6f63746f70616972;  // "octopair"
-inline constexpr std::uint32_t layout_version = 3;              // of this file: raised with every change of it
+inline constexpr std::uint64_t control_mark = 0x6f63746f70616972;  // "octopair"
+inline constexpr std::uint32_t layout_version = 4;              // of this file: raised with every change of it
 
 /// Which step of the algorithm a share belongs to. `order` puts pairs into ascending order.
-enum class Step : std::uint32_t { prepare, encode, merge, sort, scan, order };
-inline constexpr std::array<const char*, 6> step_names = {"prepare", "encode", "merge", "sort", "scan", "order"};
+enum class Step : std::uint32_t { prepare, encode, count, scatter, scan, order };
+inline constexpr std::array<const char*, 6> step_names = {"prepare", "encode", "count", "scatter", "scan", "order"};
 
 enum class PassKind : std::uint32_t { lists, count, count_by_object, list_octal, stream_octal, list_ascending };
 
@@ -86,10 +86,10 @@ struct alignas(64) Slot {
     std::array<char, 256> message;
     std::uint64_t number;  ///< bad_box: where to look; count_by_object: where in the arena the counts are
     std::uint64_t entries, shares;
-    double encode_seconds, sort_seconds, merge_seconds, scan_seconds;
+    double encode_seconds, count_seconds, scatter_seconds, scan_seconds;
 };
 
-struct Desk {
+struct ControlBlock {
     std::uint64_t mark;
     std::uint32_t layout;
     std::array<char, 32> version;
@@ -163,9 +163,9 @@ constexpr std::uint64_t whole_pages(std::uint64_t bytes) {
     return (bytes + page - 1) / page * page;
 }
 
-/// Where in the desk's file the tables are.
-struct DeskPlaces {
-    static constexpr std::uint64_t slots = whole_pages(sizeof(Desk));
+/// Where in the control block's file the tables are.
+struct ControlBlockLayout {
+    static constexpr std::uint64_t slots = whole_pages(sizeof(ControlBlock));
     static constexpr std::uint64_t shares = slots + whole_pages(most_workers * sizeof(Slot));
     static constexpr std::uint64_t runs = shares + whole_pages(most_shares * sizeof(Share));
     static constexpr std::uint64_t commits = runs + whole_pages(most_runs * sizeof(Run));

@@ -12,13 +12,13 @@ namespace octopair {
 
 namespace {
 
-class CountOutput final : public ShareOutput, private PairWriter {
+class CountOutput final : public ShareOutput, private ShareWriter {
 public:
-    PairWriter& begin(const ShareOut::Task&) override {
+    ShareWriter& begin(const WorkSharing::Task&) override {
         pairs_ = 0;
         return *this;
     }
-    void end(const ShareOut::Task& task) override { task.record.pairs = pairs_; }
+    void end(const WorkSharing::Task& task) override { task.record.pairs = pairs_; }
 
 private:
     bool counting() const override { return true; }
@@ -31,8 +31,8 @@ private:
 class CountByObjectOutput final : public ShareOutput {
 public:
     explicit CountByObjectOutput(std::span<std::uint32_t> counts) : writer_(counts) {}
-    PairWriter& begin(const ShareOut::Task&) override { return writer_; }
-    void end(const ShareOut::Task&) override {}
+    ShareWriter& begin(const WorkSharing::Task&) override { return writer_; }
+    void end(const WorkSharing::Task&) override {}
 
 private:
     CountByObjectWriter writer_;
@@ -44,11 +44,11 @@ class ListOutput final : public ShareOutput, private FullWriter {
 public:
     explicit ListOutput(const OutputPlace& place) : place_(place) {}
 
-    PairWriter& begin(const ShareOut::Task&) override {
+    ShareWriter& begin(const WorkSharing::Task&) override {
         runs_.clear();
         return *this;
     }
-    void end(const ShareOut::Task& task) override { record_runs(place_, runs_, task.record); }
+    void end(const WorkSharing::Task& task) override { record_runs(place_, runs_, task.record); }
 
 private:
     void write(std::span<const Pair> pairs) override {
@@ -72,12 +72,12 @@ public:
     StreamOutput(const OutputPlace& place, const Pass& pass)
         : place_(place), pass_(pass), slot_(place.view.slot(place.shares.slot())) {}
 
-    PairWriter& begin(const ShareOut::Task& task) override {
+    ShareWriter& begin(const WorkSharing::Task& task) override {
         share_ = task.number;
         block_ = {};
         return *this;
     }
-    void end(const ShareOut::Task&) override {
+    void end(const WorkSharing::Task&) override {
         if (block_.empty()) block_ = free_block();
         hand_over(true);
     }
@@ -100,7 +100,7 @@ private:
             const std::uint32_t seen = slot_.command.count.load();
             if (filled - slot_.ring_taken.load() < pass_.ring_blocks) break;
             throw_if_stopped(place_.stop);
-            const Waiting waiting(slot_);
+            const WaitingMark waiting(slot_);
             slot_.command.wait(seen, worker_limits::max_event_sleep, 0);
         }
         held_ = 0;
@@ -113,7 +113,7 @@ private:
         const std::uint64_t filled = slot_.ring_filled.load();
         place_.view.ring_entry(place_.shares.slot(), filled) = {share_, held_, last ? 1u : 0u};
         slot_.ring_filled.store(filled + 1);
-        place_.view.desk().for_client.raise();
+        place_.view.control_block().for_client.raise();
         block_ = {};
     }
 
@@ -140,7 +140,7 @@ std::unique_ptr<ShareOutput> make_stream_output(const OutputPlace& place, const 
 }
 
 std::span<Pair> take_block(const OutputPlace& place) {
-    const std::uint64_t block = place.view.desk().next_block.fetch_add(1);
+    const std::uint64_t block = place.view.control_block().next_block.fetch_add(1);
     return {place.pairs.array<Pair>(block * list_block_pairs * sizeof(Pair), list_block_pairs), list_block_pairs};
 }
 
@@ -155,7 +155,7 @@ void record_runs(const OutputPlace& place, std::span<const std::span<const Pair>
         }
     }
     if (joined.empty()) return;
-    const std::uint64_t first = place.view.desk().next_run.fetch_add(joined.size());
+    const std::uint64_t first = place.view.control_block().next_run.fetch_add(joined.size());
     const auto rows = place.view.runs(first, joined.size());
     const auto* const begin = reinterpret_cast<const Pair*>(place.pairs.data());
     for (std::size_t i = 0; i < joined.size(); ++i) {

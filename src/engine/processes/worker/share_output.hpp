@@ -7,7 +7,7 @@
 #include <span>
 #include <stop_token>
 
-#include "engine/processes/worker/share_out.hpp"
+#include "engine/processes/worker/work_sharing.hpp"
 #include "octree/executor.hpp"
 
 namespace octopair {
@@ -16,16 +16,16 @@ class ShareOutput {
 public:
     virtual ~ShareOutput() = default;
     /// Of the share that begins; the last one is over. Valid until the next.
-    virtual PairWriter& begin(const ShareOut::Task& task) = 0;
+    virtual ShareWriter& begin(const WorkSharing::Task& task) = 0;
     /// Completes the record of the share that began.
-    virtual void end(const ShareOut::Task& task) = 0;
+    virtual void end(const WorkSharing::Task& task) = 0;
 };
 
 /// What outputs write to.
 struct OutputPlace {
-    DeskView& view;
+    ControlBlockView& view;
     SharedMemory& pairs;
-    const ShareOut& shares;
+    const WorkSharing& shares;
     std::stop_token stop;
 };
 

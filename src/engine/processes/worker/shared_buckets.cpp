@@ -27,7 +27,7 @@ public:
     void set_unlimited() { limited_ = false; }
     /// What a predecessor took after its last commit is not counted.
     void restore(std::uint64_t taken) {
-        place_.view.desk().pages_left.fetch_add(std::int64_t(taken_.exchange(taken) - taken));
+        place_.view.control_block().pages_left.fetch_add(std::int64_t(taken_.exchange(taken) - taken));
     }
     std::uint64_t taken() const { return taken_.load(); }
     std::uint32_t number(const Pair* page) const {
@@ -38,7 +38,7 @@ private:
     Pair* fresh() override {
         if (limited_) {
             taken_.fetch_add(1);
-            if (place_.view.desk().pages_left.fetch_sub(1) <= 0) throw OverBudget{};
+            if (place_.view.control_block().pages_left.fetch_sub(1) <= 0) throw OverBudget{};
         }
         if (block_.empty()) block_ = take_block(place_);
         Pair* const page = block_.data();
@@ -74,7 +74,7 @@ SharedBuckets::SharedBuckets(const OutputPlace& place, const Pass& pass)
 
 SharedBuckets::~SharedBuckets() = default;
 
-PairWriter& SharedBuckets::begin(const ShareOut::Task&) {
+ShareWriter& SharedBuckets::begin(const WorkSharing::Task&) {
     if (!std::exchange(restored_, true)) restore();
     return *writer_;
 }
@@ -90,7 +90,7 @@ void SharedBuckets::restore() {
     pages_->restore(commit.pages_taken);
 }
 
-void SharedBuckets::end(const ShareOut::Task& task) {
+void SharedBuckets::end(const WorkSharing::Task& task) {
     std::uint64_t more = 0;
     for (std::size_t bucket = 0; bucket < strings_.size(); ++bucket) {
         more += strings_[bucket].pages().size() - logged_[bucket];
@@ -140,14 +140,14 @@ SharedBuckets::Strings SharedBuckets::committed_strings(unsigned slot) const {
     return strings;
 }
 
-void SharedBuckets::order(ShareOut& shares) {
+void SharedBuckets::order(WorkSharing& shares) {
     pages_->set_unlimited();
     std::vector<Strings> of_slots;
     of_slots.reserve(workers_);
     for (unsigned slot = 0; slot < workers_; ++slot) of_slots.push_back(committed_strings(slot));
     BucketSort sort(plan_, *pages_);
     std::vector<Pair*> spent;
-    shares.run(Step::order, plan_.buckets(), [&](const ShareOut::Task& task) {
+    shares.run(Step::order, plan_.buckets(), [&](const WorkSharing::Task& task) {
         std::vector<PageString> strings;
         strings.reserve(of_slots.size());
         for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[task.index]));

@@ -16,11 +16,11 @@ public:
     SharedBuckets(const OutputPlace& place, const Pass& pass);
     ~SharedBuckets() override;
 
-    PairWriter& begin(const ShareOut::Task& task) override;
-    void end(const ShareOut::Task& task) override;
+    ShareWriter& begin(const WorkSharing::Task& task) override;
+    void end(const WorkSharing::Task& task) override;
 
     /// The last step: sorts the buckets of all slots.
-    void order(ShareOut& shares);
+    void order(WorkSharing& shares);
 
 private:
     class RegionPages;

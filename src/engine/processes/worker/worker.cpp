@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/floating_point.hpp"
-#include "engine/processes/shared_memory/mail.hpp"
+#include "engine/processes/shared_memory/control_messages.hpp"
 #include "engine/processes/worker/worker_pass.hpp"
 #include "engine/processes/worker_limits.hpp"
 #include "octopair/error.hpp"
@@ -49,20 +49,20 @@ public:
     /// Takes what the client sends, until it is gone.
     void read_mail() {
         while (client_lives()) {
-            std::optional<Received> received = receive_mail(socket_);
+            std::optional<ReceivedMessage> received = receive_message(socket_);
             if (!received) return;
-            const Mail& mail = received->mail;
-            switch (mail.kind) {
-                case MailKind::region:
-                    take_region(mail, std::move(received->file));
+            const ControlMessage& message = received->message;
+            switch (message.kind) {
+                case ControlMessageKind::region:
+                    take_region(message, std::move(received->file));
                     break;
-                case MailKind::forget:
-                    regions_.forget(mail.number);
+                case ControlMessageKind::forget:
+                    regions_.forget(message.number);
                     forgot_.store(true);
-                    if (DeskView* const view = view_) view->slot(number_).command.raise();
+                    if (ControlBlockView* const view = view_) view->slot(number_).command.raise();
                     break;
-                case MailKind::stop:
-                    stop(mail.number);
+                case ControlMessageKind::stop:
+                    stop(message.number);
                     break;
             }
         }
@@ -70,45 +70,45 @@ public:
 
     [[noreturn]] void work() {
         const FloatingPointScope scope;
-        const auto memory = regions_.get(desk_region);
-        DeskView view(*memory);
-        if (view.desk().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");
+        const auto memory = regions_.get(control_region);
+        ControlBlockView view(*memory);
+        if (view.control_block().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");
         if (number_ >= view.slots()) throw Error(ErrorCode::engine_failed, "there is no such slot");
         view_ = &view;
         WorkerProgram program(view, regions_);
         Slot& slot = view.slot(number_);
         slot.attached.store(1);
-        view.desk().for_client.raise();
+        view.control_block().for_client.raise();
         for (;;) {
             const std::uint32_t seen = slot.command.count.load();
             const std::uint32_t asked = slot.asked.load();
             if (asked == slot.finished.load()) {
                 if (forgot_.exchange(false)) program.forget_job();
-                const Waiting waiting(slot);
+                const WaitingMark waiting(slot);
                 slot.command.wait(seen, worker_limits::max_command_sleep, worker_limits::max_spins_for_pass);
                 continue;
             }
-            const Pass pass = view.desk().pass;
+            const Pass pass = view.control_block().pass;
             const std::stop_token token = stops_.begin(asked);
-            if (view.desk().stopped.load() == asked) stops_.stop(asked);
+            if (view.control_block().stopped.load() == asked) stops_.stop(asked);
             program.run(pass, {number_, asked, observer_}, token);
             slot.finished.store(asked);
-            view.desk().for_client.raise();
+            view.control_block().for_client.raise();
             // It has told why; another will be sent what this one could not take.
             if (regions_.failed()) throw Error(ErrorCode::resource_limit, "shared memory could not be taken");
         }
     }
 
 private:
-    void take_region(const Mail& mail, Descriptor file) {
+    void take_region(const ControlMessage& message, Descriptor file) {
         try {
-            regions_.add(mail.number, SharedMemory::open(std::move(file), mail.bytes));
+            regions_.add(message.number, SharedMemory::open(std::move(file), message.bytes));
         } catch (...) {
             regions_.fail(std::current_exception());
         }
     }
 
-    /// Waits for mail or the end of the client. Its process is looked for as well: a copy of its end of the socket may
+    /// Waits for message or the end of the client. Its process is looked for as well: a copy of its end of the socket may
     /// live on in some child that it forked.
     bool client_lives() const {
         for (;;) {
@@ -121,8 +121,8 @@ private:
 
     void stop(std::uint32_t pass) {
         stops_.stop(pass);
-        if (DeskView* const view = view_) {
-            view->desk().among_workers.raise();
+        if (ControlBlockView* const view = view_) {
+            view->control_block().among_workers.raise();
             view->slot(number_).command.raise();
         }
     }
@@ -133,20 +133,20 @@ private:
     const pid_t parent_;
     WorkerRegions regions_;
     Stops stops_;
-    std::atomic<DeskView*> view_ = nullptr;
+    std::atomic<ControlBlockView*> view_ = nullptr;
     std::atomic<bool> forgot_ = false;
 };
 
 }  // namespace
 
 void run_worker(Descriptor socket, unsigned slot, ShareObserver* observer, const std::function<void()>& gone) {
-    // It stays until the process ends, with the thread that reads its mail.
+    // It stays until the process ends, with the thread that reads its message.
     static Worker worker(std::move(socket), slot, observer);
     std::thread([gone] {
         try {
             worker.read_mail();
         } catch (...) {
-            // Without its mail it is of no use; the client starts another.
+            // Without its message it is of no use; the client starts another.
         }
         gone();
     }).detach();

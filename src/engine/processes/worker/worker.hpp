@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "base/descriptor.hpp"
-#include "engine/processes/worker/share_out.hpp"
+#include "engine/processes/worker/work_sharing.hpp"
 
 namespace octopair {
 

@@ -61,9 +61,9 @@ private:
 };
 
 /// Tells an observer whenever pairs are written.
-class ObservedWriter final : public PairWriter {
+class ObservedWriter final : public ShareWriter {
 public:
-    ObservedWriter(PairWriter& writer, ShareObserver& observer) : writer_(writer), observer_(observer) {}
+    ObservedWriter(ShareWriter& writer, ShareObserver& observer) : writer_(writer), observer_(observer) {}
     bool counting() const override { return writer_.counting(); }
     void write(std::span<const Pair> pairs) override {
         observer_.tick();
@@ -75,7 +75,7 @@ public:
     }
 
 private:
-    PairWriter& writer_;
+    ShareWriter& writer_;
     ShareObserver& observer_;
 };
 
@@ -110,7 +110,7 @@ struct WorkerProgram::Job {
     std::uint64_t built_mark = 0;  // of the arena
 };
 
-WorkerProgram::WorkerProgram(DeskView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
+WorkerProgram::WorkerProgram(ControlBlockView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
 
 WorkerProgram::~WorkerProgram() = default;
 
@@ -118,20 +118,20 @@ WorkerProgram::~WorkerProgram() = default;
 class WorkerProgram::BuildExecutor final : public Executor {
 public:
     /// `built`: the steps are done, by an earlier pass.
-    BuildExecutor(ShareOut& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
+    BuildExecutor(WorkSharing& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
-        constexpr std::array steps = {Step::encode, Step::merge, Step::sort};
+        constexpr std::array steps = {Step::encode, Step::count, Step::scatter};
         const Step step = steps.at(step_++);
         if (built_) return;
-        shares_.run(step, count, [&](const ShareOut::Task& task) { body(std::size_t(task.index)); });
+        shares_.run(step, count, [&](const WorkSharing::Task& task) { body(std::size_t(task.index)); });
     }
-    void for_each_writing(std::size_t, const std::function<void(std::size_t, PairWriter&)>&) override {
+    void for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) override {
         throw Error(ErrorCode::engine_failed, "a step that writes no pairs wrote some");
     }
 
 private:
-    ShareOut& shares_;
+    WorkSharing& shares_;
     unsigned width_;
     bool built_;
     std::size_t step_ = 0;
@@ -144,15 +144,15 @@ class WorkerProgram::ScanExecutor final : public Executor {
 public:
     /// Borrows all. `arena`: pages for nested octrees. It is not rewound before the pass ends: a worker that is slow, or
     /// takes over, still reads octrees that others no longer need.
-    ScanExecutor(ShareOut& shares, unsigned width, ShareOutput& output, Arena& arena)
+    ScanExecutor(WorkSharing& shares, unsigned width, ShareOutput& output, Arena& arena)
         : shares_(shares), width_(width), output_(output), arena_(arena) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
         for (std::size_t i = 0; i < count; ++i) body(i);
     }
-    void for_each_writing(std::size_t count, const std::function<void(std::size_t, PairWriter&)>& body) override {
-        shares_.run(Step::scan, count, [&](const ShareOut::Task& task) {
-            PairWriter& writer = output_.begin(task);
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override {
+        shares_.run(Step::scan, count, [&](const WorkSharing::Task& task) {
+            ShareWriter& writer = output_.begin(task);
             if (shares_.observer() != nullptr) {
                 ObservedWriter observed(writer, *shares_.observer());
                 body(std::size_t(task.index), observed);
@@ -176,16 +176,16 @@ private:
         return several_blocks && entries <= arena_.left() / tuning().processes.nested_bytes;
     }
 
-    ShareOut& shares_;
+    WorkSharing& shares_;
     unsigned width_;
     ShareOutput& output_;
     Arena& arena_;
     std::optional<BuildExecutor> build_;  // of the nested octree that is being built
 };
 
-void WorkerProgram::run(const Pass& pass, const ShareOut::Self& self, std::stop_token stop) {
+void WorkerProgram::run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop) {
     Slot& slot = view_.slot(self.slot);
-    ShareOut shares(view_, self, stop);
+    WorkSharing shares(view_, self, stop);
     const Context context{pass, shares, stop, slot};
     try {
         slot.outcome = take_part(context);
@@ -237,8 +237,8 @@ void WorkerProgram::build(const Context& context) {
     }
     context.slot.entries = job_->octree.entry_count();
     context.slot.encode_seconds = job_->octree.seconds().encode;
-    context.slot.merge_seconds = job_->octree.seconds().merge;
-    context.slot.sort_seconds = job_->octree.seconds().sort;
+    context.slot.count_seconds = job_->octree.seconds().count;
+    context.slot.scatter_seconds = job_->octree.seconds().scatter;
 }
 
 void WorkerProgram::make_lists(const Context& context) {
@@ -247,7 +247,7 @@ void WorkerProgram::make_lists(const Context& context) {
     SortedLists lists(source, job_->arena, context.pass.workers, context.stop);
     context.slot.encode_seconds = 0;
     const Timed timed(context.slot.encode_seconds);
-    context.shares.run(Step::encode, context.pass.workers, [&](const ShareOut::Task& task) {
+    context.shares.run(Step::encode, context.pass.workers, [&](const WorkSharing::Task& task) {
         lists.make(std::size_t(task.index), context.stop);
         task.record.first_run = job_->arena.offset(lists.head(std::size_t(task.index)));
     });
@@ -290,7 +290,7 @@ void WorkerProgram::count_by_object(const Context& context) {
     Buffer<std::uint32_t> counts(job_->arena);
     counts.resize_discard(job_->source.size());
     const std::uint64_t blocks = context.pass.workers;
-    context.shares.run(Step::scan, blocks, [&](const ShareOut::Task& task) {
+    context.shares.run(Step::scan, blocks, [&](const WorkSharing::Task& task) {
         const std::size_t begin = counts.size() * task.index / blocks, end = counts.size() * (task.index + 1) / blocks;
         std::fill(counts.data() + begin, counts.data() + end, 0u);
     });

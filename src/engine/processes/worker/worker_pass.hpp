@@ -7,7 +7,7 @@
 
 #include "boxes/box_source.hpp"
 #include "engine/processes/shared_memory/arena.hpp"
-#include "engine/processes/worker/share_out.hpp"
+#include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/share_output.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
 #include "octree/linear_octree.hpp"
@@ -18,11 +18,11 @@ namespace octopair {
 class WorkerProgram {
 public:
     /// Both must outlive it.
-    WorkerProgram(DeskView& view, WorkerRegions& regions);
+    WorkerProgram(ControlBlockView& view, WorkerRegions& regions);
     ~WorkerProgram();
 
     /// Does a part of the pass and leaves in its slot how that ended.
-    void run(const Pass& pass, const ShareOut::Self& self, std::stop_token stop);
+    void run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop);
     /// Lets go of the memory of the last job. No harm if a pass of it follows.
     void forget_job();
 
@@ -32,7 +32,7 @@ private:
     class ScanExecutor;
     struct Context {
         const Pass& pass;
-        ShareOut& shares;
+        WorkSharing& shares;
         std::stop_token stop;
         Slot& slot;
     };
@@ -44,7 +44,7 @@ private:
     void scan_into(const Context& context, ShareOutput& output);
     void count_by_object(const Context& context);
 
-    DeskView& view_;
+    ControlBlockView& view_;
     WorkerRegions& regions_;
     std::unique_ptr<Job> job_;
 };

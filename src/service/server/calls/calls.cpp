@@ -11,7 +11,7 @@
 #include "service/server/calls/result_call.hpp"
 #include "service/server/calls/scene_call.hpp"
 #include "service/server/calls/submit_call.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
@@ -28,50 +28,50 @@ using Methods = Service::WithRawCallbackMethod_Detect<
 
 class Calls final : public Methods {
 public:
-    explicit Calls(Host& host) : host_(host) {}
+    explicit Calls(ServerContext& server) : server_(server) {}
 
     grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Detect(grpc::CallbackServerContext* context) override {
-        return start_detect(host_, *context);
+        return start_detect(server_, *context);
     }
     grpc::ServerUnaryReactor* DetectSmall(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                           grpc::ByteBuffer* response) override {
-        return start_detect_small(host_, *context, *request, *response);
+        return start_detect_small(server_, *context, *request, *response);
     }
     grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Scene(grpc::CallbackServerContext* context) override {
-        return start_scene(host_, *context);
+        return start_scene(server_, *context);
     }
     grpc::ServerReadReactor<grpc::ByteBuffer>* Submit(grpc::CallbackServerContext* context,
                                                       grpc::ByteBuffer* response) override {
-        return start_submit(host_, *context, *response);
+        return start_submit(server_, *context, *response);
     }
     grpc::ServerWriteReactor<grpc::ByteBuffer>* Result(grpc::CallbackServerContext* context,
                                                        const grpc::ByteBuffer* request) override {
-        return start_result(host_, *context, *request);
+        return start_result(server_, *context, *request);
     }
     grpc::ServerUnaryReactor* Status(grpc::CallbackServerContext* context, const v1::JobName* request,
                                      v1::JobReport* response) override {
-        return start_status(host_, *context, *request, *response);
+        return start_status(server_, *context, *request, *response);
     }
     grpc::ServerUnaryReactor* Wait(grpc::CallbackServerContext* context, const v1::WaitRequest* request,
                                    v1::JobReport* response) override {
-        return start_wait(host_, *context, *request, *response);
+        return start_wait(server_, *context, *request, *response);
     }
     grpc::ServerUnaryReactor* Cancel(grpc::CallbackServerContext* context, const v1::JobName* request,
                                      v1::JobReport* response) override {
-        return start_cancel(host_, *context, *request, *response);
+        return start_cancel(server_, *context, *request, *response);
     }
     grpc::ServerUnaryReactor* Release(grpc::CallbackServerContext* context, const v1::JobName* request,
                                       v1::JobReport* response) override {
-        return start_release(host_, *context, *request, *response);
+        return start_release(server_, *context, *request, *response);
     }
     grpc::ServerUnaryReactor* List(grpc::CallbackServerContext* context, const v1::ListRequest* request,
                                    v1::JobList* response) override {
-        return start_list(host_, *context, *request, *response);
+        return start_list(server_, *context, *request, *response);
     }
     grpc::ServerUnaryReactor* Describe(grpc::CallbackServerContext* context, const v1::DescribeRequest*,
                                        v1::ServerDescription* description) override {
         std::string owner;
-        const grpc::Status status = host_.let_in(*context, owner);
+        const grpc::Status status = server_.let_in(*context, owner);
         if (status.ok()) describe(*description);
         grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
         reactor->Finish(status);
@@ -80,11 +80,11 @@ public:
 
 private:
     void describe(v1::ServerDescription& description) const {
-        const ServerLimits& limits = host_.options.limits;
+        const ServerLimits& limits = server_.options.limits;
         description.set_version(OCTOPAIR_VERSION);
         description.set_algorithm(algorithm_version);
-        description.set_engine(host_.options.engine_name);
-        description.set_detached(!host_.options.state_folder.empty());
+        description.set_engine(server_.options.engine_name);
+        description.set_detached(!server_.options.state_folder.empty());
         v1::Limits& told = *description.mutable_limits();
         told.set_objects(limits.objects);
         told.set_input_bytes(limits.input_bytes);
@@ -98,11 +98,11 @@ private:
         told.set_message_bytes(most_message_bytes);
     }
 
-    Host& host_;
+    ServerContext& server_;
 };
 
 }  // namespace
 
-std::unique_ptr<grpc::Service> make_calls(Host& host) { return std::make_unique<Calls>(host); }
+std::unique_ptr<grpc::Service> make_calls(ServerContext& server) { return std::make_unique<Calls>(server); }
 
 }  // namespace octopair::service

@@ -9,9 +9,9 @@ class Service;
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-/// `host` outlives the service.
-std::unique_ptr<grpc::Service> make_calls(Host& host);
+/// `server` outlives the service.
+std::unique_ptr<grpc::Service> make_calls(ServerContext& server);
 
 }  // namespace octopair::service

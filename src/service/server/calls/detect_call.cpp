@@ -12,7 +12,7 @@
 #include "service/protocol/status.hpp"
 #include "service/server/calls/download_call.hpp"
 #include "service/server/calls/upload.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
@@ -22,10 +22,10 @@ namespace {
 class DetectCall final : public DownloadCall<grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>>,
                          public std::enable_shared_from_this<DetectCall> {
 public:
-    DetectCall(Host& host, grpc::CallbackServerContext& context)
-        : DownloadCall(host, context), upload_([this](v1::JobSpec spec) -> InputTarget& {
+    DetectCall(ServerContext& server, grpc::CallbackServerContext& context)
+        : DownloadCall(server, context), upload_([this](v1::JobSpec spec) -> InputTarget& {
               check_id(spec.id());
-              const auto job = this->host().begin(owner(), std::move(spec));
+              const auto job = this->server().begin(owner(), std::move(spec));
               const std::lock_guard lock(job_mutex_);
               job_ = job;
               return job->input();
@@ -46,7 +46,7 @@ public:
 
 private:
     void read() {
-        host().ledger.received(in_.Length());
+        server().server_log.received(in_.Length());
         upload_.take(in_);
         if (upload_.complete() && !queued_) queue();
         if (upload_.moves()) moved();
@@ -55,16 +55,16 @@ private:
 
     void queue() {
         queued_ = true;
-        attached_ = host().attached.take(1);
+        attached_ = server().attached.take(1);
         const std::shared_ptr<ServerJob> job = this->job();
         job->queue();
         // A client that comes back may find its own job of before, whose connection was not seen to break yet.
-        for (auto before = host().jobs.enter(job); before != job; before = host().jobs.enter(job)) {
+        for (auto before = server().jobs.enter(job); before != job; before = server().jobs.enter(job)) {
             before->cancel();
-            host().jobs.remove(*before);
+            server().jobs.remove(*before);
         }
         send(job, job->spec().offset());
-        host().queue(job);
+        server().queue(job);
     }
 
     void refused() override {
@@ -74,12 +74,12 @@ private:
     void done() override {
         if (const auto job = this->job()) {
             job->cancel();
-            host().jobs.remove(*job);
+            server().jobs.remove(*job);
         }
     }
 
     void waits(bool downloading) override {
-        if (!downloading) refuse(host().refuse_stalled(owner()));
+        if (!downloading) refuse(server().refuse_stalled(owner()));
     }
 
     std::shared_ptr<ServerJob> job() const {
@@ -91,7 +91,7 @@ private:
     grpc::ByteBuffer in_;
     Upload upload_;
     bool queued_ = false;
-    Budget::Share attached_;
+    Budget::Reservation attached_;
 
     mutable std::mutex job_mutex_;
     std::shared_ptr<ServerJob> job_;  // none before the first message
@@ -102,27 +102,27 @@ class SmallCall final : public grpc::ServerUnaryReactor,
                         public JobWatcher,
                         public std::enable_shared_from_this<SmallCall> {
 public:
-    SmallCall(Host& host, grpc::CallbackServerContext& context, grpc::ByteBuffer& response)
-        : host_(host), context_(context), response_(response) {}
+    SmallCall(ServerContext& server, grpc::CallbackServerContext& context, grpc::ByteBuffer& response)
+        : server_(server), context_(context), response_(response) {}
 
     void start(grpc::ByteBuffer request) {
         self_ = shared_from_this();
         std::string owner;
-        const grpc::Status status = host_.let_in(context_, owner);
+        const grpc::Status status = server_.let_in(context_, owner);
         if (!status.ok()) return answer({}, status);
-        host_.ledger.received(request.Length());
+        server_.server_log.received(request.Length());
         Upload upload([&](v1::JobSpec spec) -> InputTarget& {
             if (!spec.id().empty()) check_id(spec.id());
-            job_ = host_.begin(owner, std::move(spec));
+            job_ = server_.begin(owner, std::move(spec));
             return job_->input();
         });
         try {
             upload.take(request);
             upload.finish();
-            attached_ = host_.attached.take(1);
+            attached_ = server_.attached.take(1);
             job_->queue();
             job_->watch(self_);
-            host_.queue(job_);
+            server_.queue(job_);
         } catch (...) {
             if (job_) job_->cancel();
             answer({}, status_of_exception());
@@ -160,32 +160,32 @@ private:
             if (std::exchange(answered_, true)) return;
         }
         response_ = message;
-        host_.ledger.sent(response_.Length());
+        server_.server_log.sent(response_.Length());
         Finish(status);
     }
 
-    Host& host_;
+    ServerContext& server_;
     grpc::CallbackServerContext& context_;
     grpc::ByteBuffer& response_;
     std::shared_ptr<SmallCall> self_;  // until the call is done
     std::shared_ptr<ServerJob> job_;
-    Budget::Share attached_;
+    Budget::Reservation attached_;
     std::mutex mutex_;
     bool answered_ = false;
 };
 
 }  // namespace
 
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(Host& host,
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(ServerContext& server,
                                                                           grpc::CallbackServerContext& context) {
-    const auto call = std::make_shared<DetectCall>(host, context);
+    const auto call = std::make_shared<DetectCall>(server, context);
     call->start();
     return call.get();
 }
 
-grpc::ServerUnaryReactor* start_detect_small(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerUnaryReactor* start_detect_small(ServerContext& server, grpc::CallbackServerContext& context,
                                              const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
-    const auto call = std::make_shared<SmallCall>(host, context, response);
+    const auto call = std::make_shared<SmallCall>(server, context, response);
     call->start(request);
     return call.get();
 }

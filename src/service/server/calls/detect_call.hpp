@@ -6,12 +6,12 @@
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-/// `host` outlives the call.
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(Host& host,
+/// `server` outlives the call.
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(ServerContext& server,
                                                                           grpc::CallbackServerContext& context);
-grpc::ServerUnaryReactor* start_detect_small(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerUnaryReactor* start_detect_small(ServerContext& server, grpc::CallbackServerContext& context,
                                              const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 
 }  // namespace octopair::service

@@ -17,15 +17,15 @@
 
 #include "service/protocol/status.hpp"
 #include "service/server/calls/download.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
 /// Reactor: gRPC's, of a call that streams bytes to the client. Owned by a shared pointer, and by itself while it runs.
 template <typename Reactor>
-class DownloadCall : public Reactor, public JobWatcher, public Overseen {
+class DownloadCall : public Reactor, public JobWatcher, public Watched {
 public:
-    DownloadCall(Host& host, grpc::CallbackServerContext& context) : host_(host), context_(context) {}
+    DownloadCall(ServerContext& server, grpc::CallbackServerContext& context) : server_(server), context_(context) {}
 
     // NOLINTBEGIN(readability-identifier-naming): gRPC's names.
     void OnWriteDone(bool ok) final {
@@ -52,9 +52,9 @@ public:
             const std::lock_guard lock(mutex_);
             if (finished_) return;
             downloading = download_.has_value();
-            const bool late = now - moved_ >= host_.options.stall;
+            const bool late = now - moved_ >= server_.options.stall;
             stuck = late && writing_;
-            if (!late && !(downloading && host_.draining)) return;
+            if (!late && !(downloading && server_.draining)) return;
         }
         if (stuck) return context_.TryCancel();
         waits(downloading);
@@ -64,14 +64,14 @@ protected:
     /// From here to done() the call holds itself, which is what `self` points to. False: the caller is not let in.
     bool begin(std::shared_ptr<DownloadCall> self) {
         self_ = std::move(self);
-        const grpc::Status status = host_.let_in(context_, owner_);
+        const grpc::Status status = server_.let_in(context_, owner_);
         if (!status.ok()) refuse(status);
-        if (status.ok()) host_.overseer.watch(self_);
+        if (status.ok()) server_.watchdog.watch(self_);
         return status.ok();
     }
 
     const std::string& owner() const { return owner_; }
-    Host& host() { return host_; }
+    ServerContext& server() { return server_; }
 
     /// The client has sent enough.
     void moved() {
@@ -117,13 +117,13 @@ private:
             moved_ = std::chrono::steady_clock::now();
             out_ = next.message;
         }
-        host_.ledger.sent(out_.Length());
+        server_.server_log.sent(out_.Length());
         if (next.kind == Download::Next::Kind::message) return this->StartWrite(&out_);
         if (!next.status.ok()) return this->Finish(next.status);
         this->StartWriteAndFinish(&out_, {}, next.status);
     }
 
-    Host& host_;
+    ServerContext& server_;
     grpc::CallbackServerContext& context_;
     std::shared_ptr<DownloadCall> self_;  // until the call is done
     std::string owner_;

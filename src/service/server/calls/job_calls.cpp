@@ -10,7 +10,7 @@
 #include "octopair/error.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 #include "service/server/store/detached_jobs.hpp"
 #include "service/server/store/state_folder.hpp"
 
@@ -22,10 +22,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Calls `answer` with the caller's name, and ends the call with what it throws, if it does.
 template <typename Answer>
-grpc::ServerUnaryReactor* answer_at_once(Host& host, grpc::CallbackServerContext& context, Answer&& answer) {
+grpc::ServerUnaryReactor* answer_at_once(ServerContext& server, grpc::CallbackServerContext& context, Answer&& answer) {
     grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
     std::string owner;
-    grpc::Status status = host.let_in(context, owner);
+    grpc::Status status = server.let_in(context, owner);
     try {
         if (status.ok()) answer(owner);
     } catch (...) {
@@ -38,10 +38,10 @@ grpc::ServerUnaryReactor* answer_at_once(Host& host, grpc::CallbackServerContext
 /// Answers when the job has ended, the time is over, or the server goes down.
 class WaitCall final : public grpc::ServerUnaryReactor,
                        public JobWatcher,
-                       public Overseen,
+                       public Watched,
                        public std::enable_shared_from_this<WaitCall> {
 public:
-    WaitCall(Host& host, v1::JobReport& response) : host_(host), response_(response) {}
+    WaitCall(ServerContext& server, v1::JobReport& response) : server_(server), response_(response) {}
 
     struct Terms {
         std::string id;
@@ -52,10 +52,10 @@ public:
     void start(const grpc::CallbackServerContext& context, const Terms& terms) {
         self_ = shared_from_this();
         std::string owner;
-        const grpc::Status status = host_.let_in(context, owner);
+        const grpc::Status status = server_.let_in(context, owner);
         if (!status.ok()) return end(status);
         try {
-            job_ = host_.jobs.find(owner, terms.id);
+            job_ = server_.jobs.find(owner, terms.id);
         } catch (...) {
             return end(status_of_exception());
         }
@@ -64,7 +64,7 @@ public:
         until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
         job_->watch(self_);
         if (terms.cancel) job_->cancel();
-        host_.overseer.watch(self_);
+        server_.watchdog.watch(self_);
         if (seconds == 0) return answer();
         job_changed();
     }
@@ -75,7 +75,7 @@ public:
 
     void look(Clock::time_point now) override {
         if (now >= until_) return answer();
-        if (host_.draining) end({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
+        if (server_.draining) end({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
     }
 
     void OnCancel() override { end({grpc::StatusCode::CANCELLED, "cancelled"}); }
@@ -89,7 +89,7 @@ private:
 
     void answer() {
         if (!is_first()) return;
-        response_ = host_.report(*job_);
+        response_ = server_.report(*job_);
         Finish(grpc::Status::OK);
     }
 
@@ -97,7 +97,7 @@ private:
         if (is_first()) Finish(status);
     }
 
-    Host& host_;
+    ServerContext& server_;
     v1::JobReport& response_;
     std::shared_ptr<WaitCall> self_;  // until the call is done
     std::shared_ptr<ServerJob> job_;
@@ -108,35 +108,35 @@ private:
 
 }  // namespace
 
-grpc::ServerUnaryReactor* start_status(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                        v1::JobReport& response) {
     return answer_at_once(
-        host, context, [&](const std::string& owner) { response = host.report(*host.jobs.find(owner, request.id())); });
+        server, context, [&](const std::string& owner) { response = server.report(*server.jobs.find(owner, request.id())); });
 }
 
-grpc::ServerUnaryReactor* start_wait(Host& host, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
+grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
                                      v1::JobReport& response) {
-    const auto call = std::make_shared<WaitCall>(host, response);
+    const auto call = std::make_shared<WaitCall>(server, response);
     call->start(context, {request.id(), request.seconds()});
     return call.get();
 }
 
-grpc::ServerUnaryReactor* start_cancel(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                        v1::JobReport& response) {
     constexpr double seconds = 10;
-    const auto call = std::make_shared<WaitCall>(host, response);
+    const auto call = std::make_shared<WaitCall>(server, response);
     call->start(context, {request.id(), seconds, true});
     return call.get();
 }
 
-grpc::ServerUnaryReactor* start_release(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                         v1::JobReport& response) {
     grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
     std::string owner;
-    const grpc::Status status = host.let_in(context, owner);
+    const grpc::Status status = server.let_in(context, owner);
     std::shared_ptr<ServerJob> job;
     try {
-        if (status.ok()) job = host.jobs.find(owner, request.id());
+        if (status.ok()) job = server.jobs.find(owner, request.id());
         if (job && !job->detached()) throw Error(ErrorCode::bad_input, "job " + request.id() + " is not detached");
         if (job && !job->ended()) throw Error(ErrorCode::bad_input, "job " + request.id() + " has not ended");
     } catch (...) {
@@ -147,22 +147,22 @@ grpc::ServerUnaryReactor* start_release(Host& host, grpc::CallbackServerContext&
         reactor->Finish(status);
         return reactor;
     }
-    host.state->errands().add([&host, &response, job, reactor] {
-        response = host.report(*job);
-        host.detached->release(*job);
+    server.state->disk_queue().add([&server, &response, job, reactor] {
+        response = server.report(*job);
+        server.detached->release(*job);
         reactor->Finish(grpc::Status::OK);
     });
     return reactor;
 }
 
-grpc::ServerUnaryReactor* start_list(Host& host, grpc::CallbackServerContext& context, const v1::ListRequest& request,
+grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context, const v1::ListRequest& request,
                                      v1::JobList& response) {
     constexpr std::size_t most = 1000;  // they fit into a message
-    return answer_at_once(host, context, [&](const std::string& owner) {
-        auto jobs = host.jobs.of(owner, request.after(), most + 1);
+    return answer_at_once(server, context, [&](const std::string& owner) {
+        auto jobs = server.jobs.of(owner, request.after(), most + 1);
         response.set_more(jobs.size() > most);
         jobs.resize(std::min(jobs.size(), most));
-        for (const auto& job : jobs) *response.add_jobs() = host.report(*job);
+        for (const auto& job : jobs) *response.add_jobs() = server.report(*job);
     });
 }
 

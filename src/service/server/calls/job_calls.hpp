@@ -14,18 +14,18 @@ class WaitRequest;
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-grpc::ServerUnaryReactor* start_status(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                        v1::JobReport& response);
-grpc::ServerUnaryReactor* start_wait(Host& host, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
+grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
                                      v1::JobReport& response);
 /// Returns when the job has ended, or after some seconds.
-grpc::ServerUnaryReactor* start_cancel(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                        v1::JobReport& response);
-grpc::ServerUnaryReactor* start_release(Host& host, grpc::CallbackServerContext& context, const v1::JobName& request,
+grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
                                         v1::JobReport& response);
-grpc::ServerUnaryReactor* start_list(Host& host, grpc::CallbackServerContext& context, const v1::ListRequest& request,
+grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context, const v1::ListRequest& request,
                                      v1::JobList& response);
 
 }  // namespace octopair::service

@@ -5,7 +5,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/server/calls/download_call.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
@@ -19,12 +19,12 @@ public:
     void start(grpc::ByteBuffer request) {
         if (!begin(shared_from_this())) return;
         try {
-            host().ledger.received(request.Length());
+            server().server_log.received(request.Length());
             v1::ResultRequest asked;
             if (!unpack(request, asked)) throw Error(ErrorCode::bad_input, "a message that is none");
-            job_ = host().jobs.find(owner(), asked.id());
+            job_ = server().jobs.find(owner(), asked.id());
             check(asked);
-            piece_ = host().memory.take(piece_bytes);  // what is on its way to a client, even one that does not read
+            piece_ = server().memory.take(piece_bytes);  // what is on its way to a client, even one that does not read
             send(job_, asked.offset());
         } catch (...) {
             refuse(status_of_exception());
@@ -43,19 +43,19 @@ private:
     }
 
     void waits(bool) override {
-        if (!host().draining || !job_ || job_->ended()) return;
+        if (!server().draining || !job_ || job_->ended()) return;
         refuse({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
     }
 
     std::shared_ptr<ServerJob> job_;
-    Budget::Share piece_;
+    Budget::Reservation piece_;
 };
 
 }  // namespace
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(ServerContext& server, grpc::CallbackServerContext& context,
                                                          const grpc::ByteBuffer& request) {
-    const auto call = std::make_shared<ResultCall>(host, context);
+    const auto call = std::make_shared<ResultCall>(server, context);
     call->start(request);
     return call.get();
 }

@@ -7,9 +7,9 @@
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(ServerContext& server, grpc::CallbackServerContext& context,
                                                          const grpc::ByteBuffer& request);
 
 }  // namespace octopair::service

@@ -17,7 +17,7 @@
 #include "service/protocol/status.hpp"
 #include "service/server/calls/server_scene.hpp"
 #include "service/server/calls/uploaded_calls.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
@@ -39,26 +39,26 @@ grpc::Slice piece_of(Bytes first, Bytes second, std::size_t offset) {
 }
 
 /// A thread of its own takes the messages, steps and answers; it alone asks gRPC for anything after the first read. gRPC's
-/// threads tell it what has come to pass, and the overseer when it has waited too long.
+/// threads tell it what has come to pass, and the watchdog when it has waited too long.
 class SceneCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
-                        public Overseen,
+                        public Watched,
                         public std::enable_shared_from_this<SceneCall> {
 public:
-    SceneCall(Host& host, grpc::CallbackServerContext& context) : host_(host), context_(context) {}
+    SceneCall(ServerContext& server, grpc::CallbackServerContext& context) : server_(server), context_(context) {}
 
     void start() {
         self_ = shared_from_this();
-        const grpc::Status status = host_.let_in(context_, owner_);
+        const grpc::Status status = server_.let_in(context_, owner_);
         if (!status.ok()) return Finish(status);
         try {
-            place_ = host_.places.enter(owner_);
-            host_.threads.start([call = self_] { call->work(); });
+            place_ = server_.places.enter(owner_);
+            server_.threads.start([call = self_] { call->work(); });
         } catch (const LimitError& error) {
             return Finish(refused(error));
         } catch (...) {
             return Finish(status_of_exception());
         }
-        host_.overseer.watch(self_);
+        server_.watchdog.watch(self_);
     }
 
     void OnReadDone(bool ok) override {
@@ -122,14 +122,14 @@ private:
     bool take_message() {
         if (!wait_for_message()) return false;
         StartRead(&in_);  // the next one comes while this one is worked on
-        host_.ledger.received(message_.Length());
+        server_.server_log.received(message_.Length());
         v1::SceneUpload small;
         if (!unpack(message_, small, [this](Bytes piece) { calls_.append(piece); })) {
             throw Error(ErrorCode::bad_input, "a message that is none");
         }
         message_.Clear();
         for (RecordedCall call; calls_.next(call);) {
-            if (!scene_) scene_.emplace(host_, calls_.options());
+            if (!scene_) scene_.emplace(server_, calls_.options());
             call.kind == RecordKind::step ? step() : scene_->make(call);
             in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
         }
@@ -191,7 +191,7 @@ private:
             const std::lock_guard lock(mutex_);
             begin(Doing::writing);
         }
-        host_.ledger.sent(out_.Length());
+        server_.server_log.sent(out_.Length());
         StartWrite(&out_);
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return doing_ != Doing::writing; });
@@ -221,15 +221,15 @@ private:
     /// With the lock held: what is being done has taken too long, or must not go on.
     bool is_late(Clock::time_point now) const {
         const auto took = now - since_;
-        const double most_seconds = host_.options.limits.job_seconds;
+        const double most_seconds = server_.options.limits.job_seconds;
         switch (doing_) {
             case Doing::working:
                 return false;
             case Doing::idle:
-                return host_.draining;
+                return server_.draining;
             case Doing::waiting:
             case Doing::writing:
-                return took > host_.options.stall;
+                return took > server_.options.stall;
             case Doing::stepping:
                 return most_seconds > 0 && std::chrono::duration<double>(took).count() > most_seconds;
         }
@@ -237,20 +237,20 @@ private:
     }
 
     grpc::Status refused(const LimitError& error) {
-        host_.ledger.limit_refused(owner_, error);
+        server_.server_log.limit_refused(owner_, error);
         return status_of(error);
     }
 
     grpc::Status stalled() {
-        const auto seconds = std::uint64_t(host_.options.stall.count());
+        const auto seconds = std::uint64_t(server_.options.stall.count());
         return refused(
             LimitError("stall_seconds", seconds,
                        "stall_seconds: nothing came for " + std::to_string(seconds) + " s in the middle of a frame"));
     }
 
-    grpc::Status stepped_too_long() { return refused(ran_too_long("the step", host_.options.limits.job_seconds)); }
+    grpc::Status stepped_too_long() { return refused(ran_too_long("the step", server_.options.limits.job_seconds)); }
 
-    Host& host_;
+    ServerContext& server_;
     grpc::CallbackServerContext& context_;
     std::shared_ptr<SceneCall> self_;  // until the call is done
     std::string owner_;
@@ -274,9 +274,9 @@ private:
 
 }  // namespace
 
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(Host& host,
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(ServerContext& server,
                                                                          grpc::CallbackServerContext& context) {
-    const auto call = std::make_shared<SceneCall>(host, context);
+    const auto call = std::make_shared<SceneCall>(server, context);
     call->start();
     return call.get();
 }

@@ -6,9 +6,9 @@
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(Host& host,
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(ServerContext& server,
                                                                          grpc::CallbackServerContext& context);
 
 }  // namespace octopair::service

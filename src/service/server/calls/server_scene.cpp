@@ -16,11 +16,11 @@ constexpr std::uint64_t own_bytes = std::uint64_t(4) << 20;
 
 }  // namespace
 
-ServerScene::ServerScene(Host& host, const SceneOptions& options)
-    : host_(host), memory_(host.memory.take(own_bytes)), scene_(within_limits(options)) {}
+ServerScene::ServerScene(ServerContext& server, const SceneOptions& options)
+    : server_(server), memory_(server.memory.take(own_bytes)), scene_(within_limits(options)) {}
 
 SceneOptions ServerScene::within_limits(SceneOptions options) {
-    options.threads = host_.options.lanes.large;
+    options.threads = server_.options.engine_widths.large;
     options.room_for_pairs = [this](std::uint64_t bytes) { memory_.grow(bytes); };
     return options;
 }
@@ -55,7 +55,7 @@ void ServerScene::add(const RecordedCall& call) {
 void ServerScene::make_room(std::uint64_t objects) {
     const std::uint64_t free = scene_.indices() - scene_.size() - removed_;
     const std::uint64_t fresh = objects - std::min(objects, free), all = scene_.indices() + fresh;
-    const std::uint64_t allowed = host_.options.limits.objects;
+    const std::uint64_t allowed = server_.options.limits.objects;
     if (allowed > 0 && all > allowed) {
         throw LimitError("objects", allowed,
                          "a scene of " + std::to_string(all) + " objects; at most " + std::to_string(allowed));
@@ -66,7 +66,7 @@ void ServerScene::make_room(std::uint64_t objects) {
 const StepResult& ServerScene::step(const std::stop_token& stop) {
     const StepResult& result = scene_.step(stop);
     removed_ = 0;
-    const std::uint64_t most = host_.options.limits.pairs;
+    const std::uint64_t most = server_.options.limits.pairs;
     if (most > 0 && result.pairs() > most) {
         throw LimitError("pairs", most,
                          std::to_string(result.pairs()) + " pairs in a scene; at most " + std::to_string(most));

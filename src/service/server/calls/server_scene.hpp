@@ -7,7 +7,7 @@
 
 #include "octopair/scene.hpp"
 #include "scene/recording/recording_reader.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
@@ -15,7 +15,7 @@ namespace octopair::service {
 /// step has found them.
 class ServerScene {
 public:
-    ServerScene(Host& host, const SceneOptions& options);
+    ServerScene(ServerContext& server, const SceneOptions& options);
     ServerScene(const ServerScene&) = delete;
     ServerScene& operator=(const ServerScene&) = delete;
 
@@ -28,8 +28,8 @@ private:
     void add(const RecordedCall& call);
     void make_room(std::uint64_t objects);
 
-    Host& host_;
-    Budget::Share memory_;
+    ServerContext& server_;
+    Budget::Reservation memory_;
     Scene scene_;
     std::uint64_t removed_ = 0;  // since the last step: their indices are not free yet
     std::vector<ObjectId> ids_;  // of an addition

@@ -9,7 +9,7 @@
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/calls/upload.hpp"
-#include "service/server/host.hpp"
+#include "service/server/server_context.hpp"
 #include "service/server/store/detached_jobs.hpp"
 #include "service/server/store/state_folder.hpp"
 
@@ -21,23 +21,23 @@ using Clock = std::chrono::steady_clock;
 
 /// Reads the upload, then has it committed by an errand, which answers. Whatever ends the call first, ends it alone.
 class SubmitCall final : public grpc::ServerReadReactor<grpc::ByteBuffer>,
-                         public Overseen,
+                         public Watched,
                          public std::enable_shared_from_this<SubmitCall> {
 public:
-    SubmitCall(Host& host, grpc::ByteBuffer& response)
-        : host_(host), response_(response), upload_([this](v1::JobSpec spec) -> InputTarget& {
-              submission_ = host_.detached->begin(owner_, std::move(spec));
+    SubmitCall(ServerContext& server, grpc::ByteBuffer& response)
+        : server_(server), response_(response), upload_([this](v1::JobSpec spec) -> InputTarget& {
+              submission_ = server_.detached->begin(owner_, std::move(spec));
               return *submission_.upload;
           }) {}
 
     void start(const grpc::CallbackServerContext& context) {
         self_ = shared_from_this();
-        const grpc::Status status = host_.let_in(context, owner_);
+        const grpc::Status status = server_.let_in(context, owner_);
         if (!status.ok()) return end(status);
-        if (!host_.detached) {
+        if (!server_.detached) {
             return end(status_of(Error(ErrorCode::usage, "the server has no state folder: it takes no detached jobs")));
         }
-        host_.overseer.watch(self_);
+        server_.watchdog.watch(self_);
         StartRead(&in_);
     }
 
@@ -47,7 +47,7 @@ public:
                 upload_.finish();
                 return commit();
             }
-            host_.ledger.received(in_.Length());
+            server_.server_log.received(in_.Length());
             upload_.take(in_);
         } catch (...) {
             return end(status_of_exception());
@@ -65,9 +65,9 @@ public:
     void look(Clock::time_point now) override {
         {
             const std::lock_guard lock(mutex_);
-            if (ended_ || committing_ || now - moved_ < host_.options.stall) return;
+            if (ended_ || committing_ || now - moved_ < server_.options.stall) return;
         }
-        end_unless_committing(host_.refuse_stalled(owner_));
+        end_unless_committing(server_.refuse_stalled(owner_));
     }
 
 private:
@@ -77,16 +77,16 @@ private:
             if (ended_) return;
             committing_ = true;
         }
-        host_.state->errands().add([self = shared_from_this()] { self->commit_now(); });
+        server_.state->disk_queue().add([self = shared_from_this()] { self->commit_now(); });
     }
 
     void commit_now() {
         try {
-            const auto job = host_.detached->commit(submission_);
+            const auto job = server_.detached->commit(submission_);
             // It was released while it was submitted again: the client does so once more.
             if (!job) return end({grpc::StatusCode::UNAVAILABLE, "the job was released meanwhile"});
-            response_ = pack(host_.report(*job));
-            host_.ledger.sent(response_.Length());
+            response_ = pack(server_.report(*job));
+            server_.server_log.sent(response_.Length());
             end(grpc::Status::OK);
         } catch (...) {
             end(status_of_exception());
@@ -109,7 +109,7 @@ private:
         Finish(status);
     }
 
-    Host& host_;
+    ServerContext& server_;
     grpc::ByteBuffer& response_;
     std::shared_ptr<SubmitCall> self_;  // until the call is done
     std::string owner_;
@@ -126,9 +126,9 @@ private:
 
 }  // namespace
 
-grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(ServerContext& server, grpc::CallbackServerContext& context,
                                                         grpc::ByteBuffer& response) {
-    const auto call = std::make_shared<SubmitCall>(host, response);
+    const auto call = std::make_shared<SubmitCall>(server, response);
     call->start(context);
     return call.get();
 }

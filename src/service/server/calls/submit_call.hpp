@@ -7,9 +7,9 @@
 
 namespace octopair::service {
 
-class Host;
+class ServerContext;
 
-grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(Host& host, grpc::CallbackServerContext& context,
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(ServerContext& server, grpc::CallbackServerContext& context,
                                                         grpc::ByteBuffer& response);
 
 }  // namespace octopair::service

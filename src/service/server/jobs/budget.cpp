@@ -9,12 +9,12 @@ namespace octopair::service {
 Budget::Budget(std::string limit, std::string unit, std::uint64_t total)
     : limit_(std::move(limit)), unit_(std::move(unit)), total_(total) {}
 
-Budget::Share Budget::take(std::uint64_t amount) {
+Budget::Reservation Budget::take(std::uint64_t amount) {
     add(amount);
     return {*this, amount};
 }
 
-Budget::Share Budget::take_anyway(std::uint64_t amount) {
+Budget::Reservation Budget::take_anyway(std::uint64_t amount) {
     const std::lock_guard lock(mutex_);
     taken_ += amount;
     return {*this, amount};
@@ -47,13 +47,13 @@ void Budget::give(std::uint64_t amount) noexcept {
     taken_ -= amount;
 }
 
-void Budget::Share::grow(std::uint64_t amount) {
+void Budget::Reservation::grow(std::uint64_t amount) {
     if (budget_ == nullptr) return;
     budget_->add(amount);
     amount_ += amount;
 }
 
-void Budget::Share::shrink(std::uint64_t amount) noexcept {
+void Budget::Reservation::shrink(std::uint64_t amount) noexcept {
     if (budget_ == nullptr) return;
     amount = std::min(amount, amount_);
     budget_->give(amount);

@@ -11,17 +11,17 @@ namespace octopair::service {
 class Budget {
 public:
     /// Taken from a budget; given back when it goes.
-    class Share {
+    class Reservation {
     public:
-        Share() = default;
-        Share(Share&& other) noexcept
+        Reservation() = default;
+        Reservation(Reservation&& other) noexcept
             : budget_(std::exchange(other.budget_, nullptr)), amount_(std::exchange(other.amount_, 0)) {}
-        Share& operator=(Share&& other) noexcept {
+        Reservation& operator=(Reservation&& other) noexcept {
             std::swap(budget_, other.budget_);
             std::swap(amount_, other.amount_);
             return *this;
         }
-        ~Share() { give_back(); }
+        ~Reservation() { give_back(); }
 
         std::uint64_t amount() const { return amount_; }
         /// Throws as Budget::take.
@@ -31,7 +31,7 @@ public:
 
     private:
         friend class Budget;
-        Share(Budget& budget, std::uint64_t amount) : budget_(&budget), amount_(amount) {}
+        Reservation(Budget& budget, std::uint64_t amount) : budget_(&budget), amount_(amount) {}
 
         Budget* budget_ = nullptr;
         std::uint64_t amount_ = 0;
@@ -41,9 +41,9 @@ public:
     Budget(std::string limit, std::string unit, std::uint64_t total);
 
     /// Throws a LimitError if more than there is would be taken. Thread-safe, as all here.
-    Share take(std::uint64_t amount);
+    Reservation take(std::uint64_t amount);
     /// Even if there is less: of what was taken before this budget was made.
-    Share take_anyway(std::uint64_t amount);
+    Reservation take_anyway(std::uint64_t amount);
     /// Throws a LimitError if take would always do, whoever gives back.
     void check(std::uint64_t amount) const;
     std::uint64_t taken() const;

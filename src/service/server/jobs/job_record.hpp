@@ -28,7 +28,7 @@ public:
     /// Of input and options.
     virtual std::string hash() const = 0;
     /// What the job takes when it runs; none: there is not as much now.
-    virtual std::optional<Budget::Share> ask_memory() = 0;
+    virtual std::optional<Budget::Reservation> ask_memory() = 0;
     /// Throws Error{io_failed} for a file that is damaged, Error{cancelled} on a stop.
     virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
     /// When it returns, how the job ended lasts. Throws Error{io_failed}.

@@ -9,7 +9,7 @@ ClientCounts::ClientCounts(std::uint64_t most, std::uint64_t most_each)
     : all_("jobs", "places for jobs", most), most_each_(most_each) {}
 
 ClientCounts::Place ClientCounts::enter(const std::string& owner) {
-    auto share = std::make_shared<Budget::Share>(all_.take(1));
+    auto share = std::make_shared<Budget::Reservation>(all_.take(1));
     count_one_more(owner);
     // If there is no memory for it, the deleter runs here: so not with the lock held.
     Place place;

@@ -46,7 +46,7 @@ void PairsInMemory::open_piece() {
     const std::size_t had = open_.size() / sizeof(Pair);
     const bool grow = full_.empty() && had < piece_pairs;
     const std::size_t count = grow ? std::clamp(4 * had, small_pairs, piece_pairs) : piece_pairs;
-    share_.grow((grow ? count - had : count) * sizeof(Pair));
+    reservation_.grow((grow ? count - had : count) * sizeof(Pair));
     grpc::Slice larger = make_slice(count * sizeof(Pair));
     if (grow) {
         std::copy_n(room_in(open_).begin(), used_ * sizeof(Pair), room_in(larger).begin());

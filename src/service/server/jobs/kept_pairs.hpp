@@ -35,7 +35,7 @@ public:
 class PairsInMemory final : public KeptPairs {
 public:
     /// Throws a LimitError "pairs" beyond `most`; 0: there is no such limit.
-    PairsInMemory(Budget& memory, std::uint64_t most) : most_(most), share_(memory.take(0)) {}
+    PairsInMemory(Budget& memory, std::uint64_t most) : most_(most), reservation_(memory.take(0)) {}
 
     void append(std::span<const Pair> pairs) override;
     void finish() override;
@@ -48,7 +48,7 @@ private:
 
     const std::uint64_t most_;
     mutable std::mutex mutex_;
-    Budget::Share share_;
+    Budget::Reservation reservation_;
     std::vector<grpc::Slice> full_;  // a piece each, but for the last when finished
     grpc::Slice open_;               // the appending thread's
     std::size_t used_ = 0;           // pairs in it

@@ -25,7 +25,7 @@
 #include "service/server/jobs/job_record.hpp"
 #include "service/server/jobs/job_table.hpp"
 #include "service/server/jobs/kept_pairs.hpp"
-#include "service/server/jobs/overseer.hpp"
+#include "service/server/jobs/watchdog.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
 
 namespace octopair::service {
@@ -37,7 +37,7 @@ public:
     virtual void job_changed() = 0;
 };
 
-class ServerJob final : public Overseen, public std::enable_shared_from_this<ServerJob> {
+class ServerJob final : public Watched, public std::enable_shared_from_this<ServerJob> {
 public:
     using Clock = std::chrono::steady_clock;
 
@@ -47,7 +47,7 @@ public:
         std::unique_ptr<UploadedInput> input;  ///< of a detached job: while it runs
         std::shared_ptr<JobRecord> record;     ///< of a detached job
         std::shared_ptr<KeptPairs> pairs;
-        Budget::Share memory;                                  ///< for the input and for finding the pairs
+        Budget::Reservation memory;                                  ///< for the input and for finding the pairs
         ClientCounts::Place place;                             ///< until it has ended
         double most_seconds = 0;                               ///< that it may run; 0: no limit
         std::uint64_t buffer_bytes = std::uint64_t(64) << 20;  ///< for pairs that are put in order

@@ -11,8 +11,8 @@
 
 namespace octopair::service {
 
-UploadedInput::UploadedInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares)
-    : engine_(engine), spares_(spares), joined_(spec.has_second()), hash_(spec) {
+UploadedInput::UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool* array_pool)
+    : engine_(engine), spares_(array_pool), joined_(spec.has_second()), hash_(spec) {
     const std::array<const v1::ObjectSet*, 2> sets = {&spec.first(), &spec.second()};
     for (std::size_t i = 0; i < sets.size(); ++i) {
         arrays_[2 * i] = make_room(*sets[i], sets_[i]);

@@ -10,7 +10,7 @@
 #include "octopair/engine.hpp"
 #include "service/protocol/job_hash.hpp"
 #include "service/server/jobs/input_target.hpp"
-#include "service/server/jobs/spare_boxes.hpp"
+#include "service/server/jobs/array_pool.hpp"
 
 namespace octopair::v1 {
 class JobSpec;
@@ -23,7 +23,7 @@ class UploadedInput final : public InputTarget {
 public:
     /// Room for what `spec` says, which was checked; the boxes lie where `engine` reads them, in spare arrays if there are
     /// such, and become spare ones. Throws Error.
-    UploadedInput(const v1::JobSpec& spec, Engine& engine, SpareBoxes* spares = nullptr);
+    UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool* array_pool = nullptr);
     UploadedInput(const UploadedInput&) = delete;
     UploadedInput& operator=(const UploadedInput&) = delete;
     ~UploadedInput() override;
@@ -48,7 +48,7 @@ private:
     std::span<std::byte> make_boxes(std::uint64_t count, Set& made);
 
     Engine& engine_;
-    SpareBoxes* const spares_;
+    ArrayPool* const spares_;
     std::array<Set, 2> sets_;
     bool joined_;
     JobHash hash_;

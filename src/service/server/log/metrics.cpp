@@ -27,7 +27,7 @@ using prometheus::Gauge;
 /// In the order of v1::JobState.
 constexpr std::array<const char*, 3> states = {"uploading", "queued", "running"};
 constexpr std::array<const char*, 3> outcomes = {"done", "failed", "cancelled"};
-constexpr std::array<const char*, 4> steps = {"encode", "sort", "merge", "scan"};
+constexpr std::array<const char*, 4> steps = {"encode", "count", "scatter", "scan"};
 
 /// As civetweb takes it, which knows no names.
 std::string numeric(const Address& address) {
@@ -130,7 +130,7 @@ void Metrics::job_ended(const v1::JobReport& report, double seconds) {
     if (seconds > 0) store_->seconds.Observe(seconds);
     if (!report.failure().limit().empty()) refused(report.failure().limit());
     const v1::Summary& summary = report.summary();
-    const std::array<double, 4> taken = {summary.encode_seconds(), summary.sort_seconds(), summary.merge_seconds(),
+    const std::array<double, 4> taken = {summary.encode_seconds(), summary.count_seconds(), summary.scatter_seconds(),
                                          summary.scan_seconds()};
     for (std::size_t i = 0; i < taken.size(); ++i) store_->step_seconds.at(i)->Increment(taken.at(i));
 }

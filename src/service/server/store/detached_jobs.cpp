@@ -47,7 +47,7 @@ void remove_outlived(std::vector<StateFolder::Found>& jobs) {
 }  // namespace
 
 PairsInFile::Place DetachedJobs::pairs_of(const std::string& base, const std::string& hash) const {
-    return {base + ".result", hash, host_.state->disk(), host_.options.limits.pairs};
+    return {base + ".result", hash, server_.state->disk(), server_.options.limits.pairs};
 }
 
 std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, ClientCounts::Place place) const {
@@ -57,12 +57,12 @@ std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, Client
     job.pairs = parts.pairs;
     job.place = std::move(place);
     job.record = std::make_shared<StoredJob>(std::move(parts));
-    return host_.make_job(std::move(job));
+    return server_.make_job(std::move(job));
 }
 
 void DetachedJobs::restore() {
     std::uint64_t queued = 0, ended = 0;
-    std::vector<StateFolder::Found> jobs = host_.state->find_jobs();
+    std::vector<StateFolder::Found> jobs = server_.state->find_jobs();
     remove_outlived(jobs);
     for (StateFolder::Found& found : jobs) {
         try {
@@ -70,12 +70,12 @@ void DetachedJobs::restore() {
             restore(std::move(found));
             ++(is_ended ? ended : queued);
         } catch (const Error& error) {
-            log_text(*host_.log, LogLevel::error,
+            log_text(*server_.log, LogLevel::error,
                      std::string("a job of the state folder is left out: ") + error.what());
         }
     }
     if (queued + ended == 0) return;
-    log_text(*host_.log, LogLevel::info,
+    log_text(*server_.log, LogLevel::info,
              "detached jobs: " + std::to_string(queued) + " queued again, " + std::to_string(ended) + " have ended");
 }
 
@@ -85,66 +85,66 @@ void DetachedJobs::restore(StateFolder::Found found) {
         damage = Error(ErrorCode::engine_failed,
                        found.base + ".job: submitted to another version of octopair, which did not come to it");
     }
-    const std::uint64_t memory_bytes = host_.memory_of(found.stored.spec);
+    const std::uint64_t memory_bytes = server_.memory_of(found.stored.spec);
     if (!found.result && !damage) {
         try {
-            host_.check_limits(found.stored.spec);
-            host_.memory.check(memory_bytes);
+            server_.check_limits(found.stored.spec);
+            server_.memory.check(memory_bytes);
         } catch (const LimitError& limit) {
             damage = limit;  // as long as this server's limits hold
         }
     }
     const std::string name = "job " + found.stored.spec.id();
-    if (damage) log_text(*host_.log, LogLevel::error, name + ": " + damage->what());
+    if (damage) log_text(*server_.log, LogLevel::error, name + ": " + damage->what());
     auto pairs = found.result ? std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash), *found.result,
                                                               std::move(found.result_disk))
                               : std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash));
     ClientCounts::Place place;
     if (!found.result && !damage) {
         try {
-            place = host_.places.enter(found.stored.owner);
+            place = server_.places.enter(found.stored.owner);
         } catch (const LimitError&) {
-            log_text(*host_.log, LogLevel::warning, name + ": one more than the limits of today allow");
+            log_text(*server_.log, LogLevel::warning, name + ": one more than the limits of today allow");
         }
     }
     const v1::JobReport ending =
         damage ? report_of(found.stored, *damage) : found.result.value_or(StoredResult()).ending;
     const bool ended = damage || found.result;
-    const auto job = make_job({*host_.state, found.base, std::move(found.stored), std::move(found.disk),
-                               std::move(pairs), host_.memory, memory_bytes},
+    const auto job = make_job({*server_.state, found.base, std::move(found.stored), std::move(found.disk),
+                               std::move(pairs), server_.memory, memory_bytes},
                               std::move(place));
     ended ? job->set_ended(ending) : set_queued(*job);
-    (void)host_.jobs.enter(job);
-    if (!ended) host_.queue(job);
+    (void)server_.jobs.enter(job);
+    if (!ended) server_.queue(job);
 }
 
 Submission DetachedJobs::begin(const std::string& owner, v1::JobSpec spec) {
-    return host_.within_limits(owner, [&] { return begin_job(owner, std::move(spec)); });
+    return server_.within_limits(owner, [&] { return begin_job(owner, std::move(spec)); });
 }
 
 Submission DetachedJobs::begin_job(const std::string& owner, v1::JobSpec spec) {
     check_id(spec.id());
     spec.clear_offset();
-    host_.check_limits(spec);
-    host_.memory.check(host_.memory_of(spec));
+    server_.check_limits(spec);
+    server_.memory.check(server_.memory_of(spec));
     StoredSpec stored;
     stored.owner = owner;
     stored.algorithm = algorithm_version;
     stored.spec = std::move(spec);
     Submission submission;
-    if (host_.jobs.look_up(owner, stored.spec.id())) {
+    if (server_.jobs.look_up(owner, stored.spec.id())) {
         submission.upload = std::make_unique<StoredUpload>(std::move(stored));
         return submission;
     }
-    submission.place = host_.places.enter(owner);
-    submission.upload = std::make_unique<StoredUpload>(*host_.state, std::move(stored));
+    submission.place = server_.places.enter(owner);
+    submission.upload = std::make_unique<StoredUpload>(*server_.state, std::move(stored));
     return submission;
 }
 
 /// The job that was submitted before, if there is one.
 std::shared_ptr<ServerJob> DetachedJobs::find_same(const StoredUpload& upload) const {
     const std::string &owner = upload.stored().owner, &id = upload.stored().spec.id();
-    std::shared_ptr<ServerJob> known = host_.jobs.look_up(owner, id);
+    std::shared_ptr<ServerJob> known = server_.jobs.look_up(owner, id);
     if (known && (!known->detached() || known->input_hash() != upload.hash())) {
         throw Error(ErrorCode::bad_input, "job " + id + " is there already, with other input or options");
     }
@@ -152,36 +152,36 @@ std::shared_ptr<ServerJob> DetachedJobs::find_same(const StoredUpload& upload) c
 }
 
 void DetachedJobs::set_queued(ServerJob& job) const {
-    host_.ledger.job_moved(job, {}, v1::UPLOADING);
+    server_.server_log.job_moved(job, {}, v1::UPLOADING);
     job.queue();
 }
 
-/// Only errands enter detached jobs: none is entered between looking for it and entering.
+/// Only disk_queue enter detached jobs: none is entered between looking for it and entering.
 std::shared_ptr<ServerJob> DetachedJobs::commit(Submission& submission) {
     StoredUpload& upload = *submission.upload;
     if (auto known = find_same(upload)) return known;
     if (!upload.has_file()) return {};
     const std::string base = upload.commit();
     StoredSpec stored = upload.stored();
-    const std::uint64_t memory_bytes = host_.memory_of(stored.spec);
+    const std::uint64_t memory_bytes = server_.memory_of(stored.spec);
     auto pairs = std::make_shared<PairsInFile>(pairs_of(base, stored.hash));
     auto job = make_job(
-        {*host_.state, base, std::move(stored), upload.take_disk(), std::move(pairs), host_.memory, memory_bytes},
+        {*server_.state, base, std::move(stored), upload.take_disk(), std::move(pairs), server_.memory, memory_bytes},
         std::move(submission.place));
     set_queued(*job);
     try {
-        (void)host_.jobs.enter(job);
+        (void)server_.jobs.enter(job);
     } catch (...) {
-        host_.ledger.job_moved(*job, v1::QUEUED, v1::CANCELLED);
+        server_.server_log.job_moved(*job, v1::QUEUED, v1::CANCELLED);
         throw;
     }
     upload.hand_over();
-    host_.queue(job);
+    server_.queue(job);
     return job;
 }
 
 void DetachedJobs::release(const ServerJob& job) {
-    host_.jobs.remove(job);
+    server_.jobs.remove(job);
     static_cast<StoredJob&>(*job.record()).remove();
 }
 
@@ -189,16 +189,16 @@ void DetachedJobs::look(std::chrono::steady_clock::time_point now) {
     constexpr std::chrono::milliseconds apart(500);
     if (now - looked_ < apart) return;
     looked_ = now;
-    for (const auto& job : host_.jobs.all()) {
+    for (const auto& job : server_.jobs.all()) {
         const auto ended = job->ended_at();
-        if (!job->detached() || !ended || now - *ended < host_.options.keep) continue;
-        host_.jobs.remove(*job);
-        host_.state->errands().add([job] { static_cast<StoredJob&>(*job->record()).remove(); });
+        if (!job->detached() || !ended || now - *ended < server_.options.keep) continue;
+        server_.jobs.remove(*job);
+        server_.state->disk_queue().add([job] { static_cast<StoredJob&>(*job->record()).remove(); });
     }
 }
 
 void DetachedJobs::abandon() {
-    for (const auto& job : host_.jobs.all()) {
+    for (const auto& job : server_.jobs.all()) {
         if (job->detached()) job->abandon();
     }
 }

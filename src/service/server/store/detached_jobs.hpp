@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "service/server/host.hpp"
-#include "service/server/jobs/overseer.hpp"
+#include "service/server/server_context.hpp"
+#include "service/server/jobs/watchdog.hpp"
 #include "service/server/store/stored_job.hpp"
 
 namespace octopair::service {
@@ -17,9 +17,9 @@ struct Submission {
     std::unique_ptr<StoredUpload> upload;
 };
 
-class DetachedJobs final : public Overseen {
+class DetachedJobs final : public Watched {
 public:
-    explicit DetachedJobs(Host& host) : host_(host) {}
+    explicit DetachedJobs(ServerContext& server) : server_(server) {}
 
     /// Enters the jobs of the state folder: those without a result are queued again.
     void restore();
@@ -45,8 +45,8 @@ private:
     void set_queued(ServerJob& job) const;
     PairsInFile::Place pairs_of(const std::string& base, const std::string& hash) const;
 
-    Host& host_;
-    std::chrono::steady_clock::time_point looked_{};  // the overseer's
+    ServerContext& server_;
+    std::chrono::steady_clock::time_point looked_{};  // the watchdog's
 };
 
 }  // namespace octopair::service

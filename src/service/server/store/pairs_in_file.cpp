@@ -8,8 +8,8 @@
 
 namespace octopair::service {
 
-PairsInFile::PairsInFile(Place place, StoredResult stored, Budget::Share share)
-    : place_(std::move(place)), share_(std::move(share)), sums_(std::move(stored.sums)), ready_(stored.pairs) {}
+PairsInFile::PairsInFile(Place place, StoredResult stored, Budget::Reservation share)
+    : place_(std::move(place)), reservation_(std::move(share)), sums_(std::move(stored.sums)), ready_(stored.pairs) {}
 
 PairsInFile::~PairsInFile() { discard(); }
 
@@ -37,7 +37,7 @@ void PairsInFile::write_piece() {
     const auto bytes = std::as_bytes(std::as_const(piece_).span().first(used_));
     {
         const std::lock_guard lock(mutex_);
-        share_.grow(bytes.size() + sizeof(std::uint64_t));
+        reservation_.grow(bytes.size() + sizeof(std::uint64_t));
     }
     part_->write(result_head_bytes + ready_ * sizeof(Pair), bytes);
     const std::uint64_t sum = checksum_of(bytes);
@@ -97,7 +97,7 @@ void PairsInFile::discard() noexcept {
     part_.reset();
     sums_.clear();
     ready_ = 0;
-    share_.give_back();
+    reservation_.give_back();
 }
 
 void PairsInFile::seal(const v1::JobReport& ending) {
@@ -114,7 +114,7 @@ void PairsInFile::remove() noexcept {
     const std::lock_guard lock(mutex_);
     removed_ = true;
     remove_file(place_.path);
-    share_.give_back();
+    reservation_.give_back();
 }
 
 }  // namespace octopair::service

@@ -27,9 +27,9 @@ public:
     };
 
     /// Of a job that has not ended.
-    explicit PairsInFile(Place place) : place_(std::move(place)), share_(place_.disk.take(0)) {}
+    explicit PairsInFile(Place place) : place_(std::move(place)), reservation_(place_.disk.take(0)) {}
     /// Of one that has; `share`: what its file takes.
-    PairsInFile(Place place, StoredResult stored, Budget::Share share);
+    PairsInFile(Place place, StoredResult stored, Budget::Reservation share);
     PairsInFile(const PairsInFile&) = delete;
     PairsInFile& operator=(const PairsInFile&) = delete;
     /// Takes away what has no end.
@@ -57,7 +57,7 @@ private:
     std::uint64_t size_ = 0;
 
     mutable std::mutex mutex_;
-    Budget::Share share_;
+    Budget::Reservation reservation_;
     std::shared_ptr<File> part_;  // until it is final
     std::vector<std::uint64_t> sums_;
     std::uint64_t ready_ = 0;

@@ -16,7 +16,7 @@
 #include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "service/server/jobs/budget.hpp"
-#include "service/server/store/errands.hpp"
+#include "service/server/store/disk_queue.hpp"
 #include "service/server/store/state_format.hpp"
 
 namespace octopair::service {
@@ -33,7 +33,7 @@ public:
     struct Found {
         std::string base;  ///< of its paths
         StoredSpec stored;
-        Budget::Share disk, result_disk;
+        Budget::Reservation disk, result_disk;
         std::optional<StoredResult> result;
         std::optional<Error> damage;  ///< of a file: it cannot run, or its result cannot be had
     };
@@ -43,7 +43,7 @@ public:
     /// Of paths of a new job. Thread-safe, as all from here on.
     std::string new_base();
     Budget& disk() { return disk_; }
-    Errands& errands() { return errands_; }
+    DiskQueue& disk_queue() { return disk_queue_; }
     spdlog::logger& log() { return *log_; }
 
 private:
@@ -58,7 +58,7 @@ private:
     Descriptor lock_;
     Budget disk_;
     std::atomic<std::uint64_t> last_ = 0;
-    Errands errands_;  // the last, so that it ends first
+    DiskQueue disk_queue_;  // the last, so that it ends first
 };
 
 }  // namespace octopair::service

@@ -14,7 +14,7 @@
 
 namespace octopair::service {
 
-std::optional<Budget::Share> StoredJob::ask_memory() {
+std::optional<Budget::Reservation> StoredJob::ask_memory() {
     try {
         return parts_.memory.take(parts_.memory_bytes);
     } catch (const LimitError&) {

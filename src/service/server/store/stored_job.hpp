@@ -21,7 +21,7 @@ public:
         StateFolder& folder;
         std::string base;  ///< of the paths: what is before .job and .result
         StoredSpec stored;
-        Budget::Share disk;
+        Budget::Reservation disk;
         std::shared_ptr<PairsInFile> pairs;
         Budget& memory;
         std::uint64_t memory_bytes = 0;  ///< that the job takes when it runs
@@ -33,10 +33,10 @@ public:
     const std::shared_ptr<PairsInFile>& pairs() const { return parts_.pairs; }
 
     std::string hash() const override { return parts_.stored.hash; }
-    std::optional<Budget::Share> ask_memory() override;
+    std::optional<Budget::Reservation> ask_memory() override;
     std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
-    void later(std::function<void()> errand) override { parts_.folder.errands().add(std::move(errand)); }
+    void later(std::function<void()> errand) override { parts_.folder.disk_queue().add(std::move(errand)); }
 
     /// Its files go.
     void remove() noexcept;
@@ -66,7 +66,7 @@ public:
     std::string hash() const { return hash_.digest(); }
     /// When it returns, the job is on the disk. Gives the base of its paths, and what it takes. Throws Error{io_failed}.
     std::string commit();
-    Budget::Share take_disk() { return std::move(disk_); }
+    Budget::Reservation take_disk() { return std::move(disk_); }
     /// What was committed is another's to remove.
     void hand_over() { handed_over_ = true; }
 
@@ -75,7 +75,7 @@ private:
     JobHash hash_;
     std::uint64_t missing_ = 0;
     std::string base_, job_path_, block_;
-    Budget::Share disk_;
+    Budget::Reservation disk_;
     File file_;
     std::uint64_t at_ = 0;
     bool handed_over_ = false;

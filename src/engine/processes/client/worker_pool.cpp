@@ -1,0 +1,347 @@
+#include "engine/processes/client/worker_pool.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "engine/processes/worker_limits.hpp"
+#include "octopair/error.hpp"
+#include "octree/linear_octree.hpp"
+
+namespace octopair {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Pseudo share `preparing - slot`: the worker died before its first share.
+constexpr std::uint64_t preparing = ~std::uint64_t(0);
+
+SharedMemory make_desk(unsigned workers) {
+    SharedMemory memory = SharedMemory::create(ControlBlockLayout::bytes(workers));
+    ControlBlockView::lay_out(memory, workers);
+    return memory;
+}
+
+/// Whether a pass is another attempt at what the one before it was to do: the same shares.
+bool same_work(const Pass& a, const Pass& b) {
+    return a.job == b.job && a.kind == b.kind && a.built == b.built && a.bounds.rows.begin == b.bounds.rows.begin;
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(std::string program, unsigned workers)
+    : program_(std::move(program)), control_memory_(make_desk(workers)), view_(control_memory_), pool_(workers) {
+    for (unsigned slot = 0; slot < workers; ++slot) start(slot);
+}
+
+WorkerPool::~WorkerPool() = default;
+
+std::shared_ptr<Region> WorkerPool::add_region(SharedMemory memory) {
+    auto region = std::make_shared<Region>(std::move(memory));
+    introduce(region);
+    return region;
+}
+
+void WorkerPool::introduce(const std::shared_ptr<Region>& region) {
+    if (region->number != 0) return;
+    region->number = next_region_++;
+    regions_.push_back(region);
+}
+
+WorkerFaults WorkerPool::faults() const {
+    const std::lock_guard lock(faults_mutex_);
+    return faults_;
+}
+
+void WorkerPool::count_fault(std::uint64_t& fault) {
+    const std::lock_guard lock(faults_mutex_);
+    ++fault;
+}
+
+/// Starts a worker for a slot, and gives it the control block.
+void WorkerPool::start(unsigned slot) {
+    Member& member = pool_[slot];
+    std::string how;
+    for (unsigned i = 0; i < worker_limits::max_failed_starts; ++i) {
+        member.process = nullptr;
+        view_.slot(slot).attached.store(0);
+        view_.slot(slot).waits.store(0);
+        view_.slot(slot).command.waiting.store(0);
+        member.process = std::make_unique<WorkerProcess>(program_, slot);
+        member.started_at = Clock::now();
+        if (member.process->send_region(control_region, control_memory_)) return;
+        how = member.process->end();
+    }
+    member.process = nullptr;
+    throw_cannot_start(how);
+}
+
+void WorkerPool::throw_cannot_start(const std::string& how) const {
+    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
+}
+
+/// Replaces the workers that ended between passes, and those that could not be started before.
+void WorkerPool::restart_workers() {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Member& member = pool_[slot];
+        if (member.process != nullptr && member.process->look() == ProcessState::runs) continue;
+        // What it left undone is not wanted any more.
+        view_.slot(slot).asked.store(view_.slot(slot).finished.load());
+        if (member.process != nullptr) {
+            count_fault(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
+        }
+        start(slot);
+    }
+}
+
+/// Gives the control block to a pass.
+void WorkerPool::announce(const Pass& pass) {
+    if (++number_ == 0) ++number_;
+    ControlBlock& control_block = view_.control_block();
+    control_block.pass = pass;
+    control_block.next_block.store(0);
+    control_block.next_run.store(0);
+    control_block.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs(), std::uint64_t(1) << 62)));
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Slot& part = view_.slot(slot);
+        part.outcome = Outcome::none;
+        part.share.store(0);
+        part.preparing.store(1);
+        part.entries_scanned.store(0);
+        part.pages_taken.store(0);
+        part.ring_filled.store(0);
+        part.ring_taken.store(0);
+        part.asked.store(number_);
+        part.command.raise();
+    }
+}
+
+std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
+    if (::getpid() != owner_)
+        throw Error(ErrorCode::usage, "the workers belong to the process that this one was forked from");
+    if (!same_work(pass, last_pass_)) {
+        deaths_by_share_.clear();
+        for (Member& member : pool_) member.deaths_between_shares = 0;
+    }
+    last_pass_ = pass;
+    taking_part_ = pass.workers;
+    // A client that keeps looking would take time from workers that have no other core.
+    looks_ = taking_part_ < std::thread::hardware_concurrency() ? worker_limits::max_spins_for_pass_end : 0;
+    needed_ = regions;
+    failure_ = nullptr;
+    forget_regions();
+    restart_workers();
+    for (unsigned slot = 0; slot < taking_part_; ++slot) send_regions(slot);
+    announce(pass);
+
+    const std::stop_callback wake(watch.stop, [&] { view_.control_block().for_client.raise(); });
+    changed_at_ = Clock::now();
+    Clock::time_point next_check = Clock::now() + worker_limits::check_interval;
+    for (bool over = false; !over;) {
+        const std::uint32_t seen = view_.control_block().for_client.count.load();
+        over = all_finished();
+        const bool check = !over && Clock::now() >= next_check;
+        if (check) next_check = Clock::now() + worker_limits::check_interval;
+        try {
+            look(watch, over, check);
+        } catch (...) {
+            fail(std::current_exception());
+        }
+        if (!over && !check) view_.control_block().for_client.wait(seen, next_check - Clock::now(), looks_);
+    }
+    if (failure_ != nullptr) std::rethrow_exception(std::exchange(failure_, nullptr));
+    shares_ = view_.slot(0).shares;
+    return number_;
+}
+
+/// What is new, of a pass that may be over, and now and then whether its workers live.
+void WorkerPool::look(const PassWatch& watch, bool over, bool check) {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done) fail_as_worker(slot);
+    }
+    if (failure_ == nullptr) {
+        if (watch.stop.stop_requested() && !over) throw Error(ErrorCode::cancelled, "cancelled");
+        if (watch.look) watch.look();
+    }
+    if (check) check_members(watch);
+}
+
+bool WorkerPool::finished(unsigned slot) const { return view_.slot(slot).finished.load() == number_; }
+
+/// A slot without a worker has nothing to end.
+bool WorkerPool::all_finished() const {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (pool_[slot].process != nullptr && !finished(slot)) return false;
+    }
+    return true;
+}
+
+void WorkerPool::check_members(const PassWatch& watch) {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        Member& member = pool_[slot];
+        if (member.process == nullptr) continue;
+        const ProcessState state = member.process->look();
+        if (state == ProcessState::runs) {
+            const bool attached = view_.slot(slot).attached.load() != 0;
+            if (attached) member.failed_starts = 0;
+            if (attached || Clock::now() - member.started_at < worker_limits::attach_timeout) continue;
+        }
+        handle_lost_worker(slot, state != ProcessState::ended, watch);
+    }
+    if (failure_ != nullptr && Clock::now() - failed_at_ > worker_limits::pass_exit_timeout)
+        kill_unresponsive_workers();
+    if (failure_ == nullptr) check_deadlock();
+}
+
+/// Fails the pass if all workers wait for each other. A worker that died can leave such a state in the shared tables.
+void WorkerPool::check_deadlock() {
+    const std::uint64_t now = events();
+    if (now != last_events_ || !all_wait()) {
+        last_events_ = now;
+        changed_at_ = Clock::now();
+    } else if (Clock::now() - changed_at_ > worker_limits::deadlock_timeout) {
+        fail(std::make_exception_ptr(Error(ErrorCode::engine_failed,
+                                           "worker processes wait for each other: no work was done for " +
+                                               std::to_string(worker_limits::deadlock_timeout.count() / 1000) + " s")));
+    }
+}
+
+bool WorkerPool::all_wait() const {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (!finished(slot) && view_.slot(slot).waits.load() == 0) return false;
+    }
+    return true;
+}
+
+/// Activity counter of the pass, used to detect a deadlock among the workers.
+std::uint64_t WorkerPool::events() const {
+    std::uint64_t events = view_.control_block().among_workers.count.load() + view_.control_block().for_client.count.load();
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        const Slot& part = view_.slot(slot);
+        events += part.command.count.load() + part.ring_filled.load() + part.ring_taken.load() + part.share.load();
+    }
+    return events;
+}
+
+/// A worker has ended, or must because it does nothing any more: what it was at is left to another.
+void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch& watch) {
+    Member& member = pool_[slot];
+    const bool attached = view_.slot(slot).attached.load() != 0;
+    const std::string how = member.process->end();
+    member.process = nullptr;
+    count_fault(stopped ? faults_.stopped : faults_.ended);
+    try {
+        member.failed_starts = attached ? 0 : member.failed_starts + 1;
+        if (member.failed_starts >= worker_limits::max_failed_starts) {
+            member.failed_starts = 0;
+            throw_cannot_start(how);
+        }
+        if (finished(slot)) return;
+        if (attached) count_death(slot);
+        if (failure_ != nullptr) return;
+        if (watch.lost) watch.lost(slot);
+        Slot& part = view_.slot(slot);
+        view_.control_block().pass = last_pass_;
+        part.share.store(0);
+        part.preparing.store(1);
+        start(slot);
+        send_regions(slot);
+        part.command.raise();
+    } catch (...) {
+        fail(std::current_exception());
+    }
+}
+
+/// Counts what a share did to a worker. Throws Error{engine_failed} if it is too much.
+void WorkerPool::count_death(unsigned slot) {
+    const Slot& part = view_.slot(slot);
+    std::uint64_t share = part.share.load();
+    Step step = Step::prepare;
+    if (share > 0 && share <= most_shares) {
+        const Share& record = view_.shares(share - 1, 1)[0];
+        const ShareState state = ShareState::of(record.state.load());
+        const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
+        if (!under_way || record.step >= step_names.size()) return check_crash_loop(slot);
+        step = Step(record.step);
+        count_fault(faults_.in_share[std::size_t(step)]);
+    } else {
+        if (part.preparing.load() == 0) return check_crash_loop(slot);
+        share = preparing - slot;
+    }
+    if (++deaths_by_share_[share] < worker_limits::max_deaths_per_share) return;
+    throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +
+                                              ", has ended " + std::to_string(worker_limits::max_deaths_per_share) +
+                                              " worker processes");
+}
+
+/// Throws Error{engine_failed} where worker after worker of a slot ends between two shares.
+void WorkerPool::check_crash_loop(unsigned slot) {
+    Member& member = pool_[slot];
+    member.deaths_between_shares =
+        Clock::now() - member.started_at > worker_limits::healthy_lifetime ? 1 : member.deaths_between_shares + 1;
+    if (member.deaths_between_shares < worker_limits::max_deaths_between_shares) return;
+    throw Error(ErrorCode::engine_failed, "worker processes keep ending between their shares");
+}
+
+/// Ends the pass: its workers are told to stop.
+void WorkerPool::fail(std::exception_ptr failure) {
+    if (failure_ != nullptr) return;
+    failure_ = std::move(failure);
+    failed_at_ = Clock::now();
+    view_.control_block().stopped.store(number_);
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (pool_[slot].process != nullptr) (void)pool_[slot].process->stop_pass(number_);
+    }
+}
+
+void WorkerPool::fail_as_worker(unsigned slot) {
+    const Slot& part = view_.slot(slot);
+    std::string message(part.message.data(), strnlen(part.message.data(), part.message.size()));
+    if (message.empty()) message = "a worker process failed and did not say why";
+    switch (part.outcome) {
+        case Outcome::bad_box:
+            return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
+        case Outcome::over_budget:
+            if (last_pass_.kind == PassKind::list_ascending) return fail(std::make_exception_ptr(OverBudget{}));
+            break;
+        default:
+            break;
+    }
+    const bool known = part.error_code <= unsigned(ErrorCode::cancelled) && part.outcome == Outcome::failed;
+    fail(std::make_exception_ptr(Error(known ? ErrorCode(part.error_code) : ErrorCode::engine_failed, message)));
+}
+
+/// Workers that do not leave a pass that failed are killed.
+void WorkerPool::kill_unresponsive_workers() {
+    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+        if (pool_[slot].process == nullptr || finished(slot)) continue;
+        pool_[slot].process = nullptr;
+        count_fault(faults_.stopped);
+    }
+}
+
+void WorkerPool::send_regions(unsigned slot) {
+    for (const auto& region : needed_) {
+        if (pool_[slot].process->send_region(region->number, region->memory)) continue;
+        // It may just have ended; who takes no message otherwise must.
+        (void)pool_[slot].process->end();
+        return;
+    }
+}
+
+void WorkerPool::forget_regions() {
+    std::erase_if(regions_, [](const auto& region) { return region.expired(); });
+    for (Member& member : pool_) {
+        if (member.process == nullptr) continue;
+        member.process->forget_all_but([&](std::uint32_t number) {
+            return number == control_region || std::any_of(regions_.begin(), regions_.end(), [&](const auto& weak) {
+                       const auto region = weak.lock();
+                       return region != nullptr && region->number == number;
+                   });
+        });
+    }
+}
+
+}  // namespace octopair

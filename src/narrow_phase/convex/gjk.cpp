@@ -1,0 +1,222 @@
+// GJK (Gilbert, Johnson, Keerthi 1988) on the differences of points of two cores, with van den Bergen's lower bound.
+//
+// The nearest point of a simplex is chosen among those of all its faces, as the one that is nearest: each is a sum with
+// weights that are >= 0 and add up to 1, so flat simplices cost accuracy but never truth. FCL's own search stops when a
+// step gained little, wherever it is by then, takes a touching pair for either, and throws on flat simplices.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "geometry/vector.hpp"
+#include "narrow_phase/convex/local_convex.hpp"
+
+namespace octopair {
+namespace {
+
+struct Vertex {
+    Point3d on_a, on_b, apart;  // apart = on_a - on_b
+};
+
+using Weights = std::array<double, 4>;
+
+/// Up to four vertices, and the nearest point that was found in them.
+class Simplex {
+public:
+    void add(const Vertex& vertex) { vertices_[count_++] = vertex; }
+    bool has(const Vertex& vertex) const {
+        return std::any_of(vertices_.begin(), vertices_.begin() + std::ptrdiff_t(count_),
+                           [&](const Vertex& one) { return one.apart == vertex.apart; });
+    }
+
+    /// Finds the nearest point and drops the vertices that it does not need.
+    void reduce() {
+        best_ = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < count_; ++i) {
+            offer(weights({i}, {1}));
+            for (std::size_t j = 0; j < i; ++j) {
+                try_edge(i, j);
+                for (std::size_t k = 0; k < j; ++k) try_triangle(i, j, k);
+            }
+        }
+        if (count_ == 4) try_inside();
+        keep_needed();
+    }
+
+    /// The nearest point is inside: the origin, but for rounding.
+    bool encloses() const { return count_ == 4; }
+    const Point3d& nearest() const { return nearest_; }
+    std::span<const Vertex> vertices() const { return {vertices_.data(), count_}; }
+    /// From the origin to the nearest point, of length 1. Where this is shorter than the simplex, it is known less well
+    /// than what it is perpendicular to.
+    Point3d direction() const {
+        const double length = vector::length(nearest_);
+        const Point3d unit = vector::times(nearest_, 1 / length);
+        if (count_ == 2) {
+            const Point3d edge = vector::minus(at(1), at(0));
+            if (vector::dot(edge, edge) < length * length) return unit;
+            return unit_or(vector::minus(unit, vector::times(edge, vector::dot(unit, edge) / vector::dot(edge, edge))),
+                           unit);
+        }
+        if (count_ == 3) {
+            const Point3d first = vector::minus(at(1), at(0)), second = vector::minus(at(2), at(0));
+            const Point3d normal = vector::cross(first, second);
+            const double longest = std::max(vector::length(first), vector::length(second));
+            if (vector::length(normal) < length * longest) return unit;
+            return unit_or(vector::times(normal, vector::dot(normal, at(0)) < 0 ? -1 : 1), unit);
+        }
+        return unit;
+    }
+    Point3d mix(Point3d Vertex::*which) const { return mix(kept_, which); }
+
+private:
+    static Weights weights(std::initializer_list<std::size_t> which, std::initializer_list<double> how_much) {
+        Weights made = {};
+        auto weight = how_much.begin();
+        for (const std::size_t i : which) made[i] = *weight++;
+        return made;
+    }
+    Point3d mix(const Weights& weights, Point3d Vertex::*which) const {
+        Point3d sum = {};
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (weights[i] > 0) sum = vector::plus(sum, vector::times(vertices_[i].*which, weights[i]));
+        }
+        return sum;
+    }
+    static Point3d unit_or(const Point3d& vector, const Point3d& otherwise) {
+        const double length = vector::length(vector);
+        return length > 0 ? vector::times(vector, 1 / length) : otherwise;
+    }
+    const Point3d& at(std::size_t i) const { return vertices_[i].apart; }
+
+    void offer(const Weights& weights) {
+        const Point3d point = mix(weights, &Vertex::apart);
+        const double squared = vector::dot(point, point);
+        if (!(squared < best_)) return;
+        best_ = squared, kept_ = weights, nearest_ = point;
+    }
+    void try_edge(std::size_t i, std::size_t j) {
+        const Point3d along = vector::minus(at(j), at(i));
+        const double part = -vector::dot(at(i), along) / vector::dot(along, along);
+        if (part > 0 && part < 1) offer(weights({i, j}, {1 - part, part}));
+    }
+    void try_triangle(std::size_t i, std::size_t j, std::size_t k) {
+        const Point3d first = vector::minus(at(j), at(i)), second = vector::minus(at(k), at(i));
+        const Point3d normal = vector::cross(first, second);
+        const double whole = vector::dot(normal, normal);
+        const Point3d from = vector::times(at(i), -1);
+        const double of_j = vector::dot(vector::cross(from, second), normal) / whole;
+        const double of_k = vector::dot(vector::cross(first, from), normal) / whole;
+        if (of_j > 0 && of_k > 0 && of_j + of_k < 1) offer(weights({i, j, k}, {1 - of_j - of_k, of_j, of_k}));
+    }
+    void try_inside() {
+        const Point3d x = vector::minus(at(1), at(0)), y = vector::minus(at(2), at(0)), z = vector::minus(at(3), at(0));
+        const Point3d from = vector::times(at(0), -1);
+        const double whole = vector::dot(x, vector::cross(y, z));
+        const double of_x = vector::dot(from, vector::cross(y, z)) / whole;
+        const double of_y = vector::dot(x, vector::cross(from, z)) / whole;
+        const double of_z = vector::dot(x, vector::cross(y, from)) / whole;
+        if (!(of_x > 0 && of_y > 0 && of_z > 0 && of_x + of_y + of_z < 1)) return;
+        const Weights inside = {1 - of_x - of_y - of_z, of_x, of_y, of_z};
+        const Point3d zero = mix(inside, &Vertex::apart);
+        // Weights of a flat simplex mean nothing: they prove themselves.
+        constexpr double close = 1e-12;
+        if (vector::length(zero) <= close * vector::length(x)) offer(inside);
+    }
+    void keep_needed() {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (!(kept_[i] > 0)) continue;
+            vertices_[kept] = vertices_[i];
+            kept_[kept++] = kept_[i];
+        }
+        count_ = kept;
+        for (std::size_t i = kept; i < kept_.size(); ++i) kept_[i] = 0;
+    }
+
+    std::array<Vertex, 4> vertices_ = {};
+    std::size_t count_ = 0;
+    double best_ = 0;
+    Weights kept_ = {};
+    Point3d nearest_ = {};
+};
+
+Vertex support(const LocalConvexPair& frame, const Point3d& direction) {
+    Vertex vertex;
+    vertex.on_a = frame.a().support(direction);
+    vertex.on_b = frame.b().support(vector::times(direction, -1));
+    vertex.apart = vector::minus(vertex.on_a, vertex.on_b);
+    return vertex;
+}
+
+/// The greatest lower bound by a face around the nearest point, or the one there is. Of two faces that lie close to each
+/// other, the way between them is too short to tell their normal, if it meets a face's edge or corner.
+double prove_by_faces(const LocalConvexPair& frame, const Simplex& simplex, double at_least) {
+    constexpr double aside = 1e-5, alike = 0.999;
+    const Point3d direction = simplex.direction();
+    std::array<Vertex, 8> around = {};
+    std::size_t count = 0;
+    for (const Vertex& vertex : simplex.vertices()) around[count++] = vertex;
+    const Point3d axis = std::fabs(direction[0]) < 0.6 ? Point3d{1, 0, 0} : Point3d{0, 1, 0};
+    const Point3d first = vector::cross(direction, axis), second = vector::cross(direction, first);
+    for (const Point3d& way : {first, second}) {
+        for (const double by : {aside, -aside}) {
+            around[count++] = support(frame, vector::times(vector::plus(direction, vector::times(way, by)), -1));
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const Point3d edge = vector::minus(around[j].apart, around[i].apart);
+            for (std::size_t k = 0; k < j; ++k) {
+                const Point3d normal = vector::cross(edge, vector::minus(around[k].apart, around[i].apart));
+                const double along = vector::dot(normal, direction);
+                if (!(std::fabs(along) > alike * vector::length(normal))) continue;
+                const Point3d unit = vector::times(normal, std::copysign(1 / vector::length(normal), along));
+                const Vertex next = support(frame, vector::times(unit, -1));
+                at_least = std::max(at_least, vector::dot(next.apart, unit) - frame.slack());
+            }
+        }
+    }
+    return at_least;
+}
+
+CoreGap gap_of(const Simplex& simplex, double at_least) {
+    CoreGap gap;
+    gap.on_a = simplex.mix(&Vertex::on_a), gap.on_b = simplex.mix(&Vertex::on_b);
+    gap.at_most = vector::length(simplex.nearest());
+    gap.at_least = std::min(at_least, gap.at_most);
+    return gap;
+}
+
+}  // namespace
+
+CoreGap core_gap(const LocalConvexPair& frame, std::optional<double> enough) {
+    constexpr int most_steps = 256;
+    constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
+    const double slack = frame.slack();
+    double at_least = 0;
+    bool decided = false;
+    Simplex simplex;
+    simplex.add(support(frame, vector::minus(frame.b().middle(), frame.a().middle())));
+    simplex.reduce();
+    for (int step = 0; step < most_steps; ++step) {
+        const double at_most = vector::length(simplex.nearest());
+        decided = simplex.encloses() || at_most <= slack || (enough && at_most <= *enough);
+        if (decided) break;
+        const Point3d direction = simplex.direction();
+        const Vertex next = support(frame, vector::times(direction, -1));
+        at_least = std::max(at_least, vector::dot(next.apart, direction) - slack);
+        decided = (enough && at_least > *enough) || at_most - at_least <= 2 * slack + relative * at_most;
+        if (decided || simplex.has(next)) break;
+        Simplex larger = simplex;
+        larger.add(next);
+        larger.reduce();
+        if (!(vector::length(larger.nearest()) < at_most)) break;
+        simplex = larger;
+    }
+    return gap_of(simplex, decided ? at_least : prove_by_faces(frame, simplex, at_least));
+}
+
+}  // namespace octopair

@@ -1,0 +1,136 @@
+#include "octree/space.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/tuning.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// How far the bulk of the objects reaches on one axis, and how long a typical one is.
+struct AxisFit {
+    double begin = 0, end = 0, typical = 0;
+    double extent() const { return end - begin; }
+};
+
+/// Between the 1/64 quantiles plus a quarter on each side, but no further than the sample itself reaches.
+AxisFit fit_axis(std::span<const SpaceSample::Measured, SpaceSample::measures> measured) {
+    const SpaceSample::Measured &lows = measured[0], &highs = measured[1], &extents = measured[2];
+    const double quarter = std::max(0.0, highs.quantile - lows.quantile) / 4;
+    AxisFit fit;
+    fit.begin = std::max(lows.extreme, lows.quantile - quarter);
+    fit.end = std::max(fit.begin, std::min(highs.extreme, highs.quantile + quarter));
+    fit.typical = std::max(0.0, extents.quantile);
+    return fit;
+}
+
+}  // namespace
+
+SpaceSample::SpaceSample(std::size_t sampled) : stride_(sampled / tuning().sampling.space + 1) {}
+
+SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, Measure what) {
+    std::vector<double> values;
+    values.reserve(intervals.size());
+    for (const Interval& interval : intervals) {
+        const double low = double(interval.low), high = double(interval.high);
+        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
+        values.push_back(what == Measure::low ? low : what == Measure::high ? high : high - low);
+    }
+    if (values.empty()) return {};
+    const std::size_t cut = values.size() / 64;
+    const std::size_t rank = what == Measure::low    ? cut
+                             : what == Measure::high ? values.size() - 1 - cut
+                                                     : values.size() / 2;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double extreme = what == Measure::low ? *least : *most;
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+    return {values[rank], extreme};
+}
+
+namespace {
+
+/// About the distance between neighbours: a power of two near the cube root of volume / objects.
+double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
+    int exponent = -int(std::bit_width(objects));
+    int dimensions = 0;
+    for (const AxisFit& axis : axes) {
+        if (axis.extent() <= 0) continue;
+        int own = 0;
+        (void)std::frexp(axis.extent(), &own);
+        exponent += own;
+        ++dimensions;
+    }
+    return dimensions == 0 ? 1.0 : std::ldexp(1.0, exponent / dimensions);
+}
+
+}  // namespace
+
+Space Space::fit(std::span<const Entry> sample, std::uint64_t objects) {
+    const SpaceSample chosen(sample.size());
+    SpaceSample::AllMeasured measured;
+    std::vector<SpaceSample::Interval> intervals;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        intervals.clear();
+        for (std::size_t i = 0; i < sample.size(); ++i) {
+            if (chosen.has(i)) intervals.push_back({sample[i].min[axis], sample[i].max[axis]});
+        }
+        for (unsigned what = 0; what < SpaceSample::measures; ++what) {
+            measured[axis * SpaceSample::measures + what] = SpaceSample::measure(intervals, SpaceSample::Measure(what));
+        }
+    }
+    return fit(measured, objects);
+}
+
+Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects) {
+    std::array<AxisFit, 3> axes;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        axes[axis] = fit_axis(std::span(measured).subspan(axis * SpaceSample::measures).first<SpaceSample::measures>());
+    }
+    const double neighbour = spacing(axes, objects);
+
+    // An octant has the shape of one object with the free space around it.
+    std::array<double, 3> shape{};
+    double most_octants = 0;
+    Space space;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        shape[axis] = neighbour + axes[axis].typical;
+        const double octants = axes[axis].extent() / shape[axis];
+        if (octants > most_octants) {
+            most_octants = octants;
+            space.long_axis_ = axis;
+        }
+    }
+    shape[space.long_axis_] *= 4;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double length = shape[axis] * most_octants;
+        const double scale = length > 0 ? double(cells_per_axis) / length : 1.0;
+        space.map_.origin[axis] = float(axes[axis].begin);
+        space.map_.scale[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
+        space.map_.last[axis] = float(space.map_.cell(float(axes[axis].end), axis));
+    }
+    return space;
+}
+
+Box3d Space::bounds(const CellBox& cells) const {
+    // A cell more on each side for the rounding to cells, and what float32 may round beside that.
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double roundings = 0x1p-21;
+    Box3d bounds;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double origin = double(map_.origin[axis]), cell = 1 / double(map_.scale[axis]);
+        // The map's difference overflows to its last cell.
+        const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
+        const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
+        bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));
+        bounds.max[axis] =
+            cells.hi[axis] >= last_cell(axis) ? infinity : hi + roundings * (std::abs(origin) + std::abs(hi));
+    }
+    return bounds;
+}
+
+}  // namespace octopair

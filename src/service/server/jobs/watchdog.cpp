@@ -1,0 +1,53 @@
+#include "service/server/jobs/watchdog.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "service/protocol/limit_error.hpp"
+
+namespace octopair::service {
+
+Watchdog::Watchdog() : thread_([this] { look_around(); }) {}
+
+Watchdog::~Watchdog() {
+    {
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
+        changed_.notify_all();
+    }
+    thread_.join();
+}
+
+void Watchdog::watch(const std::shared_ptr<Watched>& watched) {
+    const std::lock_guard lock(mutex_);
+    watched_.push_back(watched);
+}
+
+void Watchdog::look_around() {
+    constexpr std::chrono::milliseconds apart(100);
+    std::unique_lock lock(mutex_);
+    while (!changed_.wait_for(lock, apart, [&] { return ending_; })) {
+        std::erase_if(watched_, [](const auto& known) {
+            const auto one = known.lock();
+            return !one || one->is_over();
+        });
+        const auto looked_at = watched_;
+        lock.unlock();
+        const auto now = std::chrono::steady_clock::now();
+        for (const auto& weak : looked_at) {
+            if (const auto one = weak.lock()) one->look(now);
+        }
+        lock.lock();
+    }
+}
+
+LimitError ran_too_long(const std::string& what, double most_seconds) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), most_seconds).ptr;
+    return {"job_seconds", std::uint64_t(std::ceil(most_seconds)),
+            "job_seconds: " + what + " ran longer than the " + std::string(text.data(), end) + " s that one may take"};
+}
+
+}  // namespace octopair::service

@@ -1,0 +1,126 @@
+#include "service/server/server_context.hpp"
+
+#include <grpcpp/server_context.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "service/protocol/job_spec.hpp"
+#include "service/protocol/limit_error.hpp"
+#include "service/protocol/status.hpp"
+#include "service/server/store/detached_jobs.hpp"
+#include "service/server/store/state_folder.hpp"
+
+namespace octopair::service {
+
+namespace {
+
+/// What finding pairs takes, beside input and result (docs/results.md).
+constexpr std::uint64_t working_bytes = 80;
+
+/// What an engine may hold of pairs that are put in order, beside what the budget counts: each engine keeps so much.
+std::uint64_t buffer_of(const v1::JobSpec& spec, std::uint64_t memory_bytes) {
+    const std::uint64_t most = std::uint64_t(object_count(spec) <= most_small_objects ? 64 : 256) << 20;
+    return memory_bytes == 0 ? most : std::min(most, memory_bytes / 8);
+}
+
+void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
+    if (allowed == 0 || asked <= allowed) return;
+    throw LimitError(name, allowed,
+                     "a job of " + std::to_string(asked) + " " + name + "; at most " + std::to_string(allowed));
+}
+
+}  // namespace
+
+ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog::logger> logger)
+    : options(given),
+      log(std::move(logger)),
+      access(given.token_file),
+      server_log(log),
+      memory("memory_bytes", "bytes of memory", given.limits.memory_bytes),
+      places(given.limits.jobs, given.limits.jobs_per_client),
+      state(given.state_folder.empty()
+                ? nullptr
+                : std::make_unique<StateFolder>(given.state_folder, given.limits.state_bytes, log)),
+      attached("", "", 0),
+      scheduler({given.engine, given.small_engine ? given.small_engine : given.engine}, given.engine_widths) {
+    if (!state) return;
+    detached = std::make_shared<DetachedJobs>(*this);
+    detached->restore();
+    watchdog.watch(detached);
+}
+
+ServerContext::~ServerContext() {
+    if (detached) detached->abandon();
+}
+
+grpc::Status ServerContext::let_in(const grpc::ServerContextBase& context, std::string& owner) {
+    grpc::Status status = draining ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is going down")
+                                   : access.identify(context, owner);
+    if (!status.ok()) server_log.call_refused(context.peer(), status);
+    return status;
+}
+
+void ServerContext::check_limits(const v1::JobSpec& spec) const {
+    check(spec);
+    check_limit("objects", object_count(spec), options.limits.objects);
+    check_limit("input_bytes", input_bytes(spec), options.limits.input_bytes);
+}
+
+std::uint64_t ServerContext::memory_of(const v1::JobSpec& spec) {
+    return input_bytes(spec) + object_count(spec) * working_bytes;
+}
+
+v1::JobReport ServerContext::report(const ServerJob& job) const {
+    v1::JobReport report = job.report();
+    if (report.state() == v1::QUEUED) report.set_queued_before(scheduler.queued_before(job));
+    return report;
+}
+
+grpc::Status ServerContext::refuse_stalled(const std::string& owner) {
+    const auto seconds = std::uint64_t(options.stall.count());
+    const LimitError error(
+        "stall_seconds", seconds,
+        "stall_seconds: next to nothing came for " + std::to_string(seconds) + " s in the middle of an upload");
+    server_log.limit_refused(owner, error);
+    return status_of(error);
+}
+
+std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::JobSpec spec) {
+    return within_limits(owner, [&] {
+        check_limits(spec);
+        ServerJob::Parts parts;
+        parts.owner = owner;
+        parts.place = places.enter(owner);
+        parts.memory = memory.take(memory_of(spec));
+        parts.input = std::make_unique<UploadedInput>(spec, scheduler.engine_for(object_count(spec)), &array_pool);
+        parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs);
+        parts.spec = std::move(spec);
+        auto job = make_job(std::move(parts));
+        server_log.job_moved(*job, {}, v1::UPLOADING);
+        return job;
+    });
+}
+
+std::shared_ptr<ServerJob> ServerContext::make_job(ServerJob::Parts parts) {
+    parts.most_seconds = options.limits.job_seconds;
+    parts.buffer_bytes = buffer_of(parts.spec, options.limits.memory_bytes);
+    parts.moved = [this](const ServerJob& job, v1::JobState from, v1::JobState to) { server_log.job_moved(job, from, to); };
+    return std::make_shared<ServerJob>(std::move(parts));
+}
+
+void ServerContext::queue(const std::shared_ptr<ServerJob>& job) {
+    watchdog.watch(job);
+    scheduler.add(job);
+}
+
+bool ServerContext::idle() const {
+    if (attached.taken() > 0) return false;
+    for (const auto& job : jobs.all()) {
+        if (job->detached() && job->state() == v1::RUNNING) return false;
+    }
+    return true;
+}
+
+}  // namespace octopair::service
