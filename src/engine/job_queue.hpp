@@ -1,53 +1,49 @@
-// JobQueue: the jobs of an engine, run one after another in the order in which they came, on one thread.
+// JobQueue: the jobs of an engine, run one after another, in the order in which they were added, on one thread.
 //
-// The thread is started by the first job. An engine owns its queue as its last member: the queue's end cancels all jobs
-// and joins the thread while the engine still has all that a job uses. A job that is cancelled while it waits ends
-// there and then, and only its empty JobTask stays in the queue until its turn, or until such have become half of it. Where
-// other processes take part in each job, such a one has its turn all the same, and is told to the engine.
+// Invariants
+//   The first job starts the thread. The engine owns its queue as its last member, so the queue ends first: it cancels all
+//   jobs and joins the thread while all that a job uses still exists.
+//   A job that is cancelled while it waits ends at once. Only its empty JobTask stays in the queue, until its turn or until
+//   the queue has doubled. With `skipped` it stays until its turn, and `skipped` is called then.
 #pragma once
 
-#include <condition_variable>
-#include <cstddef>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "base/work_queue.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::detail {
 
 class JobQueue {
 public:
-    /// `skipped`, if given, is called on the thread for each job whose turn comes after its end, the queue's end included.
+    /// `skipped`, if given, is called on the queue's thread for each job that had ended before its turn; also at the queue's
+    /// end. An engine with ranks needs it, because all ranks take part in each job.
     explicit JobQueue(Engine& engine, std::function<void()> skipped = {})
         : engine_(engine), skipped_(std::move(skipped)) {}
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
-    /// From no thread of the queue.
+    /// Requires: the calling thread is not the queue's.
     ~JobQueue();
 
-    /// Throws Error{resource_limit} where no thread can be started. Thread-safe.
+    /// Throws: Error{resource_limit} if no thread can be started.
+    /// Thread safety: may be called from any thread.
     void add(const std::shared_ptr<JobTask>& task);
-    /// Returns when all jobs that were added have had their turn; at once on the thread of the queue. Thread-safe.
+    /// Returns when all added jobs have had their turn; at once on the queue's thread.
+    /// Thread safety: may be called from any thread.
     void wait_for_all();
 
 private:
     void start_thread();
     void run_jobs();
-    std::shared_ptr<JobTask> next();
-    void drop_ended();
 
     Engine& engine_;
     std::function<void()> skipped_;
-    std::mutex mutex_;
-    std::condition_variable changed_, idle_;
-    std::deque<std::shared_ptr<JobTask>> waiting_;
-    std::shared_ptr<JobTask> running_;
-    std::size_t drop_from_ = 64;  // waiting jobs
-    bool ending_ = false;
+    WorkQueue<std::shared_ptr<JobTask>> tasks_;
+    std::mutex mutex_;  // guards thread_
     std::thread thread_;
 };
 

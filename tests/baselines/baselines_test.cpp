@@ -17,9 +17,9 @@
 namespace octopair::baselines {
 namespace {
 
-using testing::same_pairs;
+using test::same_pairs;
 
-constexpr std::uint64_t scenes_a_kind = testing::scaled(40, 4);
+constexpr std::uint64_t scenes_a_kind = test::scaled(40, 4);
 
 class Baselines : public ::testing::TestWithParam<std::string> {};
 
@@ -30,24 +30,24 @@ void expect_agreement(const std::vector<Box3f>& boxes) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         EXPECT_TRUE(same_pairs(ascending(sweep_and_prune(boxes, axis)), expected, {objects})) << "sweep along " << axis;
     }
-    const unsigned lbvh_threads = testing::thread_sanitized ? 1 : 1 + unsigned(boxes.size() % 3);
+    const unsigned lbvh_threads = test::thread_sanitized ? 1 : 1 + unsigned(boxes.size() % 3);
     EXPECT_TRUE(same_pairs(ascending(lbvh_pairs(boxes, lbvh_threads)), expected, {objects})) << "LBVH";
     EXPECT_TRUE(same_pairs(ascending(ICollide().next_frame(boxes)), expected, {objects})) << "I-COLLIDE";
 }
 
 TEST_P(Baselines, AgreeWithTheOracle) {
-    for (std::uint64_t i = 0; i < testing::case_count(scenes_a_kind); ++i) {
-        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+    for (std::uint64_t i = 0; i < test::case_count(scenes_a_kind); ++i) {
+        const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        expect_agreement(testing::make_boxes(GetParam(), seed % 400, seed));
+        expect_agreement(test::make_boxes(GetParam(), seed % 400, seed));
     }
 }
 
 TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
-    for (std::uint64_t i = 0; i < testing::case_count(scenes_a_kind); ++i) {
-        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+    for (std::uint64_t i = 0; i < test::case_count(scenes_a_kind); ++i) {
+        const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), seed % 100, seed);
+        const std::vector<Box3f> boxes = test::make_boxes(GetParam(), seed % 100, seed);
         const Objects objects{std::span<const Box3f>(boxes)};
         const PaperSettings settings{unsigned(seed >> 8) % 5, 1 + unsigned(seed >> 16) % 3,
                                      1 + unsigned(seed >> 24) % 3, PaperSort(seed >> 32 & 1)};
@@ -58,7 +58,7 @@ TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, Baselines, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, Baselines, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 TEST(BaselinesPaper, EntriesDoNotDependOnTheSlaves) {
     const auto boxes = samples::make_scene("mixed", 3000, 1);
@@ -67,7 +67,7 @@ TEST(BaselinesPaper, EntriesDoNotDependOnTheSlaves) {
         const PaperResult result = paper_pairs(boxes, settings);
         EXPECT_EQ(result.entries, alone.entries);
         EXPECT_EQ(result.candidates, alone.candidates);
-        EXPECT_TRUE(testing::same_bytes(result.pairs, alone.pairs));
+        EXPECT_TRUE(test::same_bytes(result.pairs, alone.pairs));
     }
 }
 
@@ -79,7 +79,7 @@ TEST(BaselinesPaper, BothSortsGiveTheSame) {
             const PaperResult radix = paper_pairs(boxes, {level, 2, 2, PaperSort::radix});
             EXPECT_EQ(radix.entries, standard.entries) << kind << ", level " << level;
             EXPECT_EQ(radix.candidates, standard.candidates) << kind << ", level " << level;
-            EXPECT_TRUE(testing::same_bytes(radix.pairs, standard.pairs)) << kind << ", level " << level;
+            EXPECT_TRUE(test::same_bytes(radix.pairs, standard.pairs)) << kind << ", level " << level;
         }
     }
 }
@@ -141,9 +141,9 @@ TEST(BaselinesICollide, FollowsMovingScenes) {
 
 TEST(BaselinesICollide, FollowsLeapsAndChangesOfNumber) {
     ICollide engine;
-    for (const std::string& kind : testing::all_kind_names()) {
+    for (const std::string& kind : test::all_kind_names()) {
         for (const std::uint64_t objects : {200, 200, 150}) {
-            const auto boxes = testing::make_boxes(kind, objects, objects + kind.size());
+            const auto boxes = test::make_boxes(kind, objects, objects + kind.size());
             const Objects all{std::span<const Box3f>(boxes)};
             EXPECT_TRUE(same_pairs(ascending(engine.next_frame(boxes)), oracle_pairs(all), {all})) << kind;
         }
@@ -166,7 +166,7 @@ TEST(BaselinesOracle, RuleHoldsToTheLastBit) {
 
 TEST(BaselinesOracle, BothPrecisionsOfNaiveAgree) {
     const auto boxes = samples::make_scene("dense", 500, 2);
-    const auto doubles = testing::widened(boxes);
+    const auto doubles = test::widened(boxes);
     EXPECT_EQ(naive_pairs(std::span<const Box3f>(boxes)), naive_pairs(std::span<const Box3d>(doubles)));
 }
 

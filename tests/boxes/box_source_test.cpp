@@ -13,7 +13,7 @@
 
 #include "boxes/box_kernel.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -170,4 +170,4 @@ TEST(BoxSource, EntriesHoldBoxesAtTheEndOfTheRange) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

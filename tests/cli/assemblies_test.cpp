@@ -61,7 +61,7 @@ TEST_P(Assemblies, FeaturesAreOfTheObjectsThatMeet) {
         EXPECT_EQ(objects[i]["b"], features[i]["b"]);
         const std::string what = features[i]["class"];
         if (objects[i]["class"] == "collision") {
-            EXPECT_TRUE(what == "touching" || what == "penetrating") << features[i];
+            EXPECT_TRUE(what == "touching" || what == "penetrating") << what << features[i];
             EXPECT_GE(features[i]["contacts"].size(), 1u);
             EXPECT_EQ(what == "penetrating", features[i]["depth"] > 0) << features[i];
         } else {

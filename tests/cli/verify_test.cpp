@@ -27,7 +27,7 @@ protected:
 };
 
 TEST_F(DetectVerify, SaysWhatWasChecked) {
-    EXPECT_TRUE(verified("").find(" pairs by a second algorithm in ") != std::string::npos);
+    EXPECT_NE(verified("").find(" pairs by a second algorithm in "), std::string::npos) << verified("");
     EXPECT_EQ(verified("").find("not checked"), std::string::npos);
     EXPECT_TRUE(verified("--order octal").ends_with(" (not checked: the order of the pairs)"));
     EXPECT_TRUE(verified("--limit 7").starts_with("verified    7 pairs by a second algorithm in "));

@@ -10,11 +10,11 @@
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::objects_of;
-using testing::same_bytes;
+using test::objects_of;
+using test::same_bytes;
 
 TEST(EngineCalls, ShortFormIsAscending) {
     const auto boxes = samples::make_scene("dense", 2000, 1);
@@ -91,7 +91,7 @@ TEST(EngineCalls, EnginesSideBySide) {
 }
 
 TEST(EngineCalls, SummaryAddsUp) {
-    const auto boxes = samples::make_scene("mixed", testing::scaled(200'000, 10), 1);
+    const auto boxes = samples::make_scene("mixed", test::scaled(200'000, 10), 1);
     PairList list;
     const Summary summary = make_local_engine(2)->find_pairs(objects_of(boxes), list);
     EXPECT_EQ(summary.pairs, list.size());
@@ -124,7 +124,7 @@ TEST(EngineCalls, LimitsAroundTheNumberOfPairs) {
 }
 
 TEST(EngineCalls, StreamsWithLimitsThroughASmallBuffer) {
-    const auto boxes = samples::make_scene("dense", testing::scaled(100'000, 2), 1);
+    const auto boxes = samples::make_scene("dense", test::scaled(100'000, 2), 1);
     const auto engine = make_local_engine(2);
     for (const Order order : {Order::ascending, Order::octal}) {
         Options options;
@@ -202,7 +202,7 @@ private:
 
 TEST(EngineCalls, ProgressNeverFallsAndEndsAtOne) {
     for (const std::string kind : {"uniform", "rods", "coincident"}) {
-        for (const std::uint64_t n : {std::uint64_t(0), std::uint64_t(100), testing::scaled(2000, 2)}) {
+        for (const std::uint64_t n : {std::uint64_t(0), std::uint64_t(100), test::scaled(2000, 2)}) {
             const auto boxes = samples::make_scene(kind, n, 1);
             for (const Order order : {Order::ascending, Order::octal}) {
                 const auto engine = make_local_engine(2);
@@ -246,4 +246,4 @@ TEST(EngineCalls, ZeroThreadsAreOnePerCore) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

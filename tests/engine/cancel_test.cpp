@@ -9,13 +9,13 @@
 #include "samples/scenes.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
+constexpr milliseconds patience(test::sanitized ? 3000 : 200);
 
 class Cancel : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
@@ -104,7 +104,7 @@ TEST_P(Cancel, InAJoinOfOneCrowd) {
 
 TEST_P(Cancel, AtAnyMomentOfALargeScene) {
     for (const char* kind : {"dense", "rods", "sheets-z"}) {
-        const auto boxes = samples::make_scene(kind, testing::scaled(2'000'000, 10), 1);
+        const auto boxes = samples::make_scene(kind, test::scaled(2'000'000, 10), 1);
         for (const int delay : {0, 5, 30, 80, 150}) {
             SCOPED_TRACE(std::string(kind) + " " + std::to_string(delay));
             expect_all_cancelled(boxes, GetParam(), milliseconds(delay), true);
@@ -113,7 +113,7 @@ TEST_P(Cancel, AtAnyMomentOfALargeScene) {
 }
 
 TEST_P(Cancel, ListIsEmptyAfterwards) {
-    const auto boxes = samples::make_scene("dense", testing::scaled(2'000'000, 10), 1);
+    const auto boxes = samples::make_scene("dense", test::scaled(2'000'000, 10), 1);
     const Objects objects{std::span<const Box3f>(boxes)};
     const auto engine = make_local_engine(GetParam());
     PairList list;
@@ -148,4 +148,4 @@ TEST(CancelBefore, ARequestMadeBeforeTheCallHolds) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

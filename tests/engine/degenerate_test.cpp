@@ -12,10 +12,10 @@
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::same_pairs;
+using test::same_pairs;
 using Pairs = std::vector<Pair>;
 
 /// What all numbers of threads and both orders find; fails where they or the oracle disagree.
@@ -51,9 +51,9 @@ protected:
     }
     static Boxes of_kind(const std::string& kind, std::uint64_t objects) {
         if constexpr (std::is_same_v<Real, float>) {
-            return testing::make_boxes(kind, objects, 1);
+            return test::make_boxes(kind, objects, 1);
         } else {
-            return testing::make_double_boxes(kind, objects, 1);
+            return test::make_double_boxes(kind, objects, 1);
         }
     }
 };
@@ -269,7 +269,7 @@ TEST(DegenerateMixed, PrecisionsMeetInAJoin) {
 }
 
 TEST(DegenerateMixed, JoinWithAnEmptySet) {
-    const auto boxes = testing::make_boxes("uniform", 100, 1);
+    const auto boxes = test::make_boxes("uniform", 100, 1);
     const Objects some{std::span<const Box3f>(boxes)}, none{std::span<const Box3d>()};
     PairList list;
     const auto engine = make_local_engine(2);
@@ -279,7 +279,7 @@ TEST(DegenerateMixed, JoinWithAnEmptySet) {
 }
 
 TEST(DegenerateMixed, JoinOfASetWithItself) {
-    const auto boxes = testing::make_boxes("dense", 500, 1);
+    const auto boxes = test::make_boxes("dense", 500, 1);
     const Objects objects{std::span<const Box3f>(boxes)};
     PairList list;
     make_local_engine(2)->find_pairs(Join{objects, objects}, list);
@@ -308,4 +308,4 @@ RC_GTEST_PROP(DegenerateProperty, FewBoxesOnALattice, ()) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -173,4 +173,4 @@ TEST_P(EngineErrors, WhatASinkThrowsReachesTheCaller) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

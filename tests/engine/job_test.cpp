@@ -15,14 +15,14 @@
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::code_of;
-using testing::HeldJob;
-using testing::objects_of;
-using testing::same_bytes;
-using testing::touching_boxes;
+using test::code_of;
+using test::HeldJob;
+using test::objects_of;
+using test::same_bytes;
+using test::touching_boxes;
 
 std::vector<Box3d> as_doubles(const std::vector<Box3f>& boxes) {
     std::vector<Box3d> doubles;
@@ -65,7 +65,7 @@ void expect_as_direct(const Boxes& boxes, const std::vector<double>& padding, co
 }
 
 TEST(Jobs, FindWhatDirectCallsFind) {
-    const auto boxes = samples::make_scene("dense", testing::scaled(50'000, 5), 1);
+    const auto boxes = samples::make_scene("dense", test::scaled(50'000, 5), 1);
     const auto padding = some_padding(boxes.size());
     for (const Order order : {Order::ascending, Order::octal}) {
         SCOPED_TRACE(int(order));
@@ -126,7 +126,8 @@ TEST(Jobs, RunInTheOrderOfSubmission) {
             jobs.push_back(engine->submit_stream(touching_boxes, [&order, i](auto) { order.push_back(i); }));
         }
         for (int i = 0; i < 200; i += 3) jobs[std::size_t(i)].cancel();
-        for (const Job& job : jobs) EXPECT_TRUE(job.state() == JobState::queued || job.state() == JobState::cancelled);
+        for (const Job& job : jobs)
+            EXPECT_TRUE(job.state() == JobState::queued || job.state() == JobState::cancelled) << int(job.state());
         first.let_go_on();
         for (const Job& job : jobs) job.wait();
     }
@@ -153,7 +154,7 @@ TEST(Jobs, ManyFromManyThreadsBesideDirectCalls) {
 }
 
 TEST(Jobs, ProgressRisesAndReachesBothWhoAsk) {
-    const auto boxes = samples::make_scene("uniform", testing::scaled(200'000, 10), 1);
+    const auto boxes = samples::make_scene("uniform", test::scaled(200'000, 10), 1);
     const auto engine = make_local_engine(2);
     double told = 0;
     Job job = engine->submit(borrowed(objects_of(boxes)), {.progress = [&](double done) {
@@ -356,4 +357,4 @@ TYPED_TEST(AllocatedBoxes, MoreThanThereCanBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -7,16 +7,16 @@
 #include "samples/scenes.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-using testing::HeldJob;
-using testing::objects_of;
-using testing::touching_boxes;
+using test::HeldJob;
+using test::objects_of;
+using test::touching_boxes;
 
-constexpr milliseconds answer_time(testing::sanitized ? 3000 : 200);
+constexpr milliseconds answer_time(test::sanitized ? 3000 : 200);
 
 /// Expects `time` to return at most `answer_time`, in one of a few attempts: a machine busy with other work delays any
 /// thread.
@@ -168,4 +168,4 @@ TEST(JobTurns, DirectCallsAreNotPassedOver) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

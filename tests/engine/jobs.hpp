@@ -9,7 +9,7 @@
 
 #include "octopair/octopair.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// Two boxes that touch: one pair, one batch.
 inline const std::vector<Box3f> touching_boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}};
@@ -50,4 +50,4 @@ private:
     Job job_;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

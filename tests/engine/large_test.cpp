@@ -10,28 +10,28 @@
 #include "support/peak_memory.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr std::uint64_t pairs_of(std::uint64_t n) { return n * (n - 1) / 2; }
 
 TEST(EngineLarge, CountsBeyond32Bits) {
-    constexpr std::uint64_t objects = testing::sanitized ? 20'000 : 92'683;
-    static_assert(testing::sanitized || pairs_of(objects) == 4'295'022'903);
+    constexpr std::uint64_t objects = test::sanitized ? 20'000 : 92'683;
+    static_assert(test::sanitized || pairs_of(objects) == 4'295'022'903);
     const auto boxes = samples::make_scene("coincident", objects, 1);
-    const std::uint64_t before = testing::peak_rss();
+    const std::uint64_t before = test::peak_rss();
     for (const unsigned threads : {1u, 2u}) {
         EXPECT_EQ(make_local_engine(threads)->count_pairs(Objects{std::span<const Box3f>(boxes)}), pairs_of(objects));
     }
-    if (!testing::sanitized) {
-        EXPECT_LT(testing::peak_rss() - before, 100u << 20);
+    if (!test::sanitized) {
+        EXPECT_LT(test::peak_rss() - before, 100u << 20);
     }
 }
 
 TEST(EngineLarge, StreamsInBoundedMemory) {
-    constexpr std::uint64_t objects = testing::scaled(12'000, 4);
+    constexpr std::uint64_t objects = test::scaled(12'000, 4);
     const auto boxes = samples::make_scene("coincident", objects, 1);
-    const std::uint64_t before = testing::peak_rss();
+    const std::uint64_t before = test::peak_rss();
     for (const Order order : {Order::octal, Order::ascending}) {
         Options options;
         options.order = order;
@@ -42,8 +42,8 @@ TEST(EngineLarge, StreamsInBoundedMemory) {
             options);
         EXPECT_EQ(pairs, pairs_of(objects));
     }
-    if (!testing::sanitized) {
-        EXPECT_LT(testing::peak_rss() - before, 160u << 20);
+    if (!test::sanitized) {
+        EXPECT_LT(test::peak_rss() - before, 160u << 20);
     }
 }
 
@@ -57,18 +57,18 @@ std::vector<std::string> kinds_to_measure() {
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(, EngineMemory, ::testing::ValuesIn(kinds_to_measure()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, EngineMemory, ::testing::ValuesIn(kinds_to_measure()), test::param_name);
 
 TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
-    constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
+    constexpr std::uint64_t objects = test::scaled(1'000'000, 20);
     const auto boxes = samples::make_scene(GetParam(), objects, 1);
     const Objects all{std::span<const Box3f>(boxes)};
-    const std::uint64_t before = testing::peak_rss();
+    const std::uint64_t before = test::peak_rss();
     const auto engine = make_local_engine(2);
     engine->count_pairs(all);
-    const double bytes = double(testing::peak_rss() - before) / double(objects);
+    const double bytes = double(test::peak_rss() - before) / double(objects);
     RecordProperty("bytes_an_object", std::to_string(bytes));
-    if (!testing::sanitized) {
+    if (!test::sanitized) {
         EXPECT_LE(bytes, 56);
     }
     PairList list;
@@ -78,4 +78,4 @@ TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

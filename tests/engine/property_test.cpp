@@ -10,14 +10,14 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Case;
-using testing::same_bytes;
-using testing::same_pairs;
+using test::Case;
+using test::same_bytes;
+using test::same_pairs;
 
-constexpr std::uint64_t cases_a_kind = testing::scaled(300, 10);
+constexpr std::uint64_t cases_a_kind = test::scaled(300, 10);
 constexpr std::uint64_t least_buffer = 1 << 20;  // what Options::buffer_bytes is raised to
 
 /// One engine per number of threads, used for all cases: what a call leaves behind must not show in the next.
@@ -39,7 +39,7 @@ public:
         return second_ ? baselines::oracle_pairs_between(first_, *second_, case_.margin)
                        : baselines::oracle_pairs(first_, case_.margin);
     }
-    testing::Searched searched() const { return {first_, second_ ? &*second_ : nullptr}; }
+    test::Searched searched() const { return {first_, second_ ? &*second_ : nullptr}; }
 
     Options options(Order order) const {
         Options options;
@@ -128,16 +128,16 @@ void check_case(const Case& a_case) {
 class EngineProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EngineProperty, AgreesWithTheOracle) {
-    const std::uint64_t cases = testing::case_count(cases_a_kind);
+    const std::uint64_t cases = test::case_count(cases_a_kind);
     for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
-        const std::uint64_t seed = testing::case_seed(GetParam(), i);
-        const Case a_case = testing::make_case(GetParam(), seed);
+        const std::uint64_t seed = test::case_seed(GetParam(), i);
+        const Case a_case = test::make_case(GetParam(), seed);
         SCOPED_TRACE(a_case.describe() + "; replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         check_case(a_case);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, EngineProperty, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, EngineProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -12,7 +12,7 @@
 #include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::seconds;
@@ -115,4 +115,4 @@ TEST_P(Stream, EndsWhereItsReceiverFails) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

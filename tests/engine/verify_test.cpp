@@ -11,30 +11,30 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::AnyCall;
-using testing::Case;
+using test::AnyCall;
+using test::Case;
 
 class VerifiedKind : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(VerifiedKind, EveryCallPasses) {
     const auto engine = make_local_engine(2);
-    for (std::uint64_t i = 0; i < testing::case_count(testing::scaled(12, 2)); ++i) {
-        const Case asked = testing::make_case(GetParam(), testing::case_seed(GetParam(), i));
+    for (std::uint64_t i = 0; i < test::case_count(test::scaled(12, 2)); ++i) {
+        const Case asked = test::make_case(GetParam(), test::case_seed(GetParam(), i));
         for (unsigned way = 0; way < 8; ++way) {
             const AnyCall call{asked, way & 1 ? Order::octal : Order::ascending, (way & 2) != 0, (way & 4) != 0};
             AnyCall verified = call;
             verified.verify = true;
-            EXPECT_TRUE(testing::same_bytes(verified.made_by(*engine), call.made_by(*engine))) << asked.describe();
+            EXPECT_TRUE(test::same_bytes(verified.made_by(*engine), call.made_by(*engine))) << asked.describe();
             EXPECT_EQ(verified.counted_by(*engine), call.counted_by(*engine)) << asked.describe();
         }
         ASSERT_FALSE(HasFailure()) << asked.describe();
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 /// Finds pairs by another engine, and then gives one twice, leaves one out, or says a wrong number.
 class WrongEngine final : public Engine {
@@ -88,7 +88,7 @@ protected:
         }
     }
 
-    std::vector<Box3f> boxes_ = testing::make_boxes("dense", 500, 5);
+    std::vector<Box3f> boxes_ = test::make_boxes("dense", 500, 5);
     Objects objects_{std::span<const Box3f>(boxes_), {}};
     mutable WrongEngine engine_;
 };
@@ -146,7 +146,7 @@ TEST_P(VerifiedWrongEngine, FailsByItsNumbers) {
 INSTANTIATE_TEST_SUITE_P(Orders, VerifiedWrongEngine, ::testing::Values(Order::ascending, Order::octal));
 
 TEST(Verified, ShortFormAndProgress) {
-    const std::vector<Box3f> boxes = testing::make_boxes("uniform", 3000, 1);
+    const std::vector<Box3f> boxes = test::make_boxes("uniform", 3000, 1);
     for (const bool counted : {false, true}) {
         std::vector<double> told;
         Options options;
@@ -165,7 +165,7 @@ TEST(Verified, ShortFormAndProgress) {
 }
 
 TEST(Verified, ABadBoxIsRefusedAsEver) {
-    std::vector<Box3f> boxes = testing::make_boxes("uniform", 3000, 1);
+    std::vector<Box3f> boxes = test::make_boxes("uniform", 3000, 1);
     boxes[7].min[0] = 1e9f;
     Options options;
     options.verify = true;
@@ -197,4 +197,4 @@ TEST(Verified, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include "support/compare.hpp"
 #include "verification/row_search.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::optional<Finding> check_case(const Case& a_case, const std::vector<Pair>& e
     return {};
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

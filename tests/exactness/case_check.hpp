@@ -12,7 +12,7 @@
 #include "octopair/octopair.hpp"
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// What is wrong: which check found it, and what it found.
 struct Finding {
@@ -41,4 +41,4 @@ enum class Calls : std::uint8_t {
 std::optional<Finding> check_case(const Case& a_case, const std::vector<Pair>& expected, const EngineFor& engines,
                                   Calls calls = Calls::all);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -9,11 +9,11 @@
 #include "support/families.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t least_history_objects = testing::scaled(40'000, 10),
-                        most_history_objects = testing::scaled(200'000, 10);
+constexpr std::uint64_t least_history_objects = test::scaled(40'000, 10),
+                        most_history_objects = test::scaled(200'000, 10);
 
 std::uint64_t object_count(std::uint64_t seed) {
     samples::RandomStream random(seed, 4);
@@ -23,17 +23,17 @@ std::uint64_t object_count(std::uint64_t seed) {
 
 TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
 #ifdef OCTOPAIR_TEST_HOOKS
-    const testing::TuningScope tuning(default_tuning);  // which histories change
+    const test::TuningScope tuning(default_tuning);  // which histories change
 #endif
-    const auto families = testing::family_names();
+    const auto families = test::family_names();
     // A fifth of the large scenes, unless the environment asks for a number of cases.
-    const std::uint64_t count = testing::case_count(testing::scene_range(testing::SceneSize::large, 20).size() / 5);
+    const std::uint64_t count = test::case_count(test::scene_range(test::SceneSize::large, 20).size() / 5);
     const std::uint64_t most_tried = 4 * count;
     std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
     for (std::uint64_t i = 0; i < most_tried && done < count; ++i) {
-        const std::uint64_t seed = testing::case_seed("large histories", i);
+        const std::uint64_t seed = test::case_seed("large histories", i);
         const std::string& family = families[seed % families.size()];
-        testing::LargeHistory history(family, object_count(seed), seed);
+        test::LargeHistory history(family, object_count(seed), seed);
         if (history.has_too_many_pairs()) continue;
         const auto finding = history.run();
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text << "; OCTOPAIR_TEST_SEED=" << seed
@@ -53,7 +53,7 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
 
 /// A scene whose full detections once gave pairs twice, so that pairs of what moved away stayed for good.
 TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
-    const std::vector<Box3f> boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     Scene scene(SceneOptions{.threads = 2});
     std::vector<ObjectId> ids(boxes.size());
     scene.add(Objects{std::span<const Box3f>(boxes), {}}, ids);
@@ -79,4 +79,4 @@ TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

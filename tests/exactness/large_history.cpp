@@ -15,7 +15,7 @@
 #include "support/kinds.hpp"
 #include "verification/row_search.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -287,4 +287,4 @@ Box3d LargeHistory::moved(const Box3d& box, bool far) {
     return float64_ ? result : rounded_to_float32(result);
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

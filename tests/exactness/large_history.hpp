@@ -17,7 +17,7 @@
 #include "samples/random.hpp"
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class LargeHistory {
 public:
@@ -77,4 +77,4 @@ private:
     std::uint64_t full_steps_ = 0, partial_steps_ = 0;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

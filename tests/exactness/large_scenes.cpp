@@ -4,7 +4,7 @@
 #include "samples/random.hpp"
 #include "support/families.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -52,4 +52,4 @@ Case cloth_case(std::uint64_t objects, std::uint64_t seed) {
     }
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

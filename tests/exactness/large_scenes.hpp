@@ -7,7 +7,7 @@
 
 #include "exactness/case_check.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// The i-th large case: `least` to 7 times as many objects of a family, with few enough pairs to be judged. A pure
 /// function of its arguments.
@@ -19,4 +19,4 @@ std::optional<Finding> check_large_case(const Case& a_case, const EngineFor& eng
 /// Vertices of a cloth against its faces, as a cloth simulation asks.
 Case cloth_case(std::uint64_t objects, std::uint64_t seed);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

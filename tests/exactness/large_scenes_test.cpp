@@ -12,25 +12,25 @@
 #include "support/families.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Calls;
-using testing::Case;
+using test::Calls;
+using test::Case;
 
-constexpr std::uint64_t usual_scenes = testing::scaled(20, 10);
+constexpr std::uint64_t usual_scenes = test::scaled(20, 10);
 constexpr std::uint64_t large_parts = 4;  // of the scenes, so that several processes can share them
-constexpr std::uint64_t least_objects = testing::scaled(9'000, 3);
+constexpr std::uint64_t least_objects = test::scaled(9'000, 3);
 
 class LargeScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(LargeScenes, AgreeWithTheSecondAlgorithm) {
-    const testing::EngineFor engines = testing::local_engines();
-    const testing::SceneRange scenes =
-        testing::scene_range(testing::SceneSize::large, usual_scenes).part(GetParam(), large_parts);
+    const test::EngineFor engines = test::local_engines();
+    const test::SceneRange scenes =
+        test::scene_range(test::SceneSize::large, usual_scenes).part(GetParam(), large_parts);
     for (std::uint64_t i = scenes.begin; i < scenes.end; ++i) {
-        const Case a_case = testing::large_case(i, least_objects);
-        const auto finding = testing::check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
+        const Case a_case = test::large_case(i, least_objects);
+        const auto finding = test::check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
         ASSERT_FALSE(finding) << "large case " << i << ", " << a_case.describe() << ": " << finding->check << ": "
                               << finding->text;
     }
@@ -43,22 +43,22 @@ class LongTails : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(LongTails, GiveEachPairOnce) {
     Case a_case;
-    a_case.first.boxes = testing::long_tailed_boxes(40'000, GetParam());
+    a_case.first.boxes = test::long_tailed_boxes(40'000, GetParam());
     a_case.limit = 1'000;
     std::fill_n(a_case.threads, 3, 2);
-    const testing::EngineFor engines = testing::local_engines();
+    const test::EngineFor engines = test::local_engines();
     const auto check = [&] { return check_large_case(a_case, engines, Calls::all); };
     ASSERT_FALSE(check()) << check()->text;
-    a_case.second.emplace().boxes = testing::long_tailed_boxes(20'000, GetParam() + 100);
+    a_case.second.emplace().boxes = test::long_tailed_boxes(20'000, GetParam() + 100);
     ASSERT_FALSE(check()) << check()->text;
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LongTails, ::testing::Values(2, 13, 36));
 
 TEST(ClothScenes, GiveEachPairOnce) {
-    const testing::EngineFor engines = testing::local_engines();
+    const test::EngineFor engines = test::local_engines();
     for (const std::uint64_t seed : {1, 20, 40}) {
-        const Case a_case = testing::cloth_case(testing::scaled(120'000, 4), seed);
+        const Case a_case = test::cloth_case(test::scaled(120'000, 4), seed);
         const auto finding = check_large_case(a_case, engines, Calls::few);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
@@ -87,13 +87,13 @@ SetOfPairs pairs_of(const std::vector<std::uint32_t>& names, std::uint32_t offse
 
 class Metamorphic : public ::testing::TestWithParam<std::string> {
 protected:
-    static constexpr std::uint64_t objects = testing::scaled(1'000'000, 50);
+    static constexpr std::uint64_t objects = test::scaled(1'000'000, 50);
 
     Metamorphic() : boxes_(objects), names_(objects) {
         std::iota(names_.begin(), names_.end(), 0u);
         // Of a family: the first of its scenes that is one set of float32 boxes with few pairs.
         for (std::uint64_t seed = 1;; ++seed) {
-            Case a_case = testing::make_family_case(GetParam(), objects, seed);
+            Case a_case = test::make_family_case(GetParam(), objects, seed);
             if (a_case.second || a_case.first.boxes.index() != 0) continue;
             boxes_ = std::get<std::vector<Box3f>>(std::move(a_case.first.boxes));
             names_.resize(boxes_.size());
@@ -153,4 +153,4 @@ TEST_P(Metamorphic, PermutedMirroredScaledAndCut) {
 INSTANTIATE_TEST_SUITE_P(Families, Metamorphic, ::testing::Values("long_tail", "nested", "lattice"));
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -10,7 +10,7 @@
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 struct Planted {
@@ -27,13 +27,13 @@ class PlantedFault : public ::testing::TestWithParam<Planted> {};
 TEST_P(PlantedFault, IsFound) {
     constexpr std::uint64_t most = 1000;  // a tenth of the scenes of SmallScenes
     constexpr std::uint64_t enough = 5;
-    const testing::EngineFor engines = testing::local_engines();
+    const test::EngineFor engines = test::local_engines();
     std::map<std::string, std::uint64_t> found_by;
     std::uint64_t first = most, findings = 0;
     {
-        const testing::FaultScope planted(GetParam().fault);
+        const test::FaultScope planted(GetParam().fault);
         for (std::uint64_t seed = 0; seed < most && findings < enough; ++seed) {
-            const auto finding = testing::check_small_cases({seed, seed + 1}, engines);
+            const auto finding = test::check_small_cases({seed, seed + 1}, engines);
             if (!finding) continue;
             if (findings++ == 0) first = seed;
             ++found_by[finding->check];
@@ -63,6 +63,6 @@ static_assert(planted_here.size() + 2 == fault_count);
 INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), planted_name_of);
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test
 
 #endif

@@ -15,7 +15,7 @@
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr std::uint64_t objects = 60;
@@ -50,7 +50,7 @@ public:
     Scene& scene() { return scene_; }
     const std::vector<Pair>& last() const { return last_; }
     std::vector<Pair> true_pairs() const {
-        testing::Model model;
+        test::Model model;
         for (std::uint32_t i = 0; i < objects; ++i) model.objects[i] = {ids_[i], wide(boxes_[i]), 0, {}};
         return model.pairs();
     }
@@ -72,7 +72,7 @@ public:
 
     /// Makes a step with a fault and reads its pairs. Returns the message that this throws; empty if the fault does not show.
     std::string faulty_step(Fault fault) {
-        const testing::FaultScope planted(fault);
+        const test::FaultScope planted(fault);
         try {
             (void)scene_.step();
             last_ = scene_.pairs().to_vector();
@@ -92,7 +92,7 @@ private:
 };
 
 Tuning tuning_with(std::uint64_t seed, StepChoice step) {
-    Tuning tuning = testing::tiny_tuning(seed);
+    Tuning tuning = test::tiny_tuning(seed);
     tuning.scene = default_tuning.scene;
     tuning.scene.step = step;
     return tuning;
@@ -104,7 +104,7 @@ TEST_P(DoubledPairs, AreAnErrorThatChangesNothing) {
     int errors = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const testing::TuningScope tiny(tuning_with(seed, seed % 2 == 0 ? StepChoice::full : StepChoice::incremental));
+        const test::TuningScope tiny(tuning_with(seed, seed % 2 == 0 ? StepChoice::full : StepChoice::incremental));
         TestScene test(seed);
         test.check_step();
         test.move(objects);
@@ -136,7 +136,7 @@ TEST(MissingPairs, OfAFullStepComeBackWithTheNext) {
     int missing = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const testing::TuningScope tiny(tuning_with(seed, StepChoice::full));
+        const test::TuningScope tiny(tuning_with(seed, StepChoice::full));
         TestScene test(seed);
         test.check_step();
         test.move(objects);
@@ -161,7 +161,7 @@ TEST(MissingPairs, ThatEndAreAnErrorUntilTheNextFullStep) {
     int errors = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const testing::TuningScope tiny(tuning_with(seed, StepChoice::incremental));
+        const test::TuningScope tiny(tuning_with(seed, StepChoice::incremental));
         TestScene test(seed);
         ASSERT_EQ(test.faulty_step(Fault::window_end_open), "");
         const std::vector<Pair> all = test.true_pairs();
@@ -182,6 +182,6 @@ TEST(MissingPairs, ThatEndAreAnErrorUntilTheNextFullStep) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test
 
 #endif

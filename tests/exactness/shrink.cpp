@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::string as_test(const Case& a_case) {
     return text.str();
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

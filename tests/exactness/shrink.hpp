@@ -7,7 +7,7 @@
 
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 using Fails = std::function<bool(const Case&)>;
 
@@ -18,4 +18,4 @@ Case shrunk(Case a_case, const Fails& fails, std::chrono::seconds patience);
 /// The boxes and options of a case as C++ that a test can hold; of a case with many objects only a description.
 std::string as_test(const Case& a_case);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -11,39 +11,39 @@
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t usual_histories = testing::scaled(1500, 20);
+constexpr std::uint64_t usual_histories = test::scaled(1500, 20);
 constexpr std::uint64_t history_parts = 4;  // of the histories, so that several processes can share them
 
 class SmallHistories : public ::testing::TestWithParam<std::uint64_t> {};
 
 /// Three of four names are of families.
 std::string history_name(samples::RandomStream& random) {
-    static const auto families = testing::family_names(), kinds = testing::all_kind_names();
+    static const auto families = test::family_names(), kinds = test::all_kind_names();
     const auto& names = random.below(4) != 0 ? families : kinds;
     return names[random.below(names.size())];
 }
 
 /// Mostly few objects: brute force and nested octrees take long for many.
-testing::HistorySize history_size(samples::RandomStream& random) {
+test::HistorySize history_size(samples::RandomStream& random) {
     const std::uint64_t size = random.below(100);
     return {size < 50 ? 20u : size < 95 ? 70u : 300u, 12};
 }
 
 TEST_P(SmallHistories, AreWhatBruteForceFinds) {
     // As many more than usual as there are small scenes, unless the environment asks for a number of cases.
-    const std::uint64_t scenes = testing::scene_range(testing::SceneSize::small, 10'000).size();
-    const std::uint64_t count = testing::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
-    const testing::SceneRange part = testing::SceneRange{0, count}.part(GetParam(), history_parts);
+    const std::uint64_t scenes = test::scene_range(test::SceneSize::small, 10'000).size();
+    const std::uint64_t count = test::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
+    const test::SceneRange part = test::SceneRange{0, count}.part(GetParam(), history_parts);
     for (std::uint64_t i = part.begin; i < part.end; ++i) {
-        const std::uint64_t seed = testing::case_seed("small histories", i);
+        const std::uint64_t seed = test::case_seed("small histories", i);
         samples::RandomStream random(seed, 2);
         const std::string name = history_name(random);
         SCOPED_TRACE(name + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        const testing::TuningScope tiny(testing::tiny_tuning(seed));
-        testing::History<Scene> history(
+        const test::TuningScope tiny(test::tiny_tuning(seed));
+        test::History<Scene> history(
             name, seed, [](const SceneOptions& options) { return Scene(options); }, history_size(random));
         try {
             history.run();
@@ -55,15 +55,15 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
     if (part.size() < usual_histories / history_parts) return;
     using enum Path;
     EXPECT_EQ(
-        testing::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,
-                                  unit_of_inner, step_full, step_incremental, step_too_dear, log_overflowed,
-                                  octree_rebuilt, octree_for_queries, pairs_waited, pairs_merged, refilled}),
+        test::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,
+                               unit_of_inner, step_full, step_incremental, step_too_dear, log_overflowed,
+                               octree_rebuilt, octree_for_queries, pairs_waited, pairs_merged, refilled}),
         "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, SmallHistories, ::testing::Range(std::uint64_t(0), history_parts));
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test
 
 #endif

@@ -7,7 +7,7 @@
 #include "support/families.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 Case small_case(std::uint64_t seed) {
     static const auto families = family_names(), kinds = all_kind_names();
@@ -60,4 +60,4 @@ std::string paths_not_taken(std::initializer_list<Path> paths) {
 
 #endif
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include "base/test_hooks.hpp"
 #include "exactness/case_check.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// The i-th small case: 2 to 300 objects of a family, or of a kind with degenerate scenes. A pure function of `seed`.
 Case small_case(std::uint64_t seed);
@@ -44,4 +44,4 @@ std::string paths_not_taken(std::initializer_list<Path> paths);
 
 #endif
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -6,96 +6,96 @@
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t usual_small_scenes = testing::scaled(10'000, 20);
+constexpr std::uint64_t usual_small_scenes = test::scaled(10'000, 20);
 constexpr std::uint64_t small_parts = 4;  // of the scenes, so that several processes can share them
 
 class SmallScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(SmallScenes, AreWhatBruteForceFinds) {
-    const testing::SceneRange seeds =
-        testing::scene_range(testing::SceneSize::small, usual_small_scenes).part(GetParam(), small_parts);
-    const auto finding = testing::check_small_cases(seeds, testing::local_engines());
+    const test::SceneRange seeds =
+        test::scene_range(test::SceneSize::small, usual_small_scenes).part(GetParam(), small_parts);
+    const auto finding = test::check_small_cases(seeds, test::local_engines());
     ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
-    if (testing::sanitized || seeds.size() < usual_small_scenes / small_parts) return;
+    if (test::sanitized || seeds.size() < usual_small_scenes / small_parts) return;
     // All paths but keys_wide, whose keys of more than 32 bits need many objects: tests/engine/ascending_test.cpp has them.
     using enum Path;
-    EXPECT_EQ(testing::paths_not_taken({octant_divided,
-                                        octant_too_small,
-                                        octant_well_swept,
-                                        octant_multiplies,
-                                        octant_deepest,
-                                        table_further,
-                                        build_one_block,
-                                        build_blocks,
-                                        count_ranges,
-                                        kept_above_leaf,
-                                        ghost_entries,
-                                        crowded_octree,
-                                        class_bits_brought,
-                                        share_of_octants,
-                                        large_octant,
-                                        handed_down,
-                                        own_swept,
-                                        own_too_large,
-                                        own_window_too_wide,
-                                        handed_swept,
-                                        handed_too_large,
-                                        handed_window_too_wide,
-                                        join_swept,
-                                        join_crowded,
-                                        crowd_swept,
-                                        crowd_parted,
-                                        part_swept,
-                                        part_recursive,
-                                        nested_once,
-                                        nested_twice,
-                                        nested_thrice,
-                                        nested_deeper,
-                                        nested_join,
-                                        not_nested_largest,
-                                        not_nested_growth,
-                                        not_nested_depth,
-                                        one_tile,
-                                        tiles,
-                                        tile_skipped,
-                                        recursion_settled,
-                                        recursion_swept,
-                                        recursion_spanning,
-                                        recursion_halved,
-                                        recursion_shared,
-                                        sort_few,
-                                        sort_buckets,
-                                        sort_full_bucket,
-                                        sort_radix,
-                                        radix_blocks,
-                                        hits_few,
-                                        sweep_resumed,
-                                        hit_turned,
-                                        hit_settled,
-                                        pairs_flushed,
-                                        pairs_counted,
-                                        list_block_full,
-                                        bucket_sorted,
-                                        bucket_split,
-                                        keys_narrow,
-                                        buffer_over,
-                                        window,
-                                        window_of_one,
-                                        limit_reached,
-                                        stream_lead_wrote,
-                                        stream_lead_held,
-                                        stream_lead_full,
-                                        stream_helper_full,
-                                        radix_sorted}),
+    EXPECT_EQ(test::paths_not_taken({octant_divided,
+                                     octant_too_small,
+                                     octant_well_swept,
+                                     octant_multiplies,
+                                     octant_deepest,
+                                     table_further,
+                                     build_one_block,
+                                     build_blocks,
+                                     count_ranges,
+                                     kept_above_leaf,
+                                     ghost_entries,
+                                     crowded_octree,
+                                     class_bits_brought,
+                                     share_of_octants,
+                                     large_octant,
+                                     handed_down,
+                                     own_swept,
+                                     own_too_large,
+                                     own_window_too_wide,
+                                     handed_swept,
+                                     handed_too_large,
+                                     handed_window_too_wide,
+                                     join_swept,
+                                     join_crowded,
+                                     crowd_swept,
+                                     crowd_parted,
+                                     part_swept,
+                                     part_recursive,
+                                     nested_once,
+                                     nested_twice,
+                                     nested_thrice,
+                                     nested_deeper,
+                                     nested_join,
+                                     not_nested_largest,
+                                     not_nested_growth,
+                                     not_nested_depth,
+                                     one_tile,
+                                     tiles,
+                                     tile_skipped,
+                                     recursion_settled,
+                                     recursion_swept,
+                                     recursion_spanning,
+                                     recursion_halved,
+                                     recursion_shared,
+                                     sort_few,
+                                     sort_buckets,
+                                     sort_full_bucket,
+                                     sort_radix,
+                                     radix_blocks,
+                                     hits_few,
+                                     sweep_resumed,
+                                     hit_turned,
+                                     hit_settled,
+                                     pairs_flushed,
+                                     pairs_counted,
+                                     list_block_full,
+                                     bucket_sorted,
+                                     bucket_split,
+                                     keys_narrow,
+                                     buffer_over,
+                                     window,
+                                     window_of_one,
+                                     limit_reached,
+                                     stream_lead_wrote,
+                                     stream_lead_held,
+                                     stream_lead_full,
+                                     stream_helper_full,
+                                     radix_sorted}),
               "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, SmallScenes, ::testing::Range(std::uint64_t(0), small_parts));
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test
 
 #endif

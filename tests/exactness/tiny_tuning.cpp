@@ -5,7 +5,7 @@
 
 #include "samples/random.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -170,4 +170,4 @@ Tuning tiny_tuning(std::uint64_t seed) {
     return tuning;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

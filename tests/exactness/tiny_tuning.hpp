@@ -5,9 +5,9 @@
 
 #include "base/tuning.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// A pure function of the seed. Some constants stay as they are, others are 1 to a few.
 Tuning tiny_tuning(std::uint64_t seed);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

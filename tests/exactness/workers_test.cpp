@@ -14,7 +14,7 @@
 #include "support/families.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 /// Before the hooks are used: memory that has a name for workers as long as this process lives.
@@ -26,7 +26,7 @@ const int shared_hooks = [] {
 }();
 
 /// For 1 thread this process, for more as many worker processes: so octal order is compared between them.
-testing::EngineFor workers(Arrangement arrangement) {
+test::EngineFor workers(Arrangement arrangement) {
     std::shared_ptr<Engine> local = make_local_engine(2);
     std::shared_ptr<Engine> two = make_process_engine({.workers = 2, .arrangement = arrangement});
     std::shared_ptr<Engine> three = make_process_engine({.workers = 3, .arrangement = arrangement});
@@ -34,40 +34,40 @@ testing::EngineFor workers(Arrangement arrangement) {
 }
 
 TEST(LargeScenesOnWorkers, GiveEachPairOnce) {
-    const testing::EngineFor engines = workers(Arrangement::shared);
-    testing::Case long_tails;
-    long_tails.first.boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
-    for (testing::Case a_case : {long_tails, testing::cloth_case(testing::scaled(120'000, 8), 1)}) {
+    const test::EngineFor engines = workers(Arrangement::shared);
+    test::Case long_tails;
+    long_tails.first.boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
+    for (test::Case a_case : {long_tails, test::cloth_case(test::scaled(120'000, 8), 1)}) {
         a_case.threads[0] = 2, a_case.threads[1] = 3;
-        const auto finding = testing::check_large_case(a_case, engines, testing::Calls::few);
+        const auto finding = test::check_large_case(a_case, engines, test::Calls::few);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
 }
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-constexpr std::uint64_t usual = testing::scaled(300, 10);
+constexpr std::uint64_t usual = test::scaled(300, 10);
 
 class SmallScenesOnWorkers : public ::testing::Test {
 protected:
     /// Fewer than of one process, by as much whatever is asked for.
-    static testing::SceneRange seeds(std::uint64_t scenes) {
-        const testing::SceneRange all = testing::scene_range(testing::SceneSize::small, 10'000);
+    static test::SceneRange seeds(std::uint64_t scenes) {
+        const test::SceneRange all = test::scene_range(test::SceneSize::small, 10'000);
         return all.size() == 1 ? all : all.part(0, 10'000 / scenes);
     }
-    static void check(std::uint64_t scenes, const testing::EngineFor& engines) {
+    static void check(std::uint64_t scenes, const test::EngineFor& engines) {
         ASSERT_GE(shared_hooks, 0);
-        const auto finding = testing::check_small_cases(seeds(scenes), engines);
+        const auto finding = test::check_small_cases(seeds(scenes), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
 };
 
 TEST_F(SmallScenesOnWorkers, AreWhatBruteForceFinds) {
     check(usual, workers(Arrangement::shared));
-    if (testing::sanitized || seeds(usual).size() < usual) return;
+    if (test::sanitized || seeds(usual).size() < usual) return;
     using enum Path;
-    EXPECT_EQ(testing::paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
-                                        region_copied, ring_wrapped, keys_narrow, bucket_split}),
+    EXPECT_EQ(test::paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
+                                     region_copied, ring_wrapped, keys_narrow, bucket_split}),
               "");
 }
 
@@ -76,4 +76,4 @@ TEST_F(SmallScenesOnWorkers, InThePapersArrangement) { check(usual / 4, workers(
 #endif
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

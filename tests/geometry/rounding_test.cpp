@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <random>
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -55,4 +55,4 @@ TEST(Rounding, SumAboveIsTheSmallestThatIsNotBelow) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

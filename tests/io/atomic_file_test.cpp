@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "io/temporary.hpp"
+#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
@@ -80,7 +81,7 @@ TEST_F(AtomicFileTest, KeepsTheOrderOfSmallAndLargeWrites) {
         expected += "+-*";
     }
     file.commit();
-    EXPECT_TRUE(read_file(path_) == expected);
+    EXPECT_TRUE(same_sequence(read_file(path_), expected));
 }
 
 TEST_F(AtomicFileTest, AFullDiskLeavesTheOldFile) {

@@ -8,7 +8,7 @@
 #include "engine/mpi/partition/even_cuts.hpp"
 #include "mpi/ranks.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 /// Rank `from` sends rank `to` so many values.
@@ -86,4 +86,4 @@ TEST(RankCuts, AreEven) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

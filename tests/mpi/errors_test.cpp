@@ -10,11 +10,11 @@
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::own_rank;
-using testing::rank_count;
+using test::own_rank;
+using test::rank_count;
 
 class RankErrors : public ::testing::Test {
 protected:
@@ -32,7 +32,7 @@ protected:
     template <typename Call>
     void expect_on_all(ErrorCode code, const std::string& message, const Call& call) {
         const auto error = error_of(call);
-        ASSERT_TRUE(testing::on_all(error.has_value()));
+        ASSERT_TRUE(test::on_all(error.has_value()));
         EXPECT_EQ(int(error->code()), int(code)) << error->what();
         EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
         expect_usable();
@@ -40,18 +40,18 @@ protected:
     void expect_usable() {
         PairList list;
         (void)engine_->find_pairs(own(), list);
-        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(list.to_vector()), expected_));
+        EXPECT_TRUE(test::same_bytes(test::all_pieces(list.to_vector()), expected_));
     }
     bool last() const { return own_rank() + 1 == rank_count(); }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
-    std::vector<Box3f> own_ = testing::slice(boxes_, testing::Spread::even);
+    std::vector<Box3f> own_ = test::slice(boxes_, test::Spread::even);
     const std::unique_ptr<Engine> engine_ = make_mpi_engine(MPI_COMM_WORLD);
 };
 
 TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
-    const std::size_t begin = testing::own_slice(boxes_.size(), testing::Spread::even).begin;
+    const std::size_t begin = test::own_slice(boxes_.size(), test::Spread::even).begin;
     std::vector<Box3f> bad = own_;
     // Two on each rank; the first of all stands on the first.
     bad[17].max[1] = std::numeric_limits<float>::quiet_NaN();
@@ -63,7 +63,7 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
     EXPECT_EQ(list.size(), 0u);
     // On the last rank alone: its number is that among all.
     const std::vector<Box3f>& some = last() ? bad : own_;
-    const std::size_t of_last = std::size_t(testing::largest(last() ? begin + 12 : 0));
+    const std::size_t of_last = std::size_t(test::largest(last() ? begin + 12 : 0));
     expect_on_all(ErrorCode::bad_input, "object " + std::to_string(of_last) + ": min x", [&] {
         (void)engine_->count_pairs({std::span<const Box3f>(some), {}});
     });
@@ -169,7 +169,7 @@ TEST_F(RankErrors, AreNoneWhereThereAreFewObjectsOrNone) {
     const std::vector<Box3f> one_each(1, box);
     const std::uint64_t ranks = rank_count();
     EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(one_each), {}}, list).pairs, ranks * (ranks - 1) / 2);
-    EXPECT_EQ(testing::all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
+    EXPECT_EQ(test::all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
     const std::vector<Box3d> none;
     EXPECT_EQ(
         engine_->find_pairs(Join{{std::span<const Box3f>(one), {}}, {std::span<const Box3d>(none), {}}}, list).pairs,
@@ -203,10 +203,10 @@ TEST(RankEngine, WorksOnPartOfTheRanks) {
         (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
         gather_pairs(*engine, list);
         const std::vector<Pair> expected = rank == 0 ? find_pairs(boxes) : std::vector<Pair>();
-        EXPECT_TRUE(testing::same_bytes(list.to_vector(), expected));
+        EXPECT_TRUE(test::same_bytes(list.to_vector(), expected));
     }
     MPI_Comm_free(&half);
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -13,55 +13,54 @@
 #include "support/families.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::AnyCall;
-using testing::Case;
+using test::AnyCall;
+using test::Case;
 
 TEST(RankExactness, GivesEachPairOnceInLargeScenes) {
     const auto local = make_local_engine(1), ranks = make_mpi_engine(MPI_COMM_WORLD);
     Case long_tails;
-    long_tails.first.boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
-    for (const Case& whole : {long_tails, testing::cloth_case(testing::scaled(120'000, 8), 1)}) {
-        const Case own = testing::slice(whole, testing::Spread::lopsided);
+    long_tails.first.boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
+    for (const Case& whole : {long_tails, test::cloth_case(test::scaled(120'000, 8), 1)}) {
+        const Case own = test::slice(whole, test::Spread::lopsided);
         const AnyCall ascending{own, Order::ascending, false, false}, octal{own, Order::octal, false, false};
-        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(ascending.made_by(*ranks)),
-                                        testing::second_algorithm_pairs(whole)));
+        EXPECT_TRUE(test::same_bytes(test::all_pieces(ascending.made_by(*ranks)), test::second_algorithm_pairs(whole)));
         const AnyCall alone{whole, Order::octal, false, false};
-        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
+        EXPECT_TRUE(test::same_bytes(test::all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
     }
 }
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
 /// Fewer than of one process, by as much whatever is asked for.
-testing::SceneRange seeds() {
-    const testing::SceneRange all = testing::scene_range(testing::SceneSize::small, testing::scaled(10'000, 20));
-    return all.size() == 1 ? all : all.part(0, 50 * testing::rank_count());
+test::SceneRange seeds() {
+    const test::SceneRange all = test::scene_range(test::SceneSize::small, test::scaled(10'000, 20));
+    return all.size() == 1 ? all : all.part(0, 50 * test::rank_count());
 }
-bool are_enough() { return !testing::sanitized && testing::rank_count() > 1 && seeds().size() >= 200; }
+bool are_enough() { return !test::sanitized && test::rank_count() > 1 && seeds().size() >= 200; }
 
 /// All ranks make the calls on their slices of a case; the first one sets the tuning, before and after which they wait.
 class MpiSmallScenes : public ::testing::Test {
 protected:
     void set_tuning(const Tuning& tuning) {
-        (void)testing::on_all(true);
-        if (testing::own_rank() == 0) test_hooks().tuning = tuning;
-        (void)testing::on_all(true);
+        (void)test::on_all(true);
+        if (test::own_rank() == 0) test_hooks().tuning = tuning;
+        (void)test::on_all(true);
     }
 
-    void check(const Case& whole, const std::vector<Pair>& expected, testing::Spread spread) {
-        const Case own = testing::slice(whole, spread);
+    void check(const Case& whole, const std::vector<Pair>& expected, test::Spread spread) {
+        const Case own = test::slice(whole, spread);
         for (unsigned way = 0; way < 8; ++way) {
             const Order order = (way & 1) != 0 ? Order::octal : Order::ascending;
             const AnyCall asked{own, order, (way & 2) != 0, (way & 4) != 0};
-            const std::vector<Pair> found = testing::all_pieces(asked.made_by(*ranks_));
+            const std::vector<Pair> found = test::all_pieces(asked.made_by(*ranks_));
             // One process finds the same bytes, and brute force the same set.
             const AnyCall alone{whole, order, false, asked.limited};
-            EXPECT_TRUE(testing::same_bytes(found, alone.made_by(*local_)));
+            EXPECT_TRUE(test::same_bytes(found, alone.made_by(*local_)));
             if (!asked.limited && order == Order::ascending) {
-                EXPECT_TRUE(testing::same_bytes(found, expected));
+                EXPECT_TRUE(test::same_bytes(found, expected));
             }
             EXPECT_EQ(asked.counted_by(*ranks_), alone.counted_by(*local_));
         }
@@ -74,41 +73,41 @@ protected:
 TEST_F(MpiSmallScenes, OfSlices) {
     bool good = true;
     for (std::uint64_t seed = seeds().begin; seed < seeds().end && good; ++seed) {
-        const Case whole = testing::small_case(seed);
+        const Case whole = test::small_case(seed);
         SCOPED_TRACE("seed " + std::to_string(seed) + ": " + whole.describe());
-        set_tuning(testing::tiny_tuning(seed));
-        check(whole, testing::brute_force_pairs(whole), testing::spreads[seed % 3]);
+        set_tuning(test::tiny_tuning(seed));
+        check(whole, test::brute_force_pairs(whole), test::spreads[seed % 3]);
         set_tuning(default_tuning);
-        good = testing::on_all(!HasFailure());
+        good = test::on_all(!HasFailure());
     }
     if (!are_enough()) return;
     using enum Path;
-    EXPECT_EQ(testing::paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once}), "");
+    EXPECT_EQ(test::paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once}), "");
 }
 
 /// On rank 0 makes calls of an engine; the other ranks follow it.
 template <typename Calls>
 void lead_engines(const Calls& calls) {
-    if (testing::own_rank() != 0) return follow(MPI_COMM_WORLD);
+    if (test::own_rank() != 0) return follow(MPI_COMM_WORLD);
     const std::shared_ptr<Engine> leading = make_leading_engine(MPI_COMM_WORLD), local = make_local_engine(2);
     calls([=](unsigned threads) -> Engine& { return threads == 1 ? *local : *leading; });
 }
 
 TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
-    lead_engines([](const testing::EngineFor& engines) {
-        const auto finding = testing::check_small_cases(seeds(), engines);
+    lead_engines([](const test::EngineFor& engines) {
+        const auto finding = test::check_small_cases(seeds(), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
         if (!are_enough()) return;
         using enum Path;
-        EXPECT_EQ(testing::paths_not_taken({relay_full, relay_listed, relay_found_again, ranks_window}), "");
+        EXPECT_EQ(test::paths_not_taken({relay_full, relay_listed, relay_found_again, ranks_window}), "");
     });
 }
 
 TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
-    if (testing::rank_count() == 1) GTEST_SKIP() << "no neighbour";
-    lead_engines([](const testing::EngineFor& engines) {
-        const testing::FaultScope planted(Fault::rank_takes_neighbour);
-        const auto finding = testing::check_small_cases({0, 300}, engines);
+    if (test::rank_count() == 1) GTEST_SKIP() << "no neighbour";
+    lead_engines([](const test::EngineFor& engines) {
+        const test::FaultScope planted(Fault::rank_takes_neighbour);
+        const auto finding = test::check_small_cases({0, 300}, engines);
         ASSERT_TRUE(finding);
         std::printf("found by %s: %s\n", finding->check.c_str(), finding->text.c_str());
     });
@@ -117,4 +116,4 @@ TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
 #endif
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -9,10 +9,10 @@
 #include "support/pinned.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Spread;
+using test::Spread;
 
 class RankHashes : public ::testing::TestWithParam<std::string> {
 protected:
@@ -35,7 +35,7 @@ protected:
         return all;
     }
 
-    const testing::Pinned& pinned_ = testing::pinned_scene(GetParam());
+    const test::Pinned& pinned_ = test::pinned_scene(GetParam());
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
@@ -46,45 +46,44 @@ std::vector<std::string> sample_kinds() {
 
 TEST_P(RankHashes, AreThoseOfThreads) {
     const bool many = pinned_.pairs > 300'000;
-    if (many && testing::sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
+    if (many && test::sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
     const std::vector<Pair> octal = listed(*make_local_engine(1), view(boxes_), Order::octal);
     for (const unsigned threads : {1u, 2u}) {
         const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
-        for (const Spread spread : testing::spreads) {
+        for (const Spread spread : test::spreads) {
             if (many && spread != Spread::even) continue;
-            SCOPED_TRACE(std::to_string(threads) + " threads, " + testing::name_of(spread));
-            const std::vector<Box3f> own = testing::slice(boxes_, spread);
-            EXPECT_EQ(testing::hash_of(testing::all_pieces(listed(*engine, view(own), Order::ascending))),
+            SCOPED_TRACE(std::to_string(threads) + " threads, " + test::name_of(spread));
+            const std::vector<Box3f> own = test::slice(boxes_, spread);
+            EXPECT_EQ(test::hash_of(test::all_pieces(listed(*engine, view(own), Order::ascending))), pinned_.pair_hash);
+            EXPECT_EQ(test::hash_of(test::all_pieces(streamed(*engine, view(own), Order::ascending))),
                       pinned_.pair_hash);
-            EXPECT_EQ(testing::hash_of(testing::all_pieces(streamed(*engine, view(own), Order::ascending))),
-                      pinned_.pair_hash);
-            EXPECT_TRUE(testing::same_bytes(testing::all_pieces(listed(*engine, view(own), Order::octal)), octal));
-            EXPECT_TRUE(testing::same_bytes(testing::all_pieces(streamed(*engine, view(own), Order::octal)), octal));
+            EXPECT_TRUE(test::same_bytes(test::all_pieces(listed(*engine, view(own), Order::octal)), octal));
+            EXPECT_TRUE(test::same_bytes(test::all_pieces(streamed(*engine, view(own), Order::octal)), octal));
             EXPECT_EQ(engine->count_pairs(view(own)), pinned_.pairs);
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
 
 TEST(Ranks, ShareTheWork) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 100'000, 1);
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
     for (const Order order : {Order::octal, Order::ascending}) {
         PairList piece;
         Options options;
         options.order = order;
         const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, piece, options);
-        EXPECT_GT(piece.size(), summary.pairs / testing::rank_count() / 2);
-        EXPECT_LT(piece.size(), 2 * summary.pairs / testing::rank_count() + 1);
+        EXPECT_GT(piece.size(), summary.pairs / test::rank_count() / 2);
+        EXPECT_LT(piece.size(), 2 * summary.pairs / test::rank_count() + 1);
     }
 }
 
 /// With a buffer that the pairs of a rank do not fit into: in windows, up to any limit.
 TEST(Ranks, StreamManyPairsInBoundedMemory) {
-    const std::vector<Box3f> boxes = samples::make_scene("dense", testing::scaled(300'000, 2), 1);
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Box3f> boxes = samples::make_scene("dense", test::scaled(300'000, 2), 1);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
     const std::vector<Pair> expected = find_pairs(boxes);
     Options options;
     options.buffer_bytes = 1 << 20;
@@ -99,7 +98,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
             options);
         EXPECT_EQ(summary.pairs, std::min<std::uint64_t>(options.limit.value_or(~0ull), expected.size()));
         EXPECT_EQ(summary.truncated, summary.pairs < expected.size());
-        return testing::all_pieces(all);
+        return test::all_pieces(all);
     };
     for (const unsigned threads : {1u, 2u}) {
         const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
@@ -108,14 +107,14 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
             std::uint64_t most = 0;
             const std::vector<Pair> found = streamed(*engine, most);
             const auto wanted = std::span(expected).first(std::min<std::uint64_t>(limit, expected.size()));
-            EXPECT_TRUE(testing::same_bytes(found, {wanted.begin(), wanted.end()}));
+            EXPECT_TRUE(test::same_bytes(found, {wanted.begin(), wanted.end()}));
             EXPECT_LE(most * sizeof(Pair), options.buffer_bytes);
         }
         // And afterwards all again.
         options.limit.reset();
         PairList list;
         (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
-        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(list.to_vector()), expected));
+        EXPECT_TRUE(test::same_bytes(test::all_pieces(list.to_vector()), expected));
     }
 }
 
@@ -123,7 +122,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
 TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
     std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     boxes.insert(boxes.end(), 500, boxes.front());
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
     Options options;
     options.buffer_bytes = 1 << 20;
@@ -131,23 +130,23 @@ TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
     (void)engine->stream_pairs(
         {std::span<const Box3f>(own), {}},
         [&](std::span<const Pair> batch) { found.insert(found.end(), batch.begin(), batch.end()); }, options);
-    EXPECT_TRUE(testing::same_bytes(testing::all_pieces(found), find_pairs(boxes)));
+    EXPECT_TRUE(test::same_bytes(test::all_pieces(found), find_pairs(boxes)));
 }
 
 TEST(Ranks, GatherTheirPieces) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::lopsided);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
     PairList pairs;
     const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, pairs);
     gather_pairs(*engine, pairs);
-    if (testing::own_rank() == 0) {
+    if (test::own_rank() == 0) {
         EXPECT_EQ(pairs.size(), summary.pairs);
-        EXPECT_TRUE(testing::same_bytes(pairs.to_vector(), find_pairs(boxes)));
+        EXPECT_TRUE(test::same_bytes(pairs.to_vector(), find_pairs(boxes)));
     } else {
         EXPECT_EQ(pairs.size(), 0u);
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -6,23 +6,23 @@
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 class RankJobs : public ::testing::Test {
 protected:
     JobObjects own() const { return borrowed({std::span<const Box3f>(own_), {}}); }
-    bool last() const { return testing::own_rank() + 1 == testing::rank_count(); }
+    bool last() const { return test::own_rank() + 1 == test::rank_count(); }
     void expect_right(Job& job) {
         PairList pairs = job.take_pairs();
-        EXPECT_TRUE(testing::same_bytes(testing::all_pieces(pairs.to_vector()), expected_));
+        EXPECT_TRUE(test::same_bytes(test::all_pieces(pairs.to_vector()), expected_));
     }
     /// Takes seconds.
     JobObjects slow() const { return borrowed({std::span<const Box3f>(many_), {}}); }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
-    const std::vector<Box3f> own_ = testing::slice(boxes_, testing::Spread::even);
+    const std::vector<Box3f> own_ = test::slice(boxes_, test::Spread::even);
     const std::vector<Box3f> many_{60'000, Box3f{{0, 0, 0}, {1, 1, 1}}};
     std::unique_ptr<Engine> engine_ = make_mpi_engine(MPI_COMM_WORLD);
 };
@@ -33,7 +33,7 @@ TEST_F(RankJobs, RunInTurnWithCalls) {
         jobs.push_back(engine_->submit(own()));
         PairList list;
         (void)engine_->find_pairs({std::span<const Box3f>(own_), {}}, list);
-        EXPECT_EQ(testing::all_pieces(list.to_vector()).size(), expected_.size());
+        EXPECT_EQ(test::all_pieces(list.to_vector()).size(), expected_.size());
         jobs.push_back(engine_->submit(own()));
     }
     for (Job& job : jobs) expect_right(job);
@@ -78,4 +78,4 @@ TEST_F(RankJobs, TellTheSameErrorOnAllRanks) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

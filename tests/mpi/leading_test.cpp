@@ -16,16 +16,16 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::AnyCall;
-using testing::Case;
+using test::AnyCall;
+using test::Case;
 
 /// On rank 0 makes calls of an engine; the other ranks follow it.
 template <typename Calls>
 void lead(const Calls& calls, unsigned threads = 1) {
-    if (testing::own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
+    if (test::own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
     const auto engine = make_leading_engine(MPI_COMM_WORLD, {.threads = threads});
     calls(*engine);
 }
@@ -36,14 +36,14 @@ class RankLeadingProperty : public ::testing::TestWithParam<std::string> {};
 TEST_P(RankLeadingProperty, AgreesWithThreads) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
-        for (std::uint64_t i = 0; i < testing::case_count(testing::scaled(2, 1)); ++i) {
-            const std::uint64_t seed = testing::case_seed(GetParam(), i);
-            const Case whole = testing::make_case(GetParam(), seed);
+        for (std::uint64_t i = 0; i < test::case_count(test::scaled(2, 1)); ++i) {
+            const std::uint64_t seed = test::case_seed(GetParam(), i);
+            const Case whole = test::make_case(GetParam(), seed);
             SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed) + ": " + whole.describe());
             for (unsigned way = 0; way < 8; ++way) {
                 const AnyCall call{whole, (way & 1) != 0 ? Order::octal : Order::ascending, (way & 2) != 0,
                                    (way & 4) != 0};
-                EXPECT_TRUE(testing::same_bytes(call.made_by(engine), call.made_by(*local)));
+                EXPECT_TRUE(test::same_bytes(call.made_by(engine), call.made_by(*local)));
                 EXPECT_EQ(call.counted_by(engine), call.counted_by(*local));
             }
             if (HasFailure()) break;
@@ -51,7 +51,7 @@ TEST_P(RankLeadingProperty, AgreesWithThreads) {
     });
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankLeadingProperty, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, RankLeadingProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 class RankLeading : public ::testing::Test {
 protected:
@@ -59,7 +59,7 @@ protected:
     void expect_usable(Engine& engine) const {
         PairList list;
         const Summary summary = engine.find_pairs(objects(), list);
-        EXPECT_TRUE(testing::same_bytes(list.to_vector(), expected_));
+        EXPECT_TRUE(test::same_bytes(list.to_vector(), expected_));
         EXPECT_EQ(summary.pairs, expected_.size());
         EXPECT_FALSE(summary.truncated);
         EXPECT_GT(summary.entries, 0u);
@@ -74,8 +74,8 @@ protected:
 /// Far more pairs than the buffer holds: in the order of the tree some ranks' are found twice, ascending they come in windows.
 TEST_F(RankLeading, StreamsInBoundedMemory) {
     // All at one place, which is one rank's, beside a crowd that all ranks have a part of.
-    std::vector<Box3f> boxes = samples::make_scene("coincident", testing::scaled(1'000, 1), 1);
-    for (std::size_t i = 0; i < testing::scaled(6'000, 2); ++i) {
+    std::vector<Box3f> boxes = samples::make_scene("coincident", test::scaled(1'000, 1), 1);
+    for (std::size_t i = 0; i < test::scaled(6'000, 2); ++i) {
         Box3f& box = boxes.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             box.min[axis] = float((i * (axis * 24 + 7)) % 1009) / 1009;
@@ -86,9 +86,9 @@ TEST_F(RankLeading, StreamsInBoundedMemory) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const std::uint64_t count = local->count_pairs(all);
-        ASSERT_GT(count, testing::scaled(10 << 17, 4));  // pairs; 2^17 are 1 MiB
+        ASSERT_GT(count, test::scaled(10 << 17, 4));  // pairs; 2^17 are 1 MiB
         std::vector<std::optional<std::uint64_t>> limits = {{}, count / 3};
-        if (!testing::sanitized) limits.insert(limits.end(), {7, count - 5, count});
+        if (!test::sanitized) limits.insert(limits.end(), {7, count - 5, count});
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const auto& limit : limits) {
                 Options options;
@@ -103,7 +103,7 @@ TEST_F(RankLeading, StreamsInBoundedMemory) {
                     EXPECT_EQ(summary.truncated, limit && *limit < count);
                     return pairs;
                 };
-                EXPECT_TRUE(testing::same_bytes(streamed(engine), streamed(*local)));
+                EXPECT_TRUE(test::same_bytes(streamed(engine), streamed(*local)));
             }
         }
     });
@@ -117,8 +117,7 @@ TEST_F(RankLeading, TellsErrorsInTheWordsOfThreads) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const auto expect_same = [&](ErrorCode code, const auto& call) {
-            EXPECT_EQ(testing::message_of(code, [&] { call(engine); }),
-                      testing::message_of(code, [&] { call(*local); }));
+            EXPECT_EQ(test::message_of(code, [&] { call(engine); }), test::message_of(code, [&] { call(*local); }));
             expect_usable(engine);
         };
         std::vector<Box3f> bad = boxes_;
@@ -177,8 +176,8 @@ TEST_F(RankLeading, EndsAllRanksAtAStop) {
     lead([&](Engine& engine) {
         std::stop_source early;
         early.request_stop();
-        (void)testing::message_of(ErrorCode::cancelled,
-                                  [&] { (void)engine.count_pairs(objects(), {}, early.get_token()); });
+        (void)test::message_of(ErrorCode::cancelled,
+                               [&] { (void)engine.count_pairs(objects(), {}, early.get_token()); });
         for (const Order order : {Order::octal, Order::ascending}) {
             std::stop_source stop;
             const std::jthread stopper([&] {
@@ -188,7 +187,7 @@ TEST_F(RankLeading, EndsAllRanksAtAStop) {
             Options options;
             options.order = order;
             const PairSink sink = [](std::span<const Pair>) {};
-            (void)testing::message_of(ErrorCode::cancelled, [&] {
+            (void)test::message_of(ErrorCode::cancelled, [&] {
                 (void)engine.stream_pairs({std::span<const Box3f>(many_), {}}, sink, options, stop.get_token());
             });
         }
@@ -209,7 +208,7 @@ TEST_F(RankLeading, HasJobsAndCallsFromAllThreads) {
         std::vector<std::jthread> callers;
         callers.reserve(3);
         for (int i = 0; i < 3; ++i) callers.emplace_back([&] { expect_usable(engine); });
-        EXPECT_TRUE(testing::same_bytes(job.take_pairs().to_vector(), expected_));
+        EXPECT_TRUE(test::same_bytes(job.take_pairs().to_vector(), expected_));
         EXPECT_EQ(last, 1);
         cancelled.cancel();
         EXPECT_THROW((void)cancelled.take_pairs(), Error);
@@ -220,9 +219,9 @@ TEST_F(RankLeading, IsFollowedAgainAndByNobodyElse) {
     for (int i = 0; i < 3; ++i) lead([&](Engine& engine) { expect_usable(engine); });
 }
 
-TEST(RankPulse, TellsWhoIsSilent) {
-    if (testing::rank_count() == 1) GTEST_SKIP() << "nobody else";
-    const bool first = testing::own_rank() == 0, last = testing::own_rank() + 1 == testing::rank_count();
+TEST(RankHeartbeat, TellsWhoIsSilent) {
+    if (test::rank_count() == 1) GTEST_SKIP() << "nobody else";
+    const bool first = test::own_rank() == 0, last = test::own_rank() + 1 == test::rank_count();
     constexpr std::chrono::milliseconds silence(2000);  // longer than a busy machine stalls
     Communicator comm(MPI_COMM_WORLD);
     Heartbeat heartbeat(comm, silence);
@@ -241,7 +240,7 @@ TEST(RankPulse, TellsWhoIsSilent) {
         EXPECT_THROW(work(1000, [&] { heartbeat.beat(); }), Error);
         EXPECT_GE(std::chrono::steady_clock::now() - begun, silence);
         ASSERT_TRUE(heartbeat.lost());
-        EXPECT_EQ(*heartbeat.lost(), "rank " + std::to_string(testing::rank_count() - 1) + " has not answered for 2 s");
+        EXPECT_EQ(*heartbeat.lost(), "rank " + std::to_string(test::rank_count() - 1) + " has not answered for 2 s");
     } else if (!last) {
         work(500, [&] { heartbeat.beat(); });
     }
@@ -249,4 +248,4 @@ TEST(RankPulse, TellsWhoIsSilent) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

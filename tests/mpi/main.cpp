@@ -7,7 +7,7 @@
 #include "exactness/small_scenes.hpp"
 #include "mpi/ranks.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 class Failures final : public ::testing::EmptyTestEventListener {
@@ -33,12 +33,12 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test
 
 int main(int argc, char** argv) {
     int level = 0;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &level);
-    const int status = octopair::testing::run(argc, argv);
+    const int status = octopair::test::run(argc, argv);
     MPI_Finalize();
     return status;
 }

@@ -18,14 +18,14 @@
 #include "support/pinned.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::AnyCall;
-using testing::Case;
-using testing::own_rank;
-using testing::rank_count;
-using testing::Spread;
+using test::AnyCall;
+using test::Case;
+using test::own_rank;
+using test::rank_count;
+using test::Spread;
 
 std::unique_ptr<Engine> make_paper_engine(unsigned ranks_per_machine = 2, unsigned threads = 1) {
     return make_mpi_engine(
@@ -38,7 +38,7 @@ Objects view(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(b
 /// All is on the master, which alone finds out what to expect. Ranks go on alike, whatever comes of it.
 void expect_at_master(const std::vector<Pair>& own, const std::function<std::vector<Pair>()>& expected) {
     if (own_rank() == 0) {
-        EXPECT_TRUE(testing::same_bytes(own, expected()));
+        EXPECT_TRUE(test::same_bytes(own, expected()));
     } else {
         EXPECT_TRUE(own.empty());
     }
@@ -56,18 +56,17 @@ TEST(RankMaster, HasTheHashesOfThreads) {
     const auto local = make_local_engine(1);
     unsigned number = 0;
     for (const std::string_view kind : samples::scene_kinds()) {
-        const testing::Pinned& pinned = testing::pinned_scene(kind);
-        const Spread spread = testing::spreads[number % 3];
-        SCOPED_TRACE(std::string(kind) + ", " + testing::name_of(spread));
+        const test::Pinned& pinned = test::pinned_scene(kind);
+        const Spread spread = test::spreads[number % 3];
+        SCOPED_TRACE(std::string(kind) + ", " + test::name_of(spread));
         const auto engine = make_paper_engine(1 + number % 3, 1 + number % 2);
         ++number;
         const std::vector<Box3f> boxes = samples::make_scene(std::string(kind), pinned.objects, 1);
-        const std::vector<Box3f> own = testing::slice(boxes, spread);
+        const std::vector<Box3f> own = test::slice(boxes, spread);
         EXPECT_EQ(engine->count_pairs(view(own)), pinned.pairs);
         if (pinned.pairs > 300'000) continue;
         const std::vector<Pair> ascending = listed(*engine, view(own), Order::ascending);
-        EXPECT_EQ(testing::hash_of(ascending),
-                  own_rank() == 0 ? pinned.pair_hash : testing::hash_of(std::vector<Pair>()));
+        EXPECT_EQ(test::hash_of(ascending), own_rank() == 0 ? pinned.pair_hash : test::hash_of(std::vector<Pair>()));
         expect_at_master(listed(*engine, view(own), Order::octal),
                          [&] { return listed(*local, view(boxes), Order::octal); });
     }
@@ -78,12 +77,12 @@ TEST(RankMaster, AgreesWithThreadsOnAnyCall) {
     const auto local = make_local_engine(1);
     const auto engine = make_paper_engine();
     unsigned number = 0;
-    for (const std::string& kind : testing::all_kind_names()) {
-        for (std::uint64_t i = 0; i < testing::case_count(testing::scaled(2, 2)); ++i) {
-            const std::uint64_t seed = testing::case_seed(kind, i);
-            const Case whole = testing::make_case(kind, seed);
+    for (const std::string& kind : test::all_kind_names()) {
+        for (std::uint64_t i = 0; i < test::case_count(test::scaled(2, 2)); ++i) {
+            const std::uint64_t seed = test::case_seed(kind, i);
+            const Case whole = test::make_case(kind, seed);
             SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed) + ": " + whole.describe());
-            const Case own = testing::slice(whole, testing::spreads[number++ % 3]);
+            const Case own = test::slice(whole, test::spreads[number++ % 3]);
             for (const Order order : {Order::octal, Order::ascending}) {
                 for (const bool limited : {false, true}) {
                     const bool streamed = (number + unsigned(order) + unsigned(limited)) % 2 == 0;
@@ -98,7 +97,7 @@ TEST(RankMaster, AgreesWithThreadsOnAnyCall) {
 
 TEST(RankMaster, StreamsInWindowsUpToALimit) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 100'000, 1);
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
     const std::vector<Pair> expected = find_pairs(boxes);
     const auto engine = make_paper_engine();
     Options options;
@@ -121,7 +120,7 @@ TEST(RankMaster, GathersWhatIsThereAlready) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     const auto engine = make_paper_engine();
     PairList pairs;
-    const Summary summary = engine->find_pairs(view(testing::slice(boxes, Spread::lopsided)), pairs);
+    const Summary summary = engine->find_pairs(view(test::slice(boxes, Spread::lopsided)), pairs);
     EXPECT_EQ(summary.pairs, find_pairs(boxes).size());
     gather_pairs(*engine, pairs);
     expect_at_master(pairs.to_vector(), [&] { return find_pairs(boxes); });
@@ -160,25 +159,25 @@ TEST(RankMaster, NamesTheFirstBadBox) {
     const auto engine = make_paper_engine();
     for (const std::size_t bad : {std::size_t(4'987), std::size_t(2'500), std::size_t(12)}) {
         boxes[bad].max[1] = std::numeric_limits<float>::quiet_NaN();  // and those of the rounds before
-        const std::vector<Box3f> own = testing::slice(boxes, Spread::lopsided);
-        const std::vector<Box3f> well = testing::slice(good, Spread::even);
+        const std::vector<Box3f> own = test::slice(boxes, Spread::lopsided);
+        const std::vector<Box3f> well = test::slice(good, Spread::even);
         PairList list;
-        EXPECT_EQ(testing::message_of(ErrorCode::bad_input, [&] { (void)engine->find_pairs(view(own), list); }),
-                  testing::message_of(ErrorCode::bad_input, [&] { (void)find_pairs(boxes); }));
-        EXPECT_EQ(testing::message_of(ErrorCode::bad_input,
-                                      [&] {
-                                          (void)engine->count_pairs(Join{view(well), view(own)});
-                                      }),
-                  testing::message_of(ErrorCode::bad_input, [&] {
+        EXPECT_EQ(test::message_of(ErrorCode::bad_input, [&] { (void)engine->find_pairs(view(own), list); }),
+                  test::message_of(ErrorCode::bad_input, [&] { (void)find_pairs(boxes); }));
+        EXPECT_EQ(test::message_of(ErrorCode::bad_input,
+                                   [&] {
+                                       (void)engine->count_pairs(Join{view(well), view(own)});
+                                   }),
+                  test::message_of(ErrorCode::bad_input, [&] {
                       (void)make_local_engine(1)->count_pairs(Join{view(good), view(boxes)});
                   }));
     }
-    EXPECT_EQ(engine->count_pairs(view(testing::slice(good, Spread::even))), find_pairs(good).size());
+    EXPECT_EQ(engine->count_pairs(view(test::slice(good, Spread::even))), find_pairs(good).size());
 }
 
 TEST(RankMaster, EndsOnAllWhereItsReceiverFails) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 5'000, 1);
-    const std::vector<Box3f> own = testing::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
     const auto engine = make_paper_engine();
     const auto call = [&] {
         (void)engine->stream_pairs(view(own), [](std::span<const Pair>) { throw std::runtime_error("full"); });
@@ -186,7 +185,7 @@ TEST(RankMaster, EndsOnAllWhereItsReceiverFails) {
     if (own_rank() == 0) {
         EXPECT_THROW(call(), std::runtime_error);
     } else {
-        EXPECT_EQ(testing::message_of(ErrorCode::engine_failed, call), "rank 0: the receiver of the pairs failed");
+        EXPECT_EQ(test::message_of(ErrorCode::engine_failed, call), "rank 0: the receiver of the pairs failed");
     }
     expect_at_master(listed(*engine, view(own), Order::ascending), [&] { return find_pairs(boxes); });
 }
@@ -207,8 +206,8 @@ TEST(RankMaster, IsStoppedByAnotherRank) {
         Options options;
         options.order = order;
         PairList list;
-        EXPECT_EQ(testing::message_of(ErrorCode::cancelled,
-                                      [&] { (void)engine->find_pairs(view(many), list, options, stop.get_token()); }),
+        EXPECT_EQ(test::message_of(ErrorCode::cancelled,
+                                   [&] { (void)engine->find_pairs(view(many), list, options, stop.get_token()); }),
                   "cancelled");
     }
 }
@@ -225,15 +224,14 @@ TEST(RankMaster, HasFewObjectsOrNone) {
 }
 
 TEST(RankMaster, NeedsTheSameArrangementOnAllRanks) {
-    EXPECT_EQ(testing::message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }), "machines of no ranks");
+    EXPECT_EQ(test::message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }), "machines of no ranks");
     if (rank_count() == 1) GTEST_SKIP() << "one rank cannot differ";
-    EXPECT_EQ(testing::message_of(ErrorCode::usage, [] { (void)make_paper_engine(own_rank() == 0 ? 1 : 2); }),
+    EXPECT_EQ(test::message_of(ErrorCode::usage, [] { (void)make_paper_engine(own_rank() == 0 ? 1 : 2); }),
               "the arrangements of the ranks' engines differ");
-    EXPECT_EQ(
-        testing::message_of(ErrorCode::usage,
-                            [] { (void)(own_rank() == 0 ? make_paper_engine() : make_mpi_engine(MPI_COMM_WORLD)); }),
-        "the arrangements of the ranks' engines differ");
+    EXPECT_EQ(test::message_of(ErrorCode::usage,
+                               [] { (void)(own_rank() == 0 ? make_paper_engine() : make_mpi_engine(MPI_COMM_WORLD)); }),
+              "the arrangements of the ranks' engines differ");
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 SliceBounds own_slice(std::size_t objects, Spread spread) {
     const std::size_t ranks = rank_count(), rank = own_rank();
@@ -61,4 +61,4 @@ std::uint64_t largest(std::uint64_t own) {
     return own;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

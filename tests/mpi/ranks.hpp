@@ -16,7 +16,7 @@
 #include "octopair/mpi.hpp"
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 inline unsigned own_rank() {
     int rank = 0;
@@ -78,4 +78,4 @@ bool on_all(bool own);
 /// The largest of all ranks'.
 std::uint64_t largest(std::uint64_t own);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -35,7 +35,7 @@ bool is_inside(const Tetrahedron& corners, const Point3d& place) {
 TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
     std::mt19937 random(4);
     unsigned inside = 0, outside = 0, on_surface = 0;
-    for (unsigned round = 0; round < testing::scaled(600, 10); ++round) {
+    for (unsigned round = 0; round < test::scaled(600, 10); ++round) {
         // Tetrahedra through each other are one closed mesh, with corners and edges in line with each other and the places.
         std::vector<Tetrahedron> solids(3);
         std::vector<Triangle3d> faces;
@@ -63,7 +63,7 @@ TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
         }
         ++(around % 2 != 0 ? inside : outside);
     }
-    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GE(some, testing::scaled(10, 20));
+    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GE(some, test::scaled(10, 20));
 }
 
 TEST(RayParity, GoesOneWayAndCountsBothSides) {
@@ -79,7 +79,7 @@ TEST(RayParity, GoesOneWayAndCountsBothSides) {
 TEST(PointOnTriangle, IsThatOfRationalNumbers) {
     std::mt19937 random(5);
     unsigned on = 0;
-    for (unsigned i = 0; i < testing::scaled(800, 10); ++i) {
+    for (unsigned i = 0; i < test::scaled(800, 10); ++i) {
         const auto [triangle, other] = some_pair(i % pair_kinds, random);
         const Point3d place = other[0];
         const bool expected = oracle_meet(triangle, {place, place, place});
@@ -87,7 +87,7 @@ TEST(PointOnTriangle, IsThatOfRationalNumbers) {
             << ::testing::PrintToString(triangle) << ::testing::PrintToString(place);
         on += unsigned(expected);
     }
-    EXPECT_GT(on, testing::scaled(30, 10));
+    EXPECT_GT(on, test::scaled(30, 10));
 }
 
 }  // namespace

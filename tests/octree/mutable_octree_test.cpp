@@ -13,7 +13,7 @@
 #include "octree/linear_octree.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 bool overlap(const CellBox& a, const CellBox& b) {
@@ -83,8 +83,8 @@ class MutableOctreeTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MutableOctreeTest, FindsAllOnce) {
     for (const std::uint64_t objects : {1u, 40u, 3000u}) {
-        const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 7);
-        const std::vector<Box3f> others = testing::make_boxes(GetParam(), objects, 8);
+        const std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 7);
+        const std::vector<Box3f> others = test::make_boxes(GetParam(), objects, 8);
         Changing octree(boxes);
         for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / 60) {
             octree.expect_found(boxes[i]);
@@ -95,8 +95,8 @@ TEST_P(MutableOctreeTest, FindsAllOnce) {
 
 TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
     constexpr std::uint32_t objects = 1500;
-    const std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 9);
-    const std::vector<Box3f> others = testing::make_boxes(GetParam(), objects, 10);
+    const std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 9);
+    const std::vector<Box3f> others = test::make_boxes(GetParam(), objects, 10);
     Changing octree(boxes);
     std::mt19937 random(11);
     const std::uint32_t size = std::uint32_t(std::min(boxes.size(), others.size()));
@@ -110,7 +110,7 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 /// Takes every object.
 class TakeAll final : public NearestVisitor {
@@ -151,7 +151,7 @@ bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, M
 
 TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     constexpr unsigned moments = 12;
-    const std::vector<Box3f> boxes = testing::make_boxes("uniform", 50'000, 1);
+    const std::vector<Box3f> boxes = test::make_boxes("uniform", 50'000, 1);
     const LinearOctree linear = linear_octree_of(boxes);
     MutableOctree octree;
     const auto begin = std::chrono::steady_clock::now();
@@ -172,4 +172,4 @@ TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -11,7 +11,7 @@
 
 #include "octopair/error.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using Digits = std::vector<std::uint8_t>;
@@ -88,7 +88,9 @@ TEST(OctalCodePaper, TruncatedIntegersAreCompared) {
 TEST(OctalCodePaper, SequenceOfOverlappingOctants) {
     const OctalCode parent = OctalCode::from_integer(1200), child = OctalCode::from_integer(1210);
     const OctalCode grandchild = OctalCode::from_integer(1214), other = OctalCode::from_integer(1330);
-    EXPECT_TRUE(parent < child && child < grandchild && grandchild < other);
+    EXPECT_LT(parent, child);
+    EXPECT_LT(child, grandchild);
+    EXPECT_LT(grandchild, other);
     EXPECT_TRUE(common_path(parent, child) && common_path(parent, grandchild) && common_path(child, grandchild));
     EXPECT_EQ(child.parent(), parent);
     EXPECT_EQ(grandchild.parent(), child);
@@ -215,4 +217,4 @@ RC_GTEST_PROP(OctalCodeProperty, CellsInterleave, (std::uint32_t x, std::uint32_
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 
 #include "octree/dynamic/leaf_grid.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 SmallBox random_box(std::mt19937& random, std::uint32_t numbers) {
@@ -87,4 +87,4 @@ TEST(Unit, NumbersLoseNothing) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -35,7 +35,7 @@ TEST(PipelineEngines, GiveTheSameBytes) {
             const Outcome expected = outcome_of(*engines[0], boxes, options);
             EXPECT_GE(expected.pairs.size(), 5000u);
             for (std::size_t i = 1; i < engines.size(); ++i) {
-                EXPECT_TRUE(outcome_of(*engines[i], boxes, options) == expected) << i;
+                expect_same(outcome_of(*engines[i], boxes, options), expected);
             }
         }
     }

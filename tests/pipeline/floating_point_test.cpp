@@ -9,12 +9,13 @@
 #include "octopair/filters.hpp"
 #include "octopair/pipeline.hpp"
 #include "samples/meshes.hpp"
+#include "support/compare.hpp"
 #include "support/floating_point.hpp"
 
 namespace octopair::test {
 namespace {
 
-class PipelineFloatingPoint : public ::testing::TestWithParam<testing::CallerState> {};
+class PipelineFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
 
 /// What objects are made of, before anything is computed of it.
 struct Raw {
@@ -90,12 +91,12 @@ TEST_P(PipelineFloatingPoint, ChangesNothing) {
     const Found expected = find(raw, exact, options);
     EXPECT_FALSE(expected.pairs.empty());
     Found found;
-    testing::call_in(GetParam(), [&] { found = find(raw, exact, options); });
-    EXPECT_TRUE(found.pairs == expected.pairs);
-    EXPECT_TRUE(found.numbers == expected.numbers);
+    test::call_in(GetParam(), [&] { found = find(raw, exact, options); });
+    EXPECT_TRUE(same_sequence(found.pairs, expected.pairs));
+    EXPECT_TRUE(same_sequence(found.numbers, expected.numbers));
 }
 
-INSTANTIATE_TEST_SUITE_P(States, PipelineFloatingPoint, ::testing::ValuesIn(testing::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, PipelineFloatingPoint, ::testing::ValuesIn(test::caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "octopair/filters.hpp"
 #include "octopair/pipeline.hpp"
 #include "samples/scenes.hpp"
+#include "support/compare.hpp"
 
 namespace octopair::test {
 
@@ -40,8 +41,12 @@ private:
 struct Outcome {
     std::vector<Pair> pairs;
     std::vector<std::uint64_t> notes;
-    bool operator==(const Outcome&) const = default;
 };
+
+inline void expect_same(const Outcome& found, const Outcome& expected) {
+    EXPECT_TRUE(same_sequence(found.pairs, expected.pairs));
+    EXPECT_TRUE(same_sequence(found.notes, expected.notes));
+}
 
 inline CollisionSink into(Outcome& outcome) {
     return [&outcome](const Batch& batch) {

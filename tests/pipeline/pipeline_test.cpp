@@ -11,6 +11,7 @@
 
 #include "octopair/octopair.hpp"
 #include "pipeline/flow.hpp"
+#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
@@ -81,7 +82,7 @@ TEST_P(AnyPipeline, LetsThroughWhatAPlainLoopDoes) {
     for (int again = 0; again < 2; ++again) {
         Outcome found;
         const PipelineSummary summary = pipeline.run(*engine, all_of(boxes), into(found), options());
-        EXPECT_TRUE(found == expected);
+        expect_same(found, expected);
         EXPECT_EQ(summary.collisions, expected.pairs.size());
         EXPECT_FALSE(summary.truncated);
         EXPECT_EQ(summary.search.pairs, pairs.size());
@@ -127,7 +128,7 @@ TEST_P(AnyPipeline, JoinsTwoSets) {
     Outcome found;
     Pipeline pipeline = two_filters(GetParam().threads);
     pipeline.run(*engine, Join{all_of(first), all_of(second)}, into(found), asked);
-    EXPECT_TRUE(found == expected);
+    expect_same(found, expected);
 }
 
 TEST_P(AnyPipeline, TellsItsProgress) {
@@ -161,7 +162,7 @@ TEST(Pipeline, WithoutFiltersIsTheEngine) {
     Pipeline pipeline(2);
     Outcome found;
     EXPECT_EQ(pipeline.run(*engine, all_of(boxes), into(found)).collisions, pairs.size());
-    EXPECT_TRUE(found.pairs == pairs);
+    EXPECT_TRUE(same_sequence(found.pairs, pairs));
     EXPECT_TRUE(found.notes.empty());
     Options limited;
     limited.limit = 10;
@@ -199,7 +200,7 @@ TEST(Pipeline, KeepsPairsByNumberWithWhatIsKnownOfThem) {
         expected.notes.push_back(before.notes[i]);
     }
     EXPECT_FALSE(expected.pairs.empty());
-    EXPECT_TRUE(found == expected);
+    expect_same(found, expected);
 }
 
 TEST_P(AnyPipeline, FiltersPairsThatAreThere) {
@@ -216,7 +217,7 @@ TEST_P(AnyPipeline, FiltersPairsThatAreThere) {
     };
     Outcome found;
     const PipelineSummary summary = pipeline.filter(pairs, into(found), asked);
-    EXPECT_TRUE(found == expected);
+    expect_same(found, expected);
     EXPECT_EQ(summary.collisions, expected.pairs.size());
     EXPECT_FALSE(summary.truncated);
     EXPECT_EQ(summary.search.pairs, pairs.size());

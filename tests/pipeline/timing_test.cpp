@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds patience(testing::sanitized ? 3000 : 200);
+constexpr milliseconds patience(test::sanitized ? 3000 : 200);
 
 /// How long after a stop request a call ends.
 Clock::duration time_to_cancel(const std::function<void(std::stop_token)>& call) {

@@ -10,7 +10,7 @@
 #include "processes/asked.hpp"
 #include "processes/leftovers.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 void print_workers() {
@@ -43,6 +43,6 @@ void print_workers() {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test
 
-int main(int count, char** arguments) { octopair::testing::live(count > 1 ? arguments[1] : ""); }
+int main(int count, char** arguments) { octopair::test::live(count > 1 ? arguments[1] : ""); }

@@ -15,23 +15,23 @@
 #include "samples/random.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Asked;
-using testing::expect_right;
-using testing::Fault;
-using testing::FaultKind;
-using testing::How;
-using testing::Scene;
+using test::Asked;
+using test::expect_right;
+using test::Fault;
+using test::FaultKind;
+using test::How;
+using test::Scene;
 
-class Applications : public testing::Processes {
+class Applications : public test::Processes {
 protected:
     /// Calls that all kinds of faults happen to.
     void call_with_faults() {
-        testing::MappedPlan plan;
+        test::MappedPlan plan;
         {
-            const auto engine = testing::make_faulty_engine(3);
+            const auto engine = test::make_faulty_engine(3);
             for (int i = 0; i < 12; ++i) {
                 const auto kind = FaultKind(i % 3);
                 plan.set(std::vector<Fault>{{.step = Step::encode, .kind = kind}, {.step = Step::scan, .kind = kind}});
@@ -41,8 +41,8 @@ protected:
             EXPECT_EQ(faults.ended, 16u);
             EXPECT_EQ(faults.stopped, 8u);
         }
-        EXPECT_TRUE(testing::comes_true([] { return testing::children_of(::getpid()).empty(); },
-                                        std::chrono::milliseconds(500)));
+        EXPECT_TRUE(
+            test::comes_true([] { return test::children_of(::getpid()).empty(); }, std::chrono::milliseconds(500)));
     }
 
     const std::unique_ptr<Engine> local_ = make_local_engine(1);
@@ -107,11 +107,11 @@ private:
 };
 
 TEST_F(Applications, MayBeInterruptedAllTheTime) {
-    const Scene large("uniform", testing::scaled(1'000'000, 10), 1);  // whose copy takes a while to make room for
+    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // whose copy takes a while to make room for
     const Interrupter interrupter;
     call_with_faults();
     const auto engine = make_process_engine(2);
-    for (const Asked& asked : testing::all_ways()) expect_right(*engine, large, asked);
+    for (const Asked& asked : test::all_ways()) expect_right(*engine, large, asked);
     EXPECT_GT(timer_signals.load(), 100u);
 }
 
@@ -120,13 +120,13 @@ TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
                paper = make_process_engine({.workers = 3, .arrangement = Arrangement::paper});
     const auto message = [&](Engine& asked_engine, const Scene& scene, const Asked& asked) -> std::string {
         try {
-            (void)testing::ask(asked_engine, scene, asked);
+            (void)test::ask(asked_engine, scene, asked);
         } catch (const Error& error) {
             return std::to_string(int(error.code())) + error.what();
         }
         return "no error";
     };
-    samples::RandomStream random(testing::test_seed(1), 1);
+    samples::RandomStream random(test::test_seed(1), 1);
     for (int i = 0; i < 30; ++i) {
         Scene bad = scene_;
         for (auto wrong = 1 + random.below(3); wrong > 0; --wrong) {
@@ -135,8 +135,8 @@ TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
             if (i % 5 == 0) bad.second[index / 2].min[0] = std::numeric_limits<float>::infinity();
             if (i % 7 == 0) bad.padding[index] = -1;
         }
-        bad.wide_first = testing::Scene("uniform", 1, 1).wide_first;
-        Asked asked = testing::random_call(random.next());
+        bad.wide_first = test::Scene("uniform", 1, 1).wide_first;
+        Asked asked = test::random_call(random.next());
         asked.wide = false;
         SCOPED_TRACE(asked.describe());
         const std::string expected = message(*local_, bad, asked);
@@ -178,9 +178,9 @@ TEST_F(Applications, MayThrowFromTheirSinks) {
 TEST_F(Applications, MayLimitThePairs) {
     const Scene scene("world10", 14'000, 1);
     const auto engine = make_process_engine(3);
-    const std::uint64_t all = testing::ask(*local_, scene, {.how = How::count}).count;
+    const std::uint64_t all = test::ask(*local_, scene, {.how = How::count}).count;
     for (const std::uint64_t limit : {std::uint64_t(0), std::uint64_t(1), all / 2, all - 1, all, all + 1}) {
-        for (Asked asked : testing::all_ways()) {
+        for (Asked asked : test::all_ways()) {
             asked.limit = limit;
             expect_right(*engine, scene, asked);
         }
@@ -194,8 +194,8 @@ TEST_F(Applications, MayCallFromManyThreads) {
     for (std::uint64_t i = 0; i < 4; ++i) {
         threads.emplace_back([&, i] {
             for (std::uint64_t call = 0; call < 5; ++call) {
-                const Asked asked = testing::random_call(i * 10 + call);
-                EXPECT_EQ(testing::ask(*engine, scene_, asked), testing::ask(*make_local_engine(1), scene_, asked));
+                const Asked asked = test::random_call(i * 10 + call);
+                EXPECT_EQ(test::ask(*engine, scene_, asked), test::ask(*make_local_engine(1), scene_, asked));
                 (void)worker_faults(*engine);
             }
         });
@@ -205,4 +205,4 @@ TEST_F(Applications, MayCallFromManyThreads) {
 TEST_F(Applications, HaveNoFaultsOfOtherEngines) { EXPECT_THROW((void)worker_faults(*local_), Error); }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -7,7 +7,7 @@
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -143,4 +143,4 @@ Asked random_call(std::uint64_t seed) {
     return asked;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

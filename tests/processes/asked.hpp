@@ -8,7 +8,7 @@
 
 #include "octopair/octopair.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 enum class How { list, stream, count };
 
@@ -62,4 +62,4 @@ std::vector<Asked> all_ways();
 /// Some call, drawn from `seed`.
 Asked random_call(std::uint64_t seed);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

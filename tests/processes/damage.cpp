@@ -11,7 +11,7 @@
 #include "engine/processes/shared_memory/layout.hpp"
 #include "samples/random.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -56,8 +56,9 @@ private:
             case 2:
                 return scribble(ControlBlockLayout::runs + random_.below(shares) * sizeof(Run), sizeof(Run));
             case 3:
-                return scribble(ControlBlockLayout::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
-                                sizeof(RingEntry));
+                return scribble(
+                    ControlBlockLayout::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
+                    sizeof(RingEntry));
             case 4:
                 return scribble(ControlBlockLayout::logs + slot_ * most_logged * sizeof(LoggedPage), 64);
             default:
@@ -85,4 +86,4 @@ std::unique_ptr<ShareObserver> make_damage(std::uint64_t seed, unsigned slot) {
     return std::make_unique<Damage>(seed, slot);
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

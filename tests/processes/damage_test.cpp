@@ -15,11 +15,11 @@
 #include "processes/leftovers.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Asked;
-using testing::Scene;
+using test::Asked;
+using test::Scene;
 
 /// Asks to stop after a while, by when whatever can be done is done.
 class Deadline {
@@ -40,18 +40,18 @@ private:
     std::jthread thread_;
 };
 
-class Damaged : public testing::Processes, public ::testing::WithParamInterface<int> {
+class Damaged : public test::Processes, public ::testing::WithParamInterface<int> {
 protected:
     void TearDown() override {
-        ::unsetenv(testing::damage_variable);
+        ::unsetenv(test::damage_variable);
         Processes::TearDown();
     }
 
     void expect_an_end(Engine& engine, const Asked& asked) {
         SCOPED_TRACE(asked.describe());
-        const Deadline deadline(std::chrono::seconds(testing::sanitized ? 60 : 15));
+        const Deadline deadline(std::chrono::seconds(test::sanitized ? 60 : 15));
         try {
-            (void)testing::ask(engine, scene_, asked, deadline.token());
+            (void)test::ask(engine, scene_, asked, deadline.token());
         } catch (const Error& error) {
             EXPECT_GT(std::string(error.what()).size(), 10u);
         }
@@ -62,23 +62,23 @@ protected:
 };
 
 TEST_P(Damaged, TablesEndNoApplication) {
-    const std::uint64_t cases = testing::scaled(20, 10);
+    const std::uint64_t cases = test::scaled(20, 10);
     const auto local = make_local_engine(1);
     for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
-        const std::uint64_t seed = testing::test_seed(std::uint64_t(GetParam()) * 1000 + i);
+        const std::uint64_t seed = test::test_seed(std::uint64_t(GetParam()) * 1000 + i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        ::setenv(testing::damage_variable, std::to_string(seed).c_str(), 1);
+        ::setenv(test::damage_variable, std::to_string(seed).c_str(), 1);
         const Arrangement arrangement = i % 5 == 4 ? Arrangement::paper : Arrangement::shared;
-        const auto engine = testing::make_faulty_engine(3, arrangement);
-        for (std::uint64_t call = 0; call < 4; ++call) expect_an_end(*engine, testing::random_call(seed * 10 + call));
-        ::unsetenv(testing::damage_variable);
-        for (const pid_t worker : testing::children_of(::getpid())) (void)::kill(worker, SIGKILL);
-        const Asked asked = testing::random_call(seed);
-        EXPECT_EQ(testing::ask(*engine, scene_, asked), testing::ask(*local, scene_, asked));
+        const auto engine = test::make_faulty_engine(3, arrangement);
+        for (std::uint64_t call = 0; call < 4; ++call) expect_an_end(*engine, test::random_call(seed * 10 + call));
+        ::unsetenv(test::damage_variable);
+        for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);
+        const Asked asked = test::random_call(seed);
+        EXPECT_EQ(test::ask(*engine, scene_, asked), test::ask(*local, scene_, asked));
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(, Damaged, ::testing::Range(0, 5));
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 MappedPlan::MappedPlan() : file_(::memfd_create("faults", MFD_CLOEXEC)), named_(true) {
     if (!file_.open() || ::ftruncate(file_.number(), sizeof(FaultPlan)) != 0)
@@ -53,4 +53,4 @@ FaultCounts MappedPlan::happened() const {
     return counts;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

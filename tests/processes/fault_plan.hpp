@@ -16,7 +16,7 @@
 #include "base/descriptor.hpp"
 #include "engine/processes/shared_memory/layout.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// `mute`: the worker fails and does not say why; it lives on, so that this is no loss and not counted.
 enum class FaultKind : std::uint32_t { kill, crash, stop, mute };
@@ -73,4 +73,4 @@ private:
     bool named_ = false;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -13,19 +13,19 @@
 #include "samples/random.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using samples::RandomStream;
-using testing::Answer;
-using testing::Asked;
-using testing::Fault;
-using testing::FaultKind;
-using testing::How;
-using testing::Moment;
+using test::Answer;
+using test::Asked;
+using test::Fault;
+using test::FaultKind;
+using test::How;
+using test::Moment;
 
 constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
-constexpr std::uint64_t faults_a_case = testing::scaled(115, 8);
+constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
 constexpr unsigned most_of_a_step = 2;  // in one call: the third of a share would end it
 constexpr unsigned most_tries = 20;
 
@@ -62,22 +62,22 @@ std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
     return faults;
 }
 
-class Faults : public testing::Processes, public ::testing::WithParamInterface<FaultCase> {
+class Faults : public test::Processes, public ::testing::WithParamInterface<FaultCase> {
 protected:
     /// Makes one call until all faults that were planned for it have been taken.
     void fail_within(Engine& engine, const Asked& asked, std::span<const Fault> faults) {
         const auto local = make_local_engine(2);
-        const Answer expected = testing::ask(*local, scene_, asked);
+        const Answer expected = test::ask(*local, scene_, asked);
         plan_.set(faults);
         for (unsigned tries = 0; !plan_.empty() && tries < most_tries; ++tries) {
-            testing::expect_same(testing::ask(engine, scene_, asked), expected);
+            test::expect_same(test::ask(engine, scene_, asked), expected);
         }
         plan_.set({});
     }
 
     /// What happened must be all that the engine counted.
     void expect_accounted(const Engine& engine) {
-        const testing::FaultCounts happened = plan_.happened();
+        const test::FaultCounts happened = plan_.happened();
         const WorkerFaults counted = worker_faults(engine);
         std::uint64_t ended = 0, stopped = 0;
         for (std::size_t step = 0; step < happened.size(); ++step) {
@@ -92,8 +92,8 @@ protected:
 
     /// Every step that the call has, by every kind of fault.
     void expect_all_kinds(bool ordered) {
-        if (testing::sanitized) return;
-        const testing::FaultCounts happened = plan_.happened();
+        if (test::sanitized) return;
+        const test::FaultCounts happened = plan_.happened();
         for (const Step step : fault_steps) {
             if (step == Step::order && !ordered) continue;
             for (const std::uint64_t count : happened[std::size_t(step)]) {
@@ -108,20 +108,20 @@ protected:
         return all;
     }
 
-    testing::MappedPlan plan_;
-    testing::Scene scene_{GetParam().scene, GetParam().objects, 1};
+    test::MappedPlan plan_;
+    test::Scene scene_{GetParam().scene, GetParam().objects, 1};
 };
 
 TEST_P(Faults, ChangeNoPair) {
-    const std::uint64_t seed = testing::test_seed(1);
+    const std::uint64_t seed = test::test_seed(1);
     SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
     const FaultCase& a_case = GetParam();
     const bool ordered = a_case.order == Order::ascending && a_case.how != How::count;
-    const auto engine = testing::make_faulty_engine(a_case.workers);
+    const auto engine = test::make_faulty_engine(a_case.workers);
     for (std::uint64_t call = 0; happened() < faults_a_case && !HasFailure(); ++call) {
         ASSERT_LT(call, 50 * faults_a_case) << "too few faults happen";
         RandomStream random(seed, call);
-        Asked asked = testing::random_call(random.next());
+        Asked asked = test::random_call(random.next());
         asked.how = a_case.how;
         asked.order = a_case.order;
         asked.windows = a_case.windows;
@@ -147,4 +147,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

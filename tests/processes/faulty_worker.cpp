@@ -14,7 +14,7 @@
 #include "processes/damage.hpp"
 #include "processes/fault_plan.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 [[noreturn]] void end_by(int signal) {
@@ -89,13 +89,13 @@ std::unique_ptr<ShareObserver> make_observer(unsigned slot, MappedPlan& plan) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test
 
 int main(int count, char** arguments) {
     if (count != 2) return 2;
     const auto slot = unsigned(std::strtoul(arguments[1], nullptr, 10));
-    octopair::testing::MappedPlan plan{octopair::testing::MappedPlan::Named{}};
-    const auto observer = octopair::testing::make_observer(slot, plan);
+    octopair::test::MappedPlan plan{octopair::test::MappedPlan::Named{}};
+    const auto observer = octopair::test::make_observer(slot, plan);
     try {
         octopair::run_worker(octopair::Descriptor(octopair::worker_socket), slot, observer.get(), [] { ::_exit(0); });
     } catch (const std::exception&) {

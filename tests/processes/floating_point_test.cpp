@@ -7,12 +7,13 @@
 
 #include "octopair/octopair.hpp"
 #include "octopair/processes.hpp"
+#include "support/compare.hpp"
 #include "support/floating_point.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-class WorkerFloatingPoint : public ::testing::TestWithParam<testing::CallerState> {};
+class WorkerFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
 
 TEST_P(WorkerFloatingPoint, ChangesNoPairs) {
     for (const double step : {0.1, DBL_TRUE_MIN}) {
@@ -26,14 +27,14 @@ TEST_P(WorkerFloatingPoint, ChangesNoPairs) {
         options.margin = step;
         PairList expected, found;
         make_local_engine(1)->find_pairs(objects, expected, options);
-        testing::call_in(GetParam(), [&] { make_process_engine(2)->find_pairs(objects, found, options); });
+        test::call_in(GetParam(), [&] { make_process_engine(2)->find_pairs(objects, found, options); });
         EXPECT_FALSE(expected.to_vector().empty());
-        EXPECT_TRUE(found.to_vector() == expected.to_vector()) << step;
+        EXPECT_TRUE(same_sequence(found.to_vector(), expected.to_vector())) << step;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(States, WorkerFloatingPoint, ::testing::ValuesIn(testing::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, WorkerFloatingPoint, ::testing::ValuesIn(test::caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

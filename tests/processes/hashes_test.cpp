@@ -9,7 +9,7 @@
 #include "support/pinned.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 struct Found {
@@ -23,7 +23,7 @@ protected:
         Options options;
         options.order = order;
         options.buffer_bytes = 64 << 20;
-        testing::Hash hash;
+        test::Hash hash;
         const Summary summary = engine.stream_pairs(
             objects(), [&](std::span<const Pair> batch) { hash.add(batch); }, options);
         return {summary.pairs, hash.value()};
@@ -33,13 +33,13 @@ protected:
         options.order = order;
         PairList list;
         (void)engine.find_pairs(objects(), list, options);
-        testing::Hash hash;
+        test::Hash hash;
         for (const auto chunk : list.chunks()) hash.add(chunk);
         return {list.size(), hash.value()};
     }
     Objects objects() const { return {std::span<const Box3f>(boxes_), {}}; }
 
-    const testing::Pinned& pinned_ = testing::pinned_scene(GetParam());
+    const test::Pinned& pinned_ = test::pinned_scene(GetParam());
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
@@ -55,7 +55,7 @@ TEST_P(WorkerHashes, AreThoseOfThreads) {
     const bool many = pinned_.pairs > 1'000'000;
     for (const Arrangement arrangement : {Arrangement::shared, Arrangement::paper}) {
         for (const unsigned workers : {1u, 2u, 3u, 5u}) {
-            if (many && workers != 2 && (testing::sanitized || workers != 5)) continue;
+            if (many && workers != 2 && (test::sanitized || workers != 5)) continue;
             SCOPED_TRACE(std::to_string(workers) + " workers, arrangement " + std::to_string(int(arrangement)));
             const auto engine = make_process_engine({.workers = workers, .arrangement = arrangement});
             EXPECT_EQ(listed(*engine, Order::ascending), ascending);
@@ -67,7 +67,7 @@ TEST_P(WorkerHashes, AreThoseOfThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::uint64_t test_seed(std::uint64_t usual) {
     return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -12,7 +12,7 @@
 
 #include "octopair/processes.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 struct ProcessStatus {
     pid_t id = 0, parent = 0;
@@ -54,4 +54,4 @@ std::unique_ptr<Engine> make_faulty_engine(unsigned workers, Arrangement arrange
 /// A seed that OCTOPAIR_TEST_SEED overrides, to replay a failure.
 std::uint64_t test_seed(std::uint64_t usual);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

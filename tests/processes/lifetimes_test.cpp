@@ -11,10 +11,10 @@
 #include "processes/leftovers.hpp"
 #include "samples/scenes.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-class WorkerLifetimes : public testing::Processes {
+class WorkerLifetimes : public test::Processes {
 protected:
     static std::vector<Pair> expected(std::span<const Box3f> boxes) {
         PairList list;
@@ -29,7 +29,7 @@ TEST_F(WorkerLifetimes, ManySmallListsTakeNoDescriptors) {
     const auto pairs = expected(boxes);
     std::vector<PairList> lists;
     for (int i = 0; i < 300; ++i) engine->find_pairs({boxes}, lists.emplace_back());
-    EXPECT_LT(testing::Belongings::now().descriptors, 40u);
+    EXPECT_LT(test::Belongings::now().descriptors, 40u);
     for (const PairList& list : lists) ASSERT_EQ(list.to_vector(), pairs);
 }
 
@@ -42,13 +42,13 @@ TEST_F(WorkerLifetimes, LargeListsStayAsTheyAre) {
         pairs.push_back(expected(boxes));
         engine->find_pairs({boxes}, lists[i]);
     }
-    EXPECT_LT(testing::Belongings::now().descriptors, 40u);
+    EXPECT_LT(test::Belongings::now().descriptors, 40u);
     for (std::size_t i = 0; i < lists.size(); ++i) EXPECT_EQ(lists[i].to_vector(), pairs[i]) << i;
 }
 
 TEST_F(WorkerLifetimes, BoxesThatAreGoneAreForgotten) {
     const auto engine = make_process_engine(3);
-    const std::size_t before = testing::Belongings::now().descriptors;
+    const std::size_t before = test::Belongings::now().descriptors;
     const auto boxes = samples::make_scene("uniform", 20'000, 1);
     const auto pairs = expected(boxes);
     PairList list;
@@ -58,7 +58,7 @@ TEST_F(WorkerLifetimes, BoxesThatAreGoneAreForgotten) {
         engine->find_pairs({std::span<const Box3f>(array.boxes())}, list);
         ASSERT_EQ(list.to_vector(), pairs);
     }
-    EXPECT_LE(testing::Belongings::now().descriptors, before + 4) << "the arena and the pairs, but no array";
+    EXPECT_LE(test::Belongings::now().descriptors, before + 4) << "the arena and the pairs, but no array";
 }
 
 TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {
@@ -88,4 +88,4 @@ TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

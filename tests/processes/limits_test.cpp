@@ -12,14 +12,14 @@
 #include "processes/leftovers.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Answer;
-using testing::Asked;
-using testing::expect_right;
-using testing::How;
-using testing::Scene;
+using test::Answer;
+using test::Asked;
+using test::expect_right;
+using test::How;
+using test::Scene;
 
 /// Lowers a limit of this process, and of what it starts, while it lives.
 class Lowered {
@@ -38,18 +38,18 @@ private:
     rlimit before_{};
 };
 
-class WorkerLimits : public testing::Processes {
+class WorkerLimits : public test::Processes {
 protected:
     enum class End { right, refused };
     /// The right answer, or an Error of the resources or of the engine.
     End right_or_refused(Engine& engine, const Scene& scene, const Asked& asked) {
-        const Answer expected = testing::ask(*local_, scene, asked);
+        const Answer expected = test::ask(*local_, scene, asked);
         try {
-            EXPECT_EQ(testing::ask(engine, scene, asked), expected);
+            EXPECT_EQ(test::ask(engine, scene, asked), expected);
             return End::right;
         } catch (const Error& error) {
             EXPECT_TRUE(error.code() == ErrorCode::resource_limit || error.code() == ErrorCode::engine_failed)
-                << error.what();
+                << int(error.code()) << error.what();
             EXPECT_GT(std::string(error.what()).size(), 10u);
             return End::refused;
         }
@@ -67,7 +67,7 @@ rlim_t used_descriptors() {
 }
 
 TEST_F(WorkerLimits, OfDescriptorsWhileItIsMade) {
-    if (testing::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     unsigned made = 0, refused = 0;
     const rlim_t used = used_descriptors();
     for (rlim_t more = 0; more < 24; ++more) {
@@ -86,11 +86,11 @@ TEST_F(WorkerLimits, OfDescriptorsWhileItIsMade) {
 }
 
 TEST_F(WorkerLimits, OfDescriptorsLater) {
-    if (testing::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     const auto engine = make_process_engine(3);
     expect_right(*engine, scene_, {});
     for (rlim_t more = 0; more < 12; ++more) {
-        for (const pid_t worker : testing::children_of(::getpid())) (void)::kill(worker, SIGKILL);
+        for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);
         {
             const Lowered lowered(RLIMIT_NOFILE, used_descriptors() - rlim_t(6) + more);
             (void)right_or_refused(*engine, scene_, {.how = How::stream});
@@ -118,7 +118,7 @@ TEST_F(WorkerLimits, OfFilesThatPairsDoNotFitInto) {
         for (const Order order : {Order::octal, Order::ascending}) {
             SCOPED_TRACE(std::to_string(bytes) + ", order " + std::to_string(int(order)));
             try {
-                (void)testing::ask(*engine, crowd_, {.how = How::list, .order = order});
+                (void)test::ask(*engine, crowd_, {.how = How::list, .order = order});
                 ADD_FAILURE() << "fitted";
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
@@ -137,7 +137,7 @@ rlim_t mapped_bytes() {
 }
 
 TEST_F(WorkerLimits, OfAddressSpace) {
-    if (testing::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    if (test::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
     unsigned made = 0, refused = 0;
     for (const unsigned shift : {20u, 26u, 28u, 30u, 31u, 32u, 33u, 34u, 36u}) {
         const Lowered lowered(RLIMIT_AS, mapped_bytes() + (rlim_t(1) << shift));
@@ -179,4 +179,4 @@ TEST_F(WorkerLimits, OfProcesses) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

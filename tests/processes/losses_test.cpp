@@ -17,23 +17,23 @@
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::Asked;
-using testing::expect_right;
-using testing::Fault;
-using testing::FaultKind;
-using testing::How;
-using testing::Moment;
-using testing::Scene;
+using test::Asked;
+using test::expect_right;
+using test::Fault;
+using test::FaultKind;
+using test::How;
+using test::Moment;
+using test::Scene;
 
-class WorkerLosses : public testing::Processes {};
+class WorkerLosses : public test::Processes {};
 
 /// Ends or stops workers of this process; whether it found any.
 bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {
-    const auto workers = testing::children_of(::getpid());
+    const auto workers = test::children_of(::getpid());
     for (std::size_t i = 0; i < std::min(most, workers.size()); ++i) {
         (void)::kill(workers[(i + choice) % workers.size()], signal);
     }
@@ -61,8 +61,8 @@ TEST_F(WorkerLosses, BetweenCallsAreMadeGood) {
 
 TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     const Scene scene("clustered", 6'000, 1);  // few enough for one worker
-    testing::MappedPlan plan;
-    const auto engine = testing::make_faulty_engine(3);
+    test::MappedPlan plan;
+    const auto engine = test::make_faulty_engine(3);
     for (const Step step : {Step::encode, Step::count, Step::scatter, Step::scan, Step::order}) {
         for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
             const Asked asked{.how = How::list, .order = Order::ascending};
@@ -70,7 +70,7 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
                 .step = step, .kind = kind, .moment = kind == FaultKind::kill ? Moment::begin : Moment::end};
             plan.set(std::vector<Fault>(3, fault));
             try {
-                (void)testing::ask(*engine, scene, asked);
+                (void)test::ask(*engine, scene, asked);
                 ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ErrorCode::engine_failed) << error.what();
@@ -87,12 +87,12 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
 
 TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
     const Scene scene("clustered", 6'000, 1);
-    testing::MappedPlan plan;
-    const auto engine = testing::make_faulty_engine(2);
+    test::MappedPlan plan;
+    const auto engine = test::make_faulty_engine(2);
     for (const Step step : {Step::encode, Step::scatter, Step::scan}) {
         plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
         try {
-            (void)testing::ask(*engine, scene, {});
+            (void)test::ask(*engine, scene, {});
             ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::engine_failed);
@@ -104,8 +104,8 @@ TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
 
 TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     const Scene scene("world10", 6'000, 1);
-    testing::MappedPlan plan;
-    const auto engine = testing::make_faulty_engine(2);
+    test::MappedPlan plan;
+    const auto engine = test::make_faulty_engine(2);
     for (const Order order : {Order::octal, Order::ascending}) {
         for (std::uint32_t ticks = 0; ticks < 12; ++ticks) {
             const Fault fault{.step = Step::scan, .moment = Moment::tick, .ticks = ticks, .pass_by = ticks / 2};
@@ -145,7 +145,7 @@ private:
 class Disturbed : public WorkerLosses {
 protected:
     void call_while_disturbed(int signal, std::size_t at_once) {
-        const std::uint64_t seed = testing::test_seed(1);
+        const std::uint64_t seed = test::test_seed(1);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::array scenes = {Scene("rods", 13'000, seed), Scene("crowd", 13'000, seed),
                                    Scene("speck", 40'000, seed)};
@@ -153,10 +153,10 @@ protected:
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
         {
             const milliseconds pause(at_once == 1 ? 60 : 250);
-            Disturber disturber(signal, at_once, testing::sanitized ? 5 * pause : pause, seed);
+            Disturber disturber(signal, at_once, test::sanitized ? 5 * pause : pause, seed);
             for (std::uint64_t i = 0; std::chrono::steady_clock::now() < end && !HasFailure(); ++i) {
                 const Scene& scene = scenes[i % scenes.size()];
-                Asked asked = testing::random_call(seed + i);
+                Asked asked = test::random_call(seed + i);
                 if (scene.kind == "speck") {
                     // Any clearance joins the whole speck, and a share would take longer than workers live.
                     asked.margin = 0;
@@ -179,10 +179,10 @@ TEST_F(Disturbed, ByTheEndOfAllWorkersAtOnce) { call_while_disturbed(SIGKILL, 3)
 TEST_F(WorkerLosses, OutliveTheEngineNowhere) {
     for (unsigned workers = 1; workers <= 6; ++workers) {
         auto engine = make_process_engine(workers);
-        EXPECT_EQ(testing::children_of(::getpid()).size(), workers);
+        EXPECT_EQ(test::children_of(::getpid()).size(), workers);
         (void)signal_workers(workers % 2 == 0 ? SIGSTOP : SIGKILL, workers / 2);
         engine = nullptr;
-        EXPECT_TRUE(testing::children_of(::getpid()).empty());
+        EXPECT_TRUE(test::children_of(::getpid()).empty());
     }
 }
 
@@ -190,10 +190,10 @@ TEST_F(WorkerLosses, LeaveAListThatOutlivesItsEngine) {
     const Scene scene("clustered", 16'000, 1);
     PairList list;
     (void)make_process_engine(2)->find_pairs(scene.objects({}), list);
-    std::vector<Pair> expected = testing::ask(*make_local_engine(1), scene, {.order = Order::ascending}).pairs;
-    EXPECT_TRUE(testing::same_bytes(list.to_vector(), expected));
+    std::vector<Pair> expected = test::ask(*make_local_engine(1), scene, {.order = Order::ascending}).pairs;
+    EXPECT_TRUE(test::same_bytes(list.to_vector(), expected));
     list = PairList();
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

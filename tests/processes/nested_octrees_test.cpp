@@ -15,31 +15,31 @@
 #include "support/families.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Answer;
-using testing::Asked;
-using testing::expect_right;
-using testing::Fault;
-using testing::FaultKind;
-using testing::How;
-using testing::Moment;
-using testing::Scene;
+using test::Answer;
+using test::Asked;
+using test::expect_right;
+using test::Fault;
+using test::FaultKind;
+using test::How;
+using test::Moment;
+using test::Scene;
 
 constexpr std::uint64_t objects = 60'000;
 constexpr std::uint64_t most_pairs = 2'000'000;
 constexpr unsigned crew_size = 2;
 constexpr std::uint32_t octree_blocks = 2 * crew_size;  // shares of encode, and of sort, of the outermost octree
 
-class NestedOctrees : public testing::Processes {};
+class NestedOctrees : public test::Processes {};
 
 TEST_F(NestedOctrees, OfWorkersAreThoseOfThreads) {
     const Scene scene("speck", objects, 1);
     for (const unsigned count : {1u, 2u, 3u}) {
         SCOPED_TRACE(std::to_string(count) + " workers");
         const auto engine = make_process_engine(count);
-        for (const Asked& asked : testing::all_ways()) expect_right(*engine, scene, asked);
+        for (const Asked& asked : test::all_ways()) expect_right(*engine, scene, asked);
         for (const Order order : {Order::octal, Order::ascending}) {
             expect_right(*engine, scene, {.order = order, .wide = true, .margin = 1e-10});
         }
@@ -60,16 +60,16 @@ TEST_F(NestedOctrees, OfJoinsAreThoseOfThreads) {
 
 TEST_F(NestedOctrees, OfClustersWithinClustersAreThoseOfThreads) {
     const auto local = make_local_engine(1), two = make_process_engine(2), three = make_process_engine(3);
-    const std::uint64_t first = testing::test_seed(1);
-    for (std::uint64_t seed = first; seed < first + testing::scaled(10, 5); ++seed) {
-        const testing::Case a_case = testing::make_family_case("nested", objects, seed);
+    const std::uint64_t first = test::test_seed(1);
+    for (std::uint64_t seed = first; seed < first + test::scaled(10, 5); ++seed) {
+        const test::Case a_case = test::make_family_case("nested", objects, seed);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        if (testing::AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > most_pairs) continue;
+        if (test::AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > most_pairs) continue;
         for (const Order order : {Order::octal, Order::ascending}) {
-            const testing::AnyCall call{a_case, order, false, false};
+            const test::AnyCall call{a_case, order, false, false};
             const auto expected = call.made_by(*local);
-            EXPECT_TRUE(testing::same_bytes(call.made_by(*two), expected));
-            EXPECT_TRUE(testing::same_bytes(call.made_by(*three), expected));
+            EXPECT_TRUE(test::same_bytes(call.made_by(*two), expected));
+            EXPECT_TRUE(test::same_bytes(call.made_by(*three), expected));
         }
     }
 }
@@ -91,15 +91,15 @@ std::vector<Fault> nested_faults() {
 
 TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
     const Scene scene("speck", objects, 3);
-    testing::MappedPlan plan;
-    const auto local = make_local_engine(1), engine = testing::make_faulty_engine(crew_size);
+    test::MappedPlan plan;
+    const auto local = make_local_engine(1), engine = test::make_faulty_engine(crew_size);
     constexpr std::array calls = {
         Asked{.how = How::list, .order = Order::octal}, Asked{.how = How::list, .order = Order::ascending},
         Asked{.how = How::stream, .order = Order::octal},
         Asked{.how = How::stream, .order = Order::ascending, .windows = true}, Asked{.how = How::count}};
     std::vector<Answer> expected;
     expected.reserve(calls.size());
-    for (const Asked& asked : calls) expected.push_back(testing::ask(*local, scene, asked));
+    for (const Asked& asked : calls) expected.push_back(test::ask(*local, scene, asked));
     const std::vector<Fault> faults = nested_faults();
     for (std::size_t i = 0; i < faults.size(); ++i) {
         // Every second time, the next worker that begins a share of that step is lost as well.
@@ -107,10 +107,10 @@ TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
         if (planned.size() > 1) planned[1].pass_by = 0;
         plan.set(planned);
         SCOPED_TRACE("fault " + std::to_string(i) + ": " + calls[i % calls.size()].describe());
-        testing::expect_same(testing::ask(*engine, scene, calls[i % calls.size()]), expected[i % calls.size()]);
+        test::expect_same(test::ask(*engine, scene, calls[i % calls.size()]), expected[i % calls.size()]);
         EXPECT_TRUE(plan.empty()) << "too few shares of nested octrees";
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -12,12 +12,12 @@
 #include "processes/leftovers.hpp"
 #include "support/compare.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Scene;
+using test::Scene;
 
-class WorkerPrograms : public testing::Processes {
+class WorkerPrograms : public test::Processes {
 protected:
     std::string make_program(const std::string& name, const std::string& text, mode_t mode) const {
         const std::string path = directory_.file(name);
@@ -32,7 +32,7 @@ protected:
             const auto engine = make_process_engine({.workers = 2, .worker_program = program});
             for (int i = 0; i < calls; ++i) {
                 try {
-                    (void)testing::ask(*engine, scene_, {});
+                    (void)test::ask(*engine, scene_, {});
                     ADD_FAILURE() << "went well with " << program;
                 } catch (const Error& error) {
                     expect_names(error, program);
@@ -79,27 +79,27 @@ TEST_F(WorkerPrograms, ThatAreGoneForAWhile) {
     const std::string program = directory_.file("worker");
     std::filesystem::copy_file(OCTOPAIR_TRUE_WORKER, program);
     const auto engine = make_process_engine({.workers = 2, .worker_program = program});
-    const auto expected = testing::ask(*make_local_engine(1), scene_, {});
-    EXPECT_EQ(testing::ask(*engine, scene_, {}), expected);
+    const auto expected = test::ask(*make_local_engine(1), scene_, {});
+    EXPECT_EQ(test::ask(*engine, scene_, {}), expected);
     std::filesystem::rename(program, program + "-away");
-    EXPECT_EQ(testing::ask(*engine, scene_, {}), expected);
-    for (const pid_t worker : testing::children_of(::getpid())) (void)::kill(worker, SIGKILL);
+    EXPECT_EQ(test::ask(*engine, scene_, {}), expected);
+    for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);
     for (int i = 0; i < 3; ++i) {
         try {
-            (void)testing::ask(*engine, scene_, {});
+            (void)test::ask(*engine, scene_, {});
             ADD_FAILURE() << "went well without a program";
         } catch (const Error& error) {
             expect_names(error, program);
         }
     }
     std::filesystem::rename(program + "-away", program);
-    EXPECT_EQ(testing::ask(*engine, scene_, {}), expected);
+    EXPECT_EQ(test::ask(*engine, scene_, {}), expected);
 }
 
 TEST_F(WorkerPrograms, AreNotStartedInNumbersBeyondReason) {
     EXPECT_THROW((void)make_process_engine(257), Error);
-    EXPECT_EQ(testing::ask(*make_process_engine(64), scene_, {}), testing::ask(*make_local_engine(1), scene_, {}));
+    EXPECT_EQ(test::ask(*make_process_engine(64), scene_, {}), test::ask(*make_local_engine(1), scene_, {}));
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

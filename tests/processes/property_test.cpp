@@ -12,11 +12,11 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::AnyCall;
-using testing::Case;
+using test::AnyCall;
+using test::Case;
 
 /// Kept from case to case: what a call leaves behind must not show in the next.
 class Engines {
@@ -47,14 +47,14 @@ void check_case(Engines& engines, const Case& a_case, Engine& engine) {
 
 TEST(WorkerProperty, AgreesWithThreads) {
     Engines engines;
-    const auto kinds = testing::all_kind_names();
+    const auto kinds = test::all_kind_names();
     const bool held = rc::check("workers find what threads find", [&] {
         const auto kind = *rc::gen::elementOf(kinds);
         const auto seed = *rc::gen::arbitrary<std::uint32_t>();
         const auto workers = *rc::gen::inRange(1u, 5u);
         const auto paper = *rc::gen::inRange(0, 5) == 0;
-        for (std::uint64_t i = 0; i < testing::scaled(8, 8); ++i) {
-            const Case a_case = testing::make_case(kind, seed + i);
+        for (std::uint64_t i = 0; i < test::scaled(8, 8); ++i) {
+            const Case a_case = test::make_case(kind, seed + i);
             RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
             check_case(engines, a_case, engines.workers(workers, paper ? Arrangement::paper : Arrangement::shared));
         }
@@ -62,28 +62,28 @@ TEST(WorkerProperty, AgreesWithThreads) {
     EXPECT_TRUE(held);
 }
 
-constexpr std::uint64_t most_counted_pairs = testing::scaled(1'000'000, 8);
+constexpr std::uint64_t most_counted_pairs = test::scaled(1'000'000, 8);
 
 /// The kinds with more objects, so that several workers take part.
 TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
     Engines engines;
-    std::uint64_t seed = testing::test_seed(1);
-    for (const std::string& kind : testing::all_kind_names()) {
+    std::uint64_t seed = test::test_seed(1);
+    for (const std::string& kind : test::all_kind_names()) {
         if (kind == "denormals" || kind == "largest") continue;  // seconds a call, for any engine
         SCOPED_TRACE(kind + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         Case a_case;
-        a_case.first.boxes = testing::make_double_boxes(kind, 13'000, seed++);
+        a_case.first.boxes = test::make_double_boxes(kind, 13'000, seed++);
         const AnyCall count{a_case, Order::octal, false, false};
         if (count.counted_by(engines.local()) > most_counted_pairs) continue;
         Engine& engine = engines.workers(3, Arrangement::shared);
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const bool streamed : {false, true}) {
                 const AnyCall call{a_case, order, streamed, false};
-                EXPECT_TRUE(testing::same_bytes(call.made_by(engine), call.made_by(engines.local())));
+                EXPECT_TRUE(test::same_bytes(call.made_by(engine), call.made_by(engines.local())));
             }
         }
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

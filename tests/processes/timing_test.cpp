@@ -12,25 +12,25 @@
 #include "processes/leftovers.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-using testing::Asked;
-using testing::Fault;
-using testing::FaultKind;
-using testing::How;
-using testing::Scene;
+using test::Asked;
+using test::Fault;
+using test::FaultKind;
+using test::How;
+using test::Scene;
 
-class WorkerTiming : public testing::Processes {};
+class WorkerTiming : public test::Processes {};
 
 TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
     const Scene scene("clustered", 14'000, 1);
-    testing::MappedPlan plan;
-    const auto engine = testing::make_faulty_engine(3);
-    (void)testing::ask(*engine, scene, {});
-    constexpr milliseconds patience(testing::sanitized ? 10000 : 1000);
+    test::MappedPlan plan;
+    const auto engine = test::make_faulty_engine(3);
+    (void)test::ask(*engine, scene, {});
+    constexpr milliseconds patience(test::sanitized ? 10000 : 1000);
     for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
         for (const Step step : {Step::encode, Step::scan}) {
             Clock::duration took{};
@@ -38,7 +38,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
                  ++attempt) {  // any thread may be delayed on a machine that is busy otherwise
                 plan.set(std::vector<Fault>{{.step = step, .kind = kind}});
                 const auto begin = Clock::now();
-                (void)testing::ask(*engine, scene, {});
+                (void)test::ask(*engine, scene, {});
                 took = Clock::now() - begin;
                 EXPECT_TRUE(plan.empty());
                 if (took < patience) break;
@@ -48,7 +48,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
     }
 }
 
-constexpr milliseconds cancel_patience(testing::sanitized ? 3000 : 200);
+constexpr milliseconds cancel_patience(test::sanitized ? 3000 : 200);
 
 /// How long a call took to end after it was asked to stop; nothing if it was done before.
 std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked,
@@ -62,7 +62,7 @@ std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene
     });
     bool finished = false;
     try {
-        (void)testing::ask(engine, scene, asked, source.get_token());
+        (void)test::ask(engine, scene, asked, source.get_token());
         finished = true;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
@@ -91,15 +91,15 @@ protected:
 
 TEST_P(WorkerCancel, IsSoonDone) {
     const bool crowd = std::string(GetParam()) == "coincident";
-    const Scene scene(GetParam(), testing::scaled(crowd ? 200'000 : 1'500'000, 10), 1), few("clustered", 5'000, 1);
+    const Scene scene(GetParam(), test::scaled(crowd ? 200'000 : 1'500'000, 10), 1), few("clustered", 5'000, 1);
     const auto engine = make_process_engine(3);
-    for (Asked asked : testing::all_ways()) {
+    for (Asked asked : test::all_ways()) {
         if (crowd && asked.how == How::list) continue;
         for (const bool join : {false, true}) {
             asked.join = join;
             expect_cancelled(*engine, scene, asked);
         }
-        EXPECT_EQ(testing::ask(*engine, few, asked), testing::ask(*make_local_engine(1), few, asked));
+        EXPECT_EQ(test::ask(*engine, few, asked), test::ask(*make_local_engine(1), few, asked));
     }
     EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
 }
@@ -130,7 +130,7 @@ struct Application {
 
     std::size_t left() const {
         std::size_t living = 0;
-        for (const pid_t worker : workers) living += testing::process_lives(worker) ? 1 : 0;
+        for (const pid_t worker : workers) living += test::process_lives(worker) ? 1 : 0;
         return living;
     }
 
@@ -142,7 +142,7 @@ class WorkersOfTheDead : public WorkerTiming {
 protected:
     void expect_gone(const Application& application) {
         EXPECT_EQ(application.workers.size(), 3u);
-        EXPECT_TRUE(testing::comes_true([&] { return application.left() == 0; }, milliseconds(10000)))
+        EXPECT_TRUE(test::comes_true([&] { return application.left() == 0; }, milliseconds(10000)))
             << application.left() << " workers live on";
         for (const pid_t worker : application.workers) (void)::kill(worker, SIGKILL);
     }
@@ -186,4 +186,4 @@ TEST_F(WorkersOfTheDead, EndThoughAChildOfItHasTheirSockets) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

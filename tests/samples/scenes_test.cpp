@@ -35,11 +35,11 @@ std::string refusal(const SceneSpec& spec) {
 }
 
 class Scenes : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, Scenes, ::testing::ValuesIn(kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, Scenes, ::testing::ValuesIn(kind_names()), test::param_name);
 
 TEST_P(Scenes, AreAsPinned) {
-    const testing::Pinned& pinned = testing::pinned_scene(GetParam());
-    EXPECT_EQ(testing::hash_of(make_scene(GetParam(), pinned.objects, 1)), pinned.scene_hash);
+    const test::Pinned& pinned = test::pinned_scene(GetParam());
+    EXPECT_EQ(test::hash_of(make_scene(GetParam(), pinned.objects, 1)), pinned.scene_hash);
 }
 
 TEST_P(Scenes, AreValidBoxesOfAnyNumber) {
@@ -57,7 +57,7 @@ TEST_P(Scenes, AreValidBoxesOfAnyNumber) {
 
 TEST_P(Scenes, ComeInBoundedBatchesThatAddUp) {
     constexpr std::uint64_t objects = 20'001;
-    testing::Hash hash;
+    test::Hash hash;
     std::uint64_t count = 0;
     generate_scene({GetParam(), objects, 5}, [&](std::span<const Box3f> batch) {
         EXPECT_FALSE(batch.empty());
@@ -66,11 +66,11 @@ TEST_P(Scenes, ComeInBoundedBatchesThatAddUp) {
         hash.add(batch);
     });
     EXPECT_EQ(count, objects);
-    EXPECT_EQ(hash.value(), testing::hash_of(make_scene(GetParam(), objects, 5)));
+    EXPECT_EQ(hash.value(), test::hash_of(make_scene(GetParam(), objects, 5)));
 }
 
 TEST_P(Scenes, DependOnTheSeed) {
-    EXPECT_NE(testing::hash_of(make_scene(GetParam(), 1000, 1)), testing::hash_of(make_scene(GetParam(), 1000, 2)));
+    EXPECT_NE(test::hash_of(make_scene(GetParam(), 1000, 1)), test::hash_of(make_scene(GetParam(), 1000, 2)));
 }
 
 TEST_P(Scenes, AreDescribed) {
@@ -114,15 +114,16 @@ TEST(ScenesBrownian, FramesMoveALittleFromTheFirst) {
     generate_scene({"brownian", objects, 1, frames},
                    [&](std::span<const Box3f> batch) { all.insert(all.end(), batch.begin(), batch.end()); });
     ASSERT_EQ(all.size(), objects * frames);
-    EXPECT_EQ(testing::hash_of(std::vector(all.begin(), all.begin() + objects)),
-              testing::hash_of(make_scene("uniform", objects, 1)));
+    EXPECT_EQ(test::hash_of(std::vector(all.begin(), all.begin() + objects)),
+              test::hash_of(make_scene("uniform", objects, 1)));
     const float side = all[0].max[0] - all[0].min[0];
     for (std::size_t i = objects; i < all.size(); ++i) {
         const float step = all[i].min[0] - all[i - objects].min[0];
         ASSERT_LE(std::abs(step), side / 7);
-        ASSERT_TRUE(all[i].min[0] >= 0 && all[i].min[0] <= 1);
+        ASSERT_GE(all[i].min[0], 0);
+        ASSERT_LE(all[i].min[0], 1);
     }
-    EXPECT_EQ(testing::hash_of(all), 6252328568775321793u);
+    EXPECT_EQ(test::hash_of(all), 6252328568775321793u);
 }
 
 TEST(ScenesRefuse, WhatIsNoScene) {
@@ -149,7 +150,8 @@ TEST(ScenesRandom, NumbersAreInRangeWithTheirMoments) {
     double mean = 0, gaussian_square = 0;
     for (int i = 0; i < 100'000; ++i) {
         const double u = random.uniform();
-        ASSERT_TRUE(u >= 0 && u < 1);
+        ASSERT_GE(u, 0);
+        ASSERT_LT(u, 1);
         ASSERT_LT(random.below(7), 7u);
         mean += u / 100'000;
         const double g = random.gaussian();

@@ -10,7 +10,7 @@
 
 #include "octopair/queries.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 using Integer = boost::multiprecision::cpp_int;
 
@@ -60,4 +60,4 @@ inline double rounded_distance(const Box3d& a, const Box3d& b) {
     return rounded_distance(exact_squared_distance(a, b));
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -10,7 +10,7 @@
 #include "octopair/octopair.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
@@ -209,7 +209,7 @@ TEST(Scene, StepsThatHaveNoRoomLeaveWhatPersists) {
 }
 
 TEST(Scene, VeryManyPairsBeginWhereLittleMoves) {
-    const std::size_t apart = testing::scaled(200'000, 4), together = 1700;
+    const std::size_t apart = test::scaled(200'000, 4), together = 1700;
     std::vector<Box3f> boxes(apart);
     for (std::size_t i = 0; i < apart; ++i) boxes[i].min[i % 3] = boxes[i].max[i % 3] = float(i + 1);
     Scene scene({2});
@@ -225,4 +225,4 @@ TEST(Scene, VeryManyPairsBeginWhereLittleMoves) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

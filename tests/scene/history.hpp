@@ -17,7 +17,7 @@
 #include "support/families.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// The boxes of a history: of a kind, endlessly many; of a family, those of one scene in ever new orders.
 class BoxSource {
@@ -256,4 +256,4 @@ private:
     std::map<std::uint32_t, Box3d> places_;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 /// What all lie in.
@@ -26,9 +26,9 @@ Box3f hull(std::span<const Box3f> boxes) {
 class LargeScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
-    constexpr std::uint64_t objects = testing::scaled(3000, 2);
-    std::vector<Box3f> boxes = testing::make_boxes(GetParam(), objects, 31);
-    const std::vector<Box3f> places = testing::make_boxes(GetParam(), objects, 32);
+    constexpr std::uint64_t objects = test::scaled(3000, 2);
+    std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 31);
+    const std::vector<Box3f> places = test::make_boxes(GetParam(), objects, 32);
     std::vector<Scene> scenes;
     std::vector<ObjectId> ids(boxes.size());
     for (const unsigned threads : {1u, 2u, 3u}) {
@@ -68,11 +68,11 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 /// The first object that is kept far above the leaves, in the step in which a small one moves.
 TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
-    std::vector<Box3f> boxes = testing::make_boxes("uniform", 4000, 34);
+    std::vector<Box3f> boxes = test::make_boxes("uniform", 4000, 34);
     std::vector<ObjectId> ids(boxes.size());
     Scene scene({1});
     scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
@@ -92,7 +92,7 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
 
 /// Many go where the octree has no octants, all into one: dearer than it seemed, and the result is the same.
 TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
-    std::vector<Box3f> boxes = testing::make_boxes("uniform", testing::scaled(30000, 4), 35);
+    std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(30000, 4), 35);
     std::vector<ObjectId> ids(boxes.size());
     Scene scene({1});
     scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
@@ -108,4 +108,4 @@ TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

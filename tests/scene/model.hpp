@@ -10,13 +10,9 @@
 
 #include "octopair/octopair.hpp"
 
-namespace octopair {
+namespace octopair::test {}  // namespace octopair::test
 
-inline void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.a << "-" << pair.b; }
-
-}  // namespace octopair
-
-namespace octopair::testing {
+namespace octopair::test {
 
 struct ModelObject {
     ObjectId id;
@@ -89,4 +85,4 @@ private:
     int full_ = 0, partial_ = 0;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -10,7 +10,7 @@
 #include "octopair/error.hpp"
 #include "scene/model.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using Pairs = std::vector<Pair>;
@@ -114,4 +114,4 @@ TEST_F(PairHistoryTest, StepsThatAreRight) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -7,20 +7,20 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_a_kind = testing::scaled(30, 2);
+constexpr std::uint64_t histories_a_kind = test::scaled(30, 2);
 
 class SceneProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     int full = 0, partial = 0;
-    const std::uint64_t count = testing::case_count(histories_a_kind);
+    const std::uint64_t count = test::case_count(histories_a_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+        const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        testing::History<Scene> history(GetParam(), seed, [](const SceneOptions& options) { return Scene(options); });
+        test::History<Scene> history(GetParam(), seed, [](const SceneOptions& options) { return Scene(options); });
         history.run();
         if (HasFatalFailure()) return;
         full += history.model().full();
@@ -30,7 +30,7 @@ TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     EXPECT_GT(partial, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SceneProperty, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, SceneProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -11,21 +11,21 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Model;
+using test::Model;
 
 class SceneQueriesTest : public ::testing::TestWithParam<std::string> {};
 
 /// A scene and its model, of one kind.
 struct Pool {
     Pool(const std::string& kind, std::uint64_t objects, unsigned threads) : scene({threads}) {
-        const std::vector<Box3f> boxes = testing::make_boxes(kind, objects, 21);
+        const std::vector<Box3f> boxes = test::make_boxes(kind, objects, 21);
         std::vector<ObjectId> ids(boxes.size());
         scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
         scene.step();
-        const std::vector<Box3d> wide = testing::widened(boxes);
+        const std::vector<Box3d> wide = test::widened(boxes);
         for (std::size_t i = 0; i < ids.size(); ++i) model.objects[ids[i].index] = {ids[i], wide[i], 0, {}};
     }
 
@@ -34,9 +34,9 @@ struct Pool {
 };
 
 TEST_P(SceneQueriesTest, OfALargeSceneAreWhatBruteForceFinds) {
-    Pool pool(GetParam(), testing::scaled(3000, 1000), 1);
-    for (std::uint64_t seed = 0; seed < testing::scaled(10, 3); ++seed) {
-        testing::QueryModel(pool.model, pool.scene, seed).check();
+    Pool pool(GetParam(), test::scaled(3000, 1000), 1);
+    for (std::uint64_t seed = 0; seed < test::scaled(10, 3); ++seed) {
+        test::QueryModel(pool.model, pool.scene, seed).check();
         if (HasFatalFailure()) return;
     }
 }
@@ -44,7 +44,7 @@ TEST_P(SceneQueriesTest, OfALargeSceneAreWhatBruteForceFinds) {
 TEST_P(SceneQueriesTest, ManyAtOnceAreAnsweredLikeOneByOne) {
     constexpr std::size_t queries = 200;
     Pool one(GetParam(), 800, 1), three(GetParam(), 800, 3);
-    const std::vector<Box3d> boxes = testing::widened(testing::make_boxes(GetParam(), queries, 22));
+    const std::vector<Box3d> boxes = test::widened(test::make_boxes(GetParam(), queries, 22));
     std::vector<Ray> rays;
     std::vector<Sphere> spheres;
     for (const Box3d& box : boxes) {
@@ -77,7 +77,7 @@ TEST_P(SceneQueriesTest, ManyAtOnceAreAnsweredLikeOneByOne) {
             });
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SceneQueriesTest, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, SceneQueriesTest, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 TEST(SceneQueries, OfAnEmptySceneFindNothing) {
     Scene scene;
@@ -115,7 +115,7 @@ std::vector<Box3d> points_of_a_sphere(int exponent, double moved) {
                 if (x * x + y * y + z * z != 27 * 27) continue;
                 double at[3] = {double(x), double(y), double(z)};
                 for (double& coordinate : at) coordinate = std::ldexp(coordinate + moved, exponent);
-                points.push_back(testing::point_box(at));
+                points.push_back(test::point_box(at));
             }
         }
     }
@@ -179,4 +179,4 @@ TEST(SceneQueries, BadOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

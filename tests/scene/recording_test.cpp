@@ -12,7 +12,7 @@
 #include "scene/recording/replay.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using test::error_of;
@@ -170,7 +170,7 @@ std::string head_of(RecordingHead head) {
 std::string numbers(std::initializer_list<std::uint32_t> values) { return test::bytes_of(std::vector(values)); }
 
 TEST_F(Recording, FindsTheSameAgainOnAnyNumberOfThreads) {
-    for (std::uint64_t seed = 0; seed < testing::scaled(12, 3); ++seed) {
+    for (std::uint64_t seed = 0; seed < test::scaled(12, 3); ++seed) {
         const Precision precision = seed % 2 == 0 ? Precision::float32 : Precision::float64;
         const double margin = seed % 3 == 0 ? 0.25 : 0;
         std::vector<RecordedResult> then;
@@ -483,4 +483,4 @@ TEST_F(Recording, TheChecksumIsThatOfTheDocumentation) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

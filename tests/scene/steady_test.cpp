@@ -29,7 +29,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 }
 #endif
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 /// Objects that go to and fro between two places, a few each frame.
@@ -74,10 +74,10 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
         for (int i = 0; i < count; ++i) swing.frame(std::uint64_t(i / 2 % 20) * 300, 300);
     };
     frames(80);
-    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = testing::peak_rss();
+    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = test::peak_rss();
     frames(80);
     EXPECT_EQ(allocations - before, 0u);
-    EXPECT_LE(testing::peak_rss() - peak, 64u << 10);
+    EXPECT_LE(test::peak_rss() - peak, 64u << 10);
     EXPECT_GT(swing.changes, changes);
     EXPECT_EQ(swing.full, full);
 }
@@ -122,21 +122,21 @@ TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
 }
 
 TEST(SceneMemory, IsBounded) {
-    constexpr std::uint64_t objects = testing::scaled(1'000'000, 20);
+    constexpr std::uint64_t objects = test::scaled(1'000'000, 20);
     const auto boxes = samples::make_scene("uniform", objects, 1);
     std::vector<ObjectId> ids(objects, ObjectId{0, 0});
-    const std::uint64_t before = testing::peak_rss();
+    const std::uint64_t before = test::peak_rss();
     Scene scene({2});
     scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
     const std::uint64_t pairs = scene.step().pairs();
     scene.move(std::span(ids).first(100), std::span<const Box3f>(boxes).first(100));
     EXPECT_FALSE(scene.step().full);
-    const double bytes = double(testing::peak_rss() - before);
+    const double bytes = double(test::peak_rss() - before);
     RecordProperty("bytes_an_object", std::to_string(bytes / double(objects)));
-    if (!testing::sanitized) {
+    if (!test::sanitized) {
         EXPECT_LE(bytes, 120 * double(objects) + 16 * double(pairs));
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -3,7 +3,7 @@
 
 #include "octopair/octopair.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 Box3f bullet_at(float x) { return {{x, 0.4f, 0.4f}, {x + 0.1f, 0.6f, 0.6f}}; }
@@ -55,4 +55,4 @@ TEST_F(FastBullet, IsNotSweptIfItIsMovedAfterAll) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -14,14 +14,14 @@
 #include "support/pinned.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Answer;
-using testing::Asked;
-using testing::Case;
-using testing::Scene;
-using testing::Served;
+using test::Answer;
+using test::Asked;
+using test::Case;
+using test::Scene;
+using test::Served;
 
 void use_processes(service::ServerOptions& options) {
     options.engine_name = "processes";
@@ -36,20 +36,20 @@ struct Found {
 Found listed(Engine& engine, std::span<const Box3f> boxes, Order order) {
     PairList list;
     (void)engine.find_pairs({boxes, {}}, list, {.order = order});
-    testing::Hash hash;
+    test::Hash hash;
     for (const auto chunk : list.chunks()) hash.add(chunk);
     return {list.size(), hash.value()};
 }
 
 Found streamed(Engine& engine, std::span<const Box3f> boxes, Order order) {
-    testing::Hash hash;
+    test::Hash hash;
     const PairSink sink = [&](std::span<const Pair> batch) { hash.add(batch); };
     return {engine.stream_pairs({boxes, {}}, sink, {.order = order}).pairs, hash.value()};
 }
 
 /// A scene whose nested octrees once reported pairs twice; the client checks what it receives.
 TEST(ServedExactness, GivesEachPairOnce) {
-    const std::vector<Box3f> boxes = testing::long_tailed_boxes(testing::scaled(40'000, 4), 2);
+    const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     const Served served;
     const auto engine = served.client();
     for (const Order order : {Order::ascending, Order::octal}) {
@@ -63,8 +63,8 @@ TEST(ServedExactness, GivesEachPairOnce) {
 class ServedHashes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ServedHashes, AreThoseOfThreads) {
-    const testing::Pinned& pinned = testing::pinned_scene(GetParam());
-    if (testing::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a second a call";
+    const test::Pinned& pinned = test::pinned_scene(GetParam());
+    if (test::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a second a call";
     const std::vector<Box3f> boxes = samples::make_scene(GetParam(), pinned.objects, 1);
     const Found ascending{pinned.pairs, pinned.pair_hash};
     const Found octal = listed(*make_local_engine(2), boxes, Order::octal);
@@ -85,7 +85,7 @@ std::vector<std::string> sample_kinds() {
     return {kinds.begin(), kinds.end()};
 }
 
-INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
 
 /// The answer to a call about the objects of a case, and its summary's numbers.
 Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
@@ -97,13 +97,13 @@ Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
     const Input input = a_case.input();
     Answer answer;
     Summary summary;
-    if (asked.how == testing::How::list) {
+    if (asked.how == test::How::list) {
         PairList list;
         summary = engine.find_pairs(input, list, options);
         answer.pairs = list.to_vector();
     } else {
         const PairSink keep = [&](auto batch) { answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end()); };
-        const PairSink sink = asked.how == testing::How::stream ? keep : PairSink();
+        const PairSink sink = asked.how == test::How::stream ? keep : PairSink();
         summary = engine.stream_pairs(input, sink, options);
     }
     answer.count = summary.pairs;
@@ -114,14 +114,14 @@ Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
 TEST(ServedProperty, AgreesWithThreads) {
     const Served threads, processes(use_processes);
     const auto local = make_local_engine(2), one = threads.client(), other = processes.client();
-    const auto kinds = testing::all_kind_names();
+    const auto kinds = test::all_kind_names();
     const bool held = rc::check("a server finds what threads find", [&] {
         const auto kind = *rc::gen::elementOf(kinds);
         const auto seed = *rc::gen::arbitrary<std::uint32_t>();
-        for (std::uint64_t i = 0; i < testing::scaled(3, 3); ++i) {
-            const Case a_case = testing::make_case(kind, seed + i);
+        for (std::uint64_t i = 0; i < test::scaled(3, 3); ++i) {
+            const Case a_case = test::make_case(kind, seed + i);
             RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
-            for (Asked asked : testing::all_ways()) {
+            for (Asked asked : test::all_ways()) {
                 if (asked.windows) asked.limit = a_case.limit;
                 const Answer expected = answer_of(*local, a_case, asked);
                 RC_ASSERT(answer_of(*one, a_case, asked) == expected);
@@ -154,7 +154,7 @@ TEST(ServedJobs, AreThoseOfThreads) {
 
 TEST(ServedProgress, NeverFallsAndEndsAtOne) {
     const Served served;
-    const Scene scene("clustered", testing::scaled(200'000, 4), 1);
+    const Scene scene("clustered", test::scaled(200'000, 4), 1);
     std::vector<double> told;
     Options options;
     options.progress = [&](double done) { told.push_back(done); };
@@ -165,4 +165,4 @@ TEST(ServedProgress, NeverFallsAndEndsAtOne) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -14,18 +14,18 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::minutes;
-using testing::comes_true;
-using testing::Gate;
-using testing::Served;
+using test::comes_true;
+using test::Gate;
+using test::Served;
 
 /// Nothing ends for having stood still.
 Served::Change patient(Gate& gate) {
     return [&gate](service::ServerOptions& options) {
-        options.engine = testing::gated_engines(gate);
+        options.engine = test::gated_engines(gate);
         options.engine_widths = {1, 1, 0};
         options.stall = std::chrono::hours(10);
     };
@@ -45,17 +45,17 @@ protected:
     }
     void expect_serves() {
         gate_.open();
-        testing::check_serves(served_.address());
+        test::check_serves(served_.address());
     }
 
     Gate gate_;
     const Served served_{patient(gate_)};
-    const std::vector<Box3f> few_ = testing::make_boxes("dense", 100, 1);
-    const std::vector<Box3f> many_ = testing::make_boxes("dense", 30'000, 1);
+    const std::vector<Box3f> few_ = test::make_boxes("dense", 100, 1);
+    const std::vector<Box3f> many_ = test::make_boxes("dense", 30'000, 1);
 };
 
 TEST_F(ServedCancel, WhileUploading) {
-    const std::vector<Box3f> boxes = testing::make_boxes("uniform", testing::scaled(3'000'000, 10), 1);
+    const std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(3'000'000, 10), 1);
     expect_cancelled(boxes, [&] { return served_.load().jobs == 1; });
     expect_serves();
 }
@@ -94,7 +94,7 @@ TEST_F(ServedCancel, WhileStreaming) {
         stop.request_stop();
     };
     const auto call = [&] { (void)engine->stream_pairs({std::span(crowd), {}}, sink, {}, stop.get_token()); };
-    EXPECT_EQ(testing::code_of(call), ErrorCode::cancelled);
+    EXPECT_EQ(test::code_of(call), ErrorCode::cancelled);
     EXPECT_GT(received, 0u);
     EXPECT_LT(received, std::uint64_t(1999 * 1000));
     EXPECT_TRUE(served_.comes_to_rest());
@@ -106,16 +106,16 @@ TEST_F(ServedCancel, BeforeItBegins) {
     stop.request_stop();
     const auto engine = served_.client();
     const auto call = [&] { (void)engine->count_pairs({std::span(few_), {}}, {}, stop.get_token()); };
-    EXPECT_EQ(testing::code_of(call), ErrorCode::cancelled);
+    EXPECT_EQ(test::code_of(call), ErrorCode::cancelled);
     EXPECT_TRUE(served_.comes_to_rest());
 }
 
 TEST_F(ServedCancel, OfAnUploadThatStandsStill) {
-    const auto channel = testing::open_channel(served_.address());
-    const auto spec = testing::spec_of(1000);
+    const auto channel = test::open_channel(served_.address());
+    const auto spec = test::spec_of(1000);
     for (const std::uint64_t objects : {0, 1, 999}) {
-        testing::RawCall call(channel);
-        ASSERT_TRUE(call.write(testing::upload_of(&spec, testing::bytes_of_boxes(objects))));
+        test::RawCall call(channel);
+        ASSERT_TRUE(call.write(test::upload_of(&spec, test::bytes_of_boxes(objects))));
         ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 1; }, minutes(1)));
         EXPECT_GT(served_.load().memory_bytes, 0u);
         call.cancel();
@@ -165,7 +165,7 @@ protected:
 };
 
 TEST_F(ServedKilledClient, WhileItUploads) {
-    ClientProgram client(save(testing::make_boxes("uniform", testing::scaled(2'000'000, 10), 1)), served_.address());
+    ClientProgram client(save(test::make_boxes("uniform", test::scaled(2'000'000, 10), 1)), served_.address());
     ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 1; }, minutes(1)));
     client.kill();
     EXPECT_TRUE(served_.comes_to_rest());
@@ -200,4 +200,4 @@ TEST_F(ServedKilledClient, WhileItDoesNotReadItsResult) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -12,19 +12,19 @@
 #include "service/server_program.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using testing::ServerProgram;
+using test::ServerProgram;
 
 constexpr const char* fake_time = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
 
 class ServerClock : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
-        if (testing::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before all else";
+        if (test::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before all else";
         ASSERT_TRUE(std::filesystem::exists(fake_time)) << "package faketime";
         test::write_file(folder_.file("time"), "+0");
     }
@@ -64,18 +64,18 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     const std::vector<Box3f> heap(120'000);
     Job job = engine->submit_stream(heap, {});
-    const auto channel = testing::open_channel(server.address());
-    const auto spec = testing::spec_of(1000);
-    testing::RawCall upload(channel);
-    ASSERT_TRUE(upload.write(testing::upload_of(&spec, {})));
+    const auto channel = test::open_channel(server.address());
+    const auto spec = test::spec_of(1000);
+    test::RawCall upload(channel);
+    ASSERT_TRUE(upload.write(test::upload_of(&spec, {})));
     std::this_thread::sleep_for(milliseconds(200));
     EXPECT_EQ(job.state(), JobState::running);
     set_clock();
     EXPECT_EQ(job.summary().pairs, heap.size() * (heap.size() - 1) / 2);
     // The default patience with uploads is a minute: it has not come.
-    ASSERT_TRUE(upload.write(testing::upload_of(nullptr, testing::bytes_of_boxes(1000))));
+    ASSERT_TRUE(upload.write(test::upload_of(nullptr, test::bytes_of_boxes(1000))));
     EXPECT_TRUE(upload.finish().ok());
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
     server.signal(SIGTERM);
     EXPECT_EQ(server.wait(), 0) << server.log();
 }
@@ -85,18 +85,18 @@ TEST_P(ServerClock, WhatTakesTooLongStillEnds) {
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     const std::vector<Box3f> heap(400'000);  // far longer than that
     Job job = engine->submit_stream(heap, {});
-    const auto channel = testing::open_channel(server.address());
-    const auto spec = testing::spec_of(1000);
-    testing::RawCall upload(channel);
-    ASSERT_TRUE(upload.write(testing::upload_of(&spec, {})));
+    const auto channel = test::open_channel(server.address());
+    const auto spec = test::spec_of(1000);
+    test::RawCall upload(channel);
+    ASSERT_TRUE(upload.write(test::upload_of(&spec, {})));
     while (job.state() == JobState::queued) std::this_thread::sleep_for(milliseconds(10));
     set_clock();
     ASSERT_TRUE(job.wait_for(minutes(2)));
     EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { (void)job.summary(); }).find("job_seconds"),
               std::string::npos);
-    EXPECT_EQ(testing::failure_in(upload.finish()).limit(), "stall_seconds");
-    testing::check_serves(server.address());
+    EXPECT_EQ(test::failure_in(upload.finish()).limit(), "stall_seconds");
+    test::check_serves(server.address());
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -7,18 +7,18 @@
 #include "service/served.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Asked;
-using testing::Scene;
-using testing::Served;
+using test::Asked;
+using test::Scene;
+using test::Served;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 std::string words_of(Engine& engine, const Scene& scene, const Asked& asked, ErrorCode& code) {
     try {
-        (void)testing::ask(engine, scene, asked);
+        (void)test::ask(engine, scene, asked);
     } catch (const Error& error) {
         code = error.code();
         return error.what();
@@ -36,7 +36,7 @@ protected:
         EXPECT_EQ(words_of(*remote_, scene, asked, code), expected);
         EXPECT_EQ(int(code), int(expected_code));
         EXPECT_TRUE(served_.comes_to_rest());
-        testing::check_serves(served_.address());
+        test::check_serves(served_.address());
     }
 
     const Served served_;
@@ -49,13 +49,13 @@ TEST_F(ServedErrors, OfABoxWithItsIndexInEitherSet) {
             Scene scene("uniform", objects, 1);
             scene.first[objects / 2 + 3].min[1] = not_a_number;
             scene.wide_first[objects / 2 + 3].min[1] = not_a_number;
-            expect_same(scene, {.how = testing::How::list, .wide = wide});
-            expect_same(scene, {.how = testing::How::stream, .join = true, .wide = wide});
-            expect_same(scene, {.how = testing::How::count, .wide = wide});
+            expect_same(scene, {.how = test::How::list, .wide = wide});
+            expect_same(scene, {.how = test::How::stream, .join = true, .wide = wide});
+            expect_same(scene, {.how = test::How::count, .wide = wide});
             Scene other("uniform", objects, 1);
             std::swap(other.second[7].min[0], other.second[7].max[0]);
             std::swap(other.wide_second[7].min[0], other.wide_second[7].max[0]);
-            expect_same(other, {.how = testing::How::list, .join = true, .wide = wide});
+            expect_same(other, {.how = test::How::list, .join = true, .wide = wide});
         }
     }
 }
@@ -63,17 +63,17 @@ TEST_F(ServedErrors, OfABoxWithItsIndexInEitherSet) {
 TEST_F(ServedErrors, OfPaddingsAndOptions) {
     Scene scene("uniform", 100, 1);
     scene.padding[99] = -1;
-    expect_same(scene, {.how = testing::How::list, .padded = true});
+    expect_same(scene, {.how = test::How::list, .padded = true});
     scene.padding[99] = std::numeric_limits<double>::infinity();
-    expect_same(scene, {.how = testing::How::list, .padded = true});
+    expect_same(scene, {.how = test::How::list, .padded = true});
     scene.padding.pop_back();
-    expect_same(scene, {.how = testing::How::list, .padded = true});
-    expect_same(scene, {.how = testing::How::list, .margin = -1});
-    expect_same(scene, {.how = testing::How::list, .margin = not_a_number});
+    expect_same(scene, {.how = test::How::list, .padded = true});
+    expect_same(scene, {.how = test::How::list, .margin = -1});
+    expect_same(scene, {.how = test::How::list, .margin = not_a_number});
 }
 
 TEST_F(ServedErrors, LeaveTheListEmpty) {
-    const std::vector<Box3f> good = testing::make_boxes("dense", 500, 1);
+    const std::vector<Box3f> good = test::make_boxes("dense", 500, 1);
     std::vector<Box3f> bad = good;
     bad[499].max[2] = not_a_number;
     PairList list;
@@ -96,8 +96,8 @@ TEST_F(ServedErrors, OfSinksAndProgressReachTheCaller) {
     const std::vector<Box3f> few(20);
     EXPECT_THROW((void)remote_->stream_pairs({std::span(few), {}}, sink), Own);
     EXPECT_THROW((void)remote_->count_pairs({std::span(few), {}}, options), Own);
-    testing::check_serves(served_.address());
+    test::check_serves(served_.address());
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

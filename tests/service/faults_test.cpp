@@ -14,13 +14,13 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using testing::comes_true;
-using testing::ServerProgram;
+using test::comes_true;
+using test::ServerProgram;
 
 std::unique_ptr<Engine> client_of(const ServerProgram& server) {
     return connect(server.address(), {.patience = minutes(2)});
@@ -69,15 +69,15 @@ private:
 class ServerFaults : public ::testing::Test {
 protected:
     const std::vector<Box3f> crowd_ = std::vector<Box3f>(2500);  // 25 MB of pairs
-    const std::vector<Box3f> large_ = testing::make_boxes("uniform", testing::scaled(400'000, 4), 1);
-    const std::vector<Box3f> small_ = testing::make_boxes("clustered", 3000, 1);
+    const std::vector<Box3f> large_ = test::make_boxes("uniform", test::scaled(400'000, 4), 1);
+    const std::vector<Box3f> small_ = test::make_boxes("clustered", 3000, 1);
     const std::vector<Pair> crowd_pairs_ = right_pairs(crowd_), large_pairs_ = right_pairs(large_),
                             small_pairs_ = right_pairs(small_);
 };
 
 TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
     ServerProgram server;
-    const std::vector<Box3f> heap(testing::scaled(80'000, 8));  // long to count
+    const std::vector<Box3f> heap(test::scaled(80'000, 8));  // long to count
     const std::uint64_t heap_pairs = heap.size() * (heap.size() - 1) / 2;
     const auto uploader = client_of(server), runner = client_of(server), other = client_of(server);
     for (int round = 0; round < 3; ++round) {
@@ -96,10 +96,10 @@ TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
         EXPECT_EQ(running.state(), JobState::running);
         EXPECT_EQ(uploading.state(), JobState::running);
         server.kill_and_restart();
-        EXPECT_TRUE(testing::same_bytes(streaming.take(), crowd_pairs_));
+        EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
         EXPECT_EQ(running.summary().pairs, heap_pairs);
-        EXPECT_TRUE(testing::same_bytes(uploading.take_pairs().to_vector(), large_pairs_));
-        EXPECT_TRUE(testing::same_bytes(asking.take_pairs().to_vector(), small_pairs_));
+        EXPECT_TRUE(test::same_bytes(uploading.take_pairs().to_vector(), large_pairs_));
+        EXPECT_TRUE(test::same_bytes(asking.take_pairs().to_vector(), small_pairs_));
     }
 }
 
@@ -112,7 +112,7 @@ TEST_F(ServerFaults, KillsOfOneStreamAgainAndAgain) {
         server.kill_and_restart();
         streaming.go_on(next);
     }
-    EXPECT_TRUE(testing::same_bytes(streaming.take(), crowd_pairs_));
+    EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
 }
 
 TEST_F(ServerFaults, KillsAtAnyMoment) {
@@ -128,7 +128,7 @@ TEST_F(ServerFaults, KillsAtAnyMoment) {
                 std::vector<Pair> found;
                 const PairSink sink = [&](auto batch) { found.insert(found.end(), batch.begin(), batch.end()); };
                 EXPECT_EQ(engine->stream_pairs({std::span(boxes), {}}, sink).pairs, pairs.size());
-                EXPECT_TRUE(testing::same_bytes(found, pairs));
+                EXPECT_TRUE(test::same_bytes(found, pairs));
             }
         });
     }
@@ -151,13 +151,13 @@ TEST_F(ServerFaults, AStopThatEnds) {
     EXPECT_EQ(job.state(), JobState::running);
     EXPECT_EQ(streaming.state(), JobState::running);
     server.signal(SIGCONT);
-    EXPECT_TRUE(testing::same_bytes(job.take_pairs().to_vector(), large_pairs_));
-    EXPECT_TRUE(testing::same_bytes(streaming.take(), crowd_pairs_));
+    EXPECT_TRUE(test::same_bytes(job.take_pairs().to_vector(), large_pairs_));
+    EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
 }
 
 TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     ServerProgram server({.arguments = "--engine processes --workers 2 --metrics localhost:0"});
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
     const auto faults = [&] {
         const std::string page = test::metrics_page(server.log()), name = "\noctopair_worker_faults_total ";
         const std::size_t found = page.find(name);
@@ -168,7 +168,7 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     const auto expect_right = [&](const std::vector<Box3f>& boxes, const std::vector<Pair>& pairs) {
         PairList list;
         (void)engine->find_pairs({std::span(boxes), {}}, list);
-        EXPECT_TRUE(testing::same_bytes(list.to_vector(), pairs));
+        EXPECT_TRUE(test::same_bytes(list.to_vector(), pairs));
     };
     const auto begin = std::chrono::steady_clock::now();
     expect_right(large_, large_pairs_);
@@ -177,7 +177,7 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     for (int i = 0; i < 8 || (faults() < 1 && i < 1000); ++i) {
         const std::jthread killer([&] {
             std::this_thread::sleep_for(whole * (i % 4 + 1) / 5);
-            const auto workers = testing::children_of(server.id());
+            const auto workers = test::children_of(server.id());
             if (!workers.empty()) (void)::kill(workers[std::size_t(i) % workers.size()], SIGKILL);
         });
         expect_right(large_, large_pairs_);
@@ -188,4 +188,4 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -6,7 +6,7 @@
 #include "engine/job_queue.hpp"
 #include "engine/request.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -60,4 +60,4 @@ service::EngineMaker gated_engines(Gate& gate) {
     return [&gate](unsigned) { return std::make_unique<GatedEngine>(gate); };
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

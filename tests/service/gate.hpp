@@ -8,7 +8,7 @@
 #include "octopair/octopair.hpp"
 #include "service/server/server_options.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// Must outlive the engines that wait at it.
 class Gate {
@@ -30,4 +30,4 @@ private:
 /// Makes local engines of one thread behind the gate.
 service::EngineMaker gated_engines(Gate& gate);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

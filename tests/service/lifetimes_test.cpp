@@ -10,25 +10,25 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using testing::comes_true;
-using testing::Gate;
-using testing::Served;
+using test::comes_true;
+using test::Gate;
+using test::Served;
 
 class ServedLifetimes : public ::testing::Test {
 protected:
     Gate gate_;
     Served served_{[this](service::ServerOptions& options) {
-        options.engine = testing::gated_engines(gate_);
+        options.engine = test::gated_engines(gate_);
         options.engine_widths.instant = 0;  // a gate would hold gRPC itself
         options.stall = std::chrono::hours(10);
     }};
-    const std::vector<Box3f> few_ = testing::make_boxes("dense", 100, 1);
-    const std::vector<Box3f> many_ = testing::make_boxes("dense", 60'000, 1);
+    const std::vector<Box3f> few_ = test::make_boxes("dense", 100, 1);
+    const std::vector<Box3f> many_ = test::make_boxes("dense", 60'000, 1);
 };
 
 TEST_F(ServedLifetimes, AnEngineEndsWithItsJobs) {
@@ -44,7 +44,7 @@ TEST_F(ServedLifetimes, AnEngineEndsWithItsJobs) {
 }
 
 TEST_F(ServedLifetimes, AServerEndsWithItsCalls) {
-    for (int i = 0; i < int(testing::scaled(20, 4)); ++i) {
+    for (int i = 0; i < int(test::scaled(20, 4)); ++i) {
         const auto engine = served_.client(milliseconds(0)), other = served_.client(milliseconds(0));
         const Job job = engine->submit(many_), small = other->submit(few_);
         if (i % 3 != 0) {
@@ -89,17 +89,17 @@ TEST_F(ServedLifetimes, AServerThatDrainsLetsJobsEnd) {
 
 TEST_F(ServedLifetimes, LeaveNothingBehind) {
     gate_.open();
-    testing::check_serves(served_.address());
+    test::check_serves(served_.address());
     served_.stop();
-    const auto count = [] { return testing::Belongings::now().descriptors; };
+    const auto count = [] { return test::Belongings::now().descriptors; };
     const std::size_t before = count();
     for (int i = 0; i < 10; ++i) {
         served_.start();
-        testing::check_serves(served_.address());
+        test::check_serves(served_.address());
         served_.stop();
     }
     EXPECT_TRUE(comes_true([&] { return count() <= before + 2; }, minutes(1))) << count() << " after " << before;
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -12,15 +12,15 @@
 #include "service/served.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::minutes;
 using std::chrono::seconds;
-using testing::comes_true;
-using testing::expect_refused;
-using testing::Gate;
-using testing::Served;
+using test::comes_true;
+using test::expect_refused;
+using test::Gate;
+using test::Served;
 
 Served::Change limited(const std::function<void(service::ServerLimits&)>& change) {
     return [change](service::ServerOptions& options) { change(options.limits); };
@@ -58,24 +58,24 @@ TEST(ServedLimits, OfObjectsThatNoMachineHas) {
         const Served served(limited([&](auto& all) {
             if (!limits) all.objects = all.input_bytes = 0;
         }));
-        const auto channel = testing::open_channel(served.address());
+        const auto channel = test::open_channel(served.address());
         // The last have a number of bytes that wraps around to few.
         for (const std::uint64_t objects : {largest32, largest32 + 1, largest64, largest64 / 24 + 1,
                                             std::uint64_t(1) << 61, std::uint64_t(1) << 63}) {
             for (const bool join : {false, true}) {
-                auto spec = testing::spec_of(objects);
+                auto spec = test::spec_of(objects);
                 if (join) spec.mutable_second()->set_objects(largest64 - objects + 2);
                 SCOPED_TRACE(std::to_string(objects) + (join ? " and as many as wrap around" : ""));
-                testing::RawCall call(channel);
-                (void)call.write(testing::upload_of(&spec, testing::bytes_of_boxes(1)));
+                test::RawCall call(channel);
+                (void)call.write(test::upload_of(&spec, test::bytes_of_boxes(1)));
                 const grpc::Status status = call.finish();
                 EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
-                EXPECT_FALSE(testing::failure_in(status).limit().empty());
-                const auto small = testing::call_small(channel, testing::upload_of(&spec, testing::bytes_of_boxes(1)));
+                EXPECT_FALSE(test::failure_in(status).limit().empty());
+                const auto small = test::call_small(channel, test::upload_of(&spec, test::bytes_of_boxes(1)));
                 EXPECT_EQ(small.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << small.error_message();
             }
         }
-        testing::check_serves(served.address());
+        test::check_serves(served.address());
         EXPECT_TRUE(served.comes_to_rest());
     }
 }
@@ -113,7 +113,7 @@ class GatedLimits : public ::testing::Test {
 protected:
     Served serve(const std::function<void(service::ServerLimits&)>& change) {
         return Served([&](service::ServerOptions& options) {
-            options.engine = testing::gated_engines(gate_);
+            options.engine = test::gated_engines(gate_);
             options.engine_widths.instant = 0;  // a gate would hold gRPC itself
             options.stall = std::chrono::hours(10);
             change(options.limits);
@@ -124,16 +124,16 @@ protected:
         std::vector<Job> jobs;
         for (int i = 0; i < 3; ++i) {
             engines.push_back(served.client());
-            jobs.push_back(engines.back()->submit(testing::touching_boxes));
+            jobs.push_back(engines.back()->submit(test::touching_boxes));
         }
         ASSERT_TRUE(comes_true([&] { return served.load().jobs == 3; }, minutes(1)));
         const std::vector<Box3f> many(60'000);
-        expect_refused(limit, 3, [&] { (void)count(served, testing::touching_boxes); });
+        expect_refused(limit, 3, [&] { (void)count(served, test::touching_boxes); });
         expect_refused(limit, 3, [&] { (void)count(served, many); });
         jobs.pop_back();
         ASSERT_TRUE(comes_true([&] { return served.load().jobs == 2; }, minutes(1)));
         gate_.open();
-        EXPECT_EQ(count(served, testing::touching_boxes), 1u);
+        EXPECT_EQ(count(served, test::touching_boxes), 1u);
         for (Job& job : jobs) EXPECT_EQ(job.summary().pairs, 1u);
         EXPECT_TRUE(served.comes_to_rest());
     }
@@ -152,27 +152,27 @@ TEST_F(GatedLimits, OfJobsOfAClient) {
 TEST_F(GatedLimits, OfTime) {
     const Served served = serve([](auto& limits) { limits.job_seconds = 0.3; });
     const std::vector<Box3f> many(60'000);
-    for (const auto& boxes : {testing::touching_boxes, many}) {
+    for (const auto& boxes : {test::touching_boxes, many}) {
         EXPECT_EQ(test::error_of(ErrorCode::resource_limit, [&] { (void)count(served, boxes); }),
                   "job_seconds: the job ran longer than the 0.3 s that one may take");
     }
     gate_.open();
-    testing::check_serves(served.address());
+    test::check_serves(served.address());
     EXPECT_TRUE(served.comes_to_rest());
 }
 
 TEST(ServedLimits, OfTimeDoNotCountTheQueue) {
     Gate gate;
     const Served served([&](service::ServerOptions& options) {
-        options.engine = testing::gated_engines(gate);
+        options.engine = test::gated_engines(gate);
         options.engine_widths = {1, 1, 0};
         options.limits.job_seconds = 2;
     });
     const auto first = served.client(), second = served.client();
-    Job before = first->submit(testing::touching_boxes);
+    Job before = first->submit(test::touching_boxes);
     ASSERT_TRUE(gate.wait_for(1));
-    Job job = second->submit(testing::touching_boxes);
-    EXPECT_EQ(testing::code_of([&] { (void)before.summary(); }), ErrorCode::resource_limit);
+    Job job = second->submit(test::touching_boxes);
+    EXPECT_EQ(test::code_of([&] { (void)before.summary(); }), ErrorCode::resource_limit);
     ASSERT_TRUE(gate.wait_for(1));
     gate.open();
     EXPECT_EQ(job.summary().pairs, 1u);
@@ -187,17 +187,17 @@ TEST_P(ConnectionLimits, SayWhy) {
     });
     std::vector<std::unique_ptr<Engine>> engines;
     for (int i = 0; i < 3; ++i) engines.push_back(served.client());
-    testing::RawSocket beyond(served.address());
-    (void)beyond.send(testing::http2_preface);
+    test::RawSocket beyond(served.address());
+    (void)beyond.send(test::http2_preface);
     const std::string frames = beyond.receive(minutes(1));
     EXPECT_NE(frames.find("at most 3 connections"), std::string::npos) << frames;
     const auto call = [&] { (void)connect(served.address(), {.connect_timeout = seconds(2)}); };
     for (int i = 0; i < 4; ++i) {
         EXPECT_NE(test::error_of(ErrorCode::resource_limit, call).find("no more connections"), std::string::npos);
     }
-    EXPECT_EQ(engines[0]->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+    EXPECT_EQ(engines[0]->count_pairs(test::objects_of(test::touching_boxes)), 1u);
     engines.pop_back();
-    testing::check_serves(served.address());
+    test::check_serves(served.address());
 }
 
 INSTANTIATE_TEST_SUITE_P(, ConnectionLimits, ::testing::Bool(),
@@ -205,12 +205,12 @@ INSTANTIATE_TEST_SUITE_P(, ConnectionLimits, ::testing::Bool(),
 
 TEST(ServedLimits, OfConnectionsForgetWhatWasClosed) {
     const Served served(limited([](auto& limits) { limits.connections = 5; }));
-    for (int i = 0; i < 100; ++i) testing::check_serves(served.address());
+    for (int i = 0; i < 100; ++i) test::check_serves(served.address());
     EXPECT_LE(served.load().connections, 5u);
     const Served unlimited(limited([](auto& limits) { limits.connections = 0; }));
-    for (int i = 0; i < 100; ++i) testing::check_serves(unlimited.address());
+    for (int i = 0; i < 100; ++i) test::check_serves(unlimited.address());
     EXPECT_LT(unlimited.load().connections, 100u);
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -11,14 +11,14 @@
 #include "service/served.hpp"
 #include "service/server/calls/upload.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::buffer_of;
-using testing::bytes_of_boxes;
-using testing::RawCall;
-using testing::Served;
-using testing::upload_of;
+using test::buffer_of;
+using test::bytes_of_boxes;
+using test::RawCall;
+using test::Served;
+using test::upload_of;
 using v1::JobSpec;
 
 class ServedMessages : public ::testing::Test {
@@ -26,7 +26,7 @@ protected:
     ~ServedMessages() override {
         gate_.open();
         EXPECT_TRUE(served_.comes_to_rest());
-        testing::check_serves(served_.address());
+        test::check_serves(served_.address());
     }
 
     grpc::Status send(const std::vector<grpc::ByteBuffer>& messages) {
@@ -38,17 +38,17 @@ protected:
         return call.finish();
     }
     void expect_bad(const grpc::Status& status, const std::string& words) {
-        EXPECT_EQ(int(testing::failure_in(status).code()), int(v1::BAD_INPUT)) << status.error_message();
+        EXPECT_EQ(int(test::failure_in(status).code()), int(v1::BAD_INPUT)) << status.error_message();
         EXPECT_NE(status.error_message().find(words), std::string::npos) << status.error_message();
     }
 
-    testing::Gate gate_;
+    test::Gate gate_;
     const Served served_{[this](service::ServerOptions& options) {
-        options.engine = testing::gated_engines(gate_);
+        options.engine = test::gated_engines(gate_);
         options.engine_widths = {1, 1, 0};
     }};
-    const std::shared_ptr<grpc::Channel> channel_ = testing::open_channel(served_.address());
-    const JobSpec spec_ = testing::spec_of(10);
+    const std::shared_ptr<grpc::Channel> channel_ = test::open_channel(served_.address());
+    const JobSpec spec_ = test::spec_of(10);
 };
 
 std::string hex_of(const grpc::ByteBuffer& message) {
@@ -122,14 +122,14 @@ TEST_F(ServedMessages, UploadsThatEndEarly) {
     expect_bad(send({}), "without a job");
     expect_bad(send({upload_of(&spec_, {})}), "240 bytes before");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(9)), upload_of(nullptr, "12345")}), "19 bytes before");
-    expect_bad(testing::call_small(channel_, upload_of(&spec_, bytes_of_boxes(9))), "24 bytes before");
+    expect_bad(test::call_small(channel_, upload_of(&spec_, bytes_of_boxes(9))), "24 bytes before");
 }
 
 TEST_F(ServedMessages, MoreDataThanSaid) {
     const auto all = upload_of(&spec_, bytes_of_boxes(10)), more = upload_of(nullptr, "x");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(11))}), "more bytes");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(9)), upload_of(nullptr, bytes_of_boxes(2))}), "more bytes");
-    expect_bad(testing::call_small(channel_, upload_of(&spec_, bytes_of_boxes(11))), "more bytes");
+    expect_bad(test::call_small(channel_, upload_of(&spec_, bytes_of_boxes(11))), "more bytes");
     RawCall running(channel_);
     ASSERT_TRUE(running.write(all));
     ASSERT_TRUE(gate_.wait_for(1));
@@ -138,7 +138,7 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
     RawCall queued(channel_), before(channel_);
     ASSERT_TRUE(before.write(upload_of(&spec_, bytes_of_boxes(10))));
     ASSERT_TRUE(gate_.wait_for(1));
-    const JobSpec other = testing::spec_of(1);
+    const JobSpec other = test::spec_of(1);
     ASSERT_TRUE(queued.write(upload_of(&other, bytes_of_boxes(1))));
     ASSERT_TRUE(queued.write(more));
     expect_bad(queued.finish(), "more bytes");
@@ -148,12 +148,12 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
 TEST_F(ServedMessages, DataAndTheEndAfterTheJobHasEnded) {
     gate_.open();
     const std::vector<Box3f> boxes(2000);  // 16 MB of pairs
-    const JobSpec crowd = testing::spec_of(boxes.size());
+    const JobSpec crowd = test::spec_of(boxes.size());
     for (const auto& late : {upload_of(nullptr, "x"), upload_of(nullptr, {}), upload_of(&crowd, {})}) {
         RawCall call(channel_);
         ASSERT_TRUE(call.write(upload_of(&crowd, test::bytes_of(boxes))));
         ASSERT_TRUE(call.read());
-        ASSERT_TRUE(testing::comes_true([&] { return served_.load().jobs == 0; }, std::chrono::minutes(1)));
+        ASSERT_TRUE(test::comes_true([&] { return served_.load().jobs == 0; }, std::chrono::minutes(1)));
         (void)call.write(late);
         (void)call.writes_done();
         const grpc::Status status = call.finish();
@@ -167,7 +167,7 @@ TEST_F(ServedMessages, JobsOutOfPlace) {
     expect_bad(send({data}), "the first message says no job");
     expect_bad(send({upload_of(nullptr, {})}), "the first message says no job");
     expect_bad(send({job, job}), "a second job");
-    expect_bad(testing::call_small(channel_, data), "the first message says no job");
+    expect_bad(test::call_small(channel_, data), "the first message says no job");
 }
 
 TEST_F(ServedMessages, SpecsThatMakeNoSense) {
@@ -196,10 +196,10 @@ TEST_F(ServedMessages, Garbage) {
     for (const std::string& message : messages) {
         expect_bad(send({buffer_of(message)}), "");
         expect_bad(send({upload_of(&spec_, {}), buffer_of(message)}), "");
-        expect_bad(testing::call_small(channel_, buffer_of(message)), "");
+        expect_bad(test::call_small(channel_, buffer_of(message)), "");
     }
     const auto large = buffer_of(std::string(service::most_message_bytes + 1, 'x'));
-    EXPECT_EQ(testing::call_small(channel_, large).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_EQ(test::call_small(channel_, large).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
     EXPECT_FALSE(send({large}).ok());
 }
 
@@ -251,4 +251,4 @@ TEST_F(ServedMessages, MethodsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

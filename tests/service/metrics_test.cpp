@@ -45,7 +45,7 @@ TEST_F(Metrics, CountJobs) {
 TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
     serve(options_at(socket()));
     const auto client = connect(socket());
-    const std::vector<Box3f> crowd(testing::scaled(8000, 2));
+    const std::vector<Box3f> crowd(test::scaled(8000, 2));
     for (const char* const done : {"1", "2"}) {
         std::uint64_t pairs = 0;
         const PairSink count = [&](std::span<const Pair> some) { pairs += some.size(); };

@@ -13,11 +13,11 @@
 #include "service/gate.hpp"
 #include "service/served.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::Served;
+using test::Served;
 
 /// Listens, and never answers.
 class Mute {
@@ -46,7 +46,7 @@ TEST(ServedPatience, EndsAtAServerThatNeverAnswers) {
     const test::TemporaryDirectory folder;
     const Mute mute(folder.file("mute"));
     const auto call = [&] { (void)connect("unix:" + folder.file("mute"), {.patience = milliseconds(2500)}); };
-    EXPECT_EQ(testing::code_of(call), ErrorCode::engine_failed);
+    EXPECT_EQ(test::code_of(call), ErrorCode::engine_failed);
 }
 
 TEST(ServedPatience, WaitsForAServerThatComesLater) {
@@ -56,36 +56,36 @@ TEST(ServedPatience, WaitsForAServerThatComesLater) {
         std::this_thread::sleep_for(milliseconds(400));
         served.start();
     });
-    testing::check_serves(served.address());
+    test::check_serves(served.address());
 }
 
 TEST(ServedPatience, EndsWhenAServerStaysAway) {
-    testing::Gate gate;
+    test::Gate gate;
     Served served([&](service::ServerOptions& options) {
-        options.engine = testing::gated_engines(gate);
+        options.engine = test::gated_engines(gate);
         options.engine_widths.instant = 0;  // a gate would hold gRPC itself
     });
     const auto engine = served.client(milliseconds(500));
-    Job job = engine->submit(testing::touching_boxes);
+    Job job = engine->submit(test::touching_boxes);
     ASSERT_TRUE(gate.wait_for(1));
     served.stop();
-    EXPECT_EQ(testing::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
+    EXPECT_EQ(test::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
     served.start();
     gate.open();
     // With so little patience one may miss it again.
     const auto answers = [&] {
         std::uint64_t pairs = 0;
-        (void)testing::code_of([&] { pairs = engine->count_pairs(testing::objects_of(testing::touching_boxes)); });
+        (void)test::code_of([&] { pairs = engine->count_pairs(test::objects_of(test::touching_boxes)); });
         return pairs == 1;
     };
-    EXPECT_TRUE(testing::comes_true(answers, std::chrono::minutes(1)));
+    EXPECT_TRUE(test::comes_true(answers, std::chrono::minutes(1)));
 }
 
 TEST(ServedPatience, CanBeStopped) {
     Served served;
     const auto engine = served.client(std::chrono::hours(10));
     served.stop();
-    Job job = engine->submit(testing::touching_boxes);
+    Job job = engine->submit(test::touching_boxes);
     std::this_thread::sleep_for(milliseconds(100));
     job.cancel();
     ASSERT_TRUE(job.wait_for(std::chrono::minutes(1)));
@@ -96,9 +96,9 @@ TEST(ServedPatience, WrongAddressesAreRefused) {
     for (const char* address :
          {"", "unix:", "localhost", "localhost:", ":1", "localhost:65536", "localhost:1x", "::1:80"}) {
         SCOPED_TRACE(address);
-        EXPECT_EQ(testing::code_of([&] { (void)connect(address); }), ErrorCode::usage);
+        EXPECT_EQ(test::code_of([&] { (void)connect(address); }), ErrorCode::usage);
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -9,20 +9,20 @@
 #include "service/server_program.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
-using testing::comes_true;
-using testing::RawSocket;
-using testing::ServerProgram;
+using test::comes_true;
+using test::RawSocket;
+using test::ServerProgram;
 
 TEST(ServerProgramLimits, OfDescriptors) {
-    if (testing::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     ServerProgram server({.before = "ulimit -n 60;"});
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     std::vector<RawSocket> held;
     std::optional<ErrorCode> code;
@@ -31,20 +31,20 @@ TEST(ServerProgramLimits, OfDescriptors) {
         held.clear();
         for (int i = 0; i < 80; ++i) held.emplace_back(server.address());
         EXPECT_NE(held.back().receive(minutes(1)).find("no more descriptors"), std::string::npos);
-        code = testing::code_of([&] { (void)connect(server.address(), {.connect_timeout = seconds(2)}); });
+        code = test::code_of([&] { (void)connect(server.address(), {.connect_timeout = seconds(2)}); });
     }
     EXPECT_EQ(code, ErrorCode::resource_limit);
-    EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+    EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
     EXPECT_TRUE(server.lives());
     held.clear();
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
 }
 
 TEST(ServerProgramLimits, OfAddressSpace) {
-    if (testing::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    if (test::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
     // With an arena of malloc for every thread, gRPC itself would want for room.
     ServerProgram server({.arguments = "--engine local --threads 1", .before = "export MALLOC_ARENA_MAX=2;"});
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});
     server.limit_memory(std::uint64_t(300) << 20);
     const std::vector<Box3f> many(20'000'000), crowd(20'000);  // 480 MB; 1.6 GB of pairs
@@ -52,33 +52,33 @@ TEST(ServerProgramLimits, OfAddressSpace) {
     PairList list;
     const auto too_crowded = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list); };
     for (int i = 0; i < 2; ++i) {
-        EXPECT_EQ(testing::code_of(too_many), ErrorCode::resource_limit);
-        EXPECT_EQ(testing::code_of(too_crowded), ErrorCode::resource_limit);
+        EXPECT_EQ(test::code_of(too_many), ErrorCode::resource_limit);
+        EXPECT_EQ(test::code_of(too_crowded), ErrorCode::resource_limit);
         EXPECT_TRUE(server.lives()) << server.log();
-        EXPECT_EQ(engine->count_pairs(testing::objects_of(testing::touching_boxes)), 1u);
+        EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
     }
 }
 
 TEST(ServerProgramLimits, OfPairsThatArePutInOrder) {
-    if (testing::sanitized) GTEST_SKIP() << "the sanitizer's own memory counts";
+    if (test::sanitized) GTEST_SKIP() << "the sanitizer's own memory counts";
     ServerProgram server({.arguments = "--engine local --threads 1 --max-memory 64M"});
-    testing::check_serves(server.address());
+    test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});
     const std::vector<Box3f> crowd(12'000);  // 576 MB of pairs
     PairList list;
     const auto call = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list, {Order::ascending}); };
-    EXPECT_EQ(testing::code_of(call), ErrorCode::resource_limit);
+    EXPECT_EQ(test::code_of(call), ErrorCode::resource_limit);
     EXPECT_LT(server.memory(), std::uint64_t(300) << 20);
 }
 
 TEST(ServerProgramLimits, EndsWhenAskedTo) {
     for (const int signal : {SIGTERM, SIGINT}) {
         ServerProgram server;
-        testing::check_serves(server.address());
+        test::check_serves(server.address());
         server.signal(signal);
         EXPECT_EQ(server.wait(), 0) << server.log();
     }
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -10,7 +10,7 @@
 #include "service/protocol/job_spec.hpp"
 #include "service/protocol/messages.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -126,4 +126,4 @@ v1::Failure failure_in(const grpc::Status& status) {
     return failure;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

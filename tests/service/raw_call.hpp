@@ -14,7 +14,7 @@
 #include "octopair/objects.hpp"
 #include "service/protocol/octopair.pb.h"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// A connection of its own.
 std::shared_ptr<grpc::Channel> open_channel(const std::string& address);
@@ -60,4 +60,4 @@ grpc::ByteBuffer buffer_of(const std::string& bytes);
 /// The failure that a status carries; its message is empty if it carries none.
 v1::Failure failure_in(const grpc::Status& status);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

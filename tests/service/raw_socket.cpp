@@ -13,7 +13,7 @@
 
 #include "service/protocol/address.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::string grpc_head(std::uint32_t stream, const std::string& method) {
 
 std::string grpc_prefix(std::uint32_t length) { return std::string(1, '\0') + big_endian(length, 4); }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -7,7 +7,7 @@
 
 #include "base/descriptor.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// Connected to `unix:PATH` or `127.0.0.1:PORT`.
 class RawSocket {
@@ -43,4 +43,4 @@ std::string grpc_head(std::uint32_t stream, const std::string& method);
 /// A gRPC message's first five bytes.
 std::string grpc_prefix(std::uint32_t length);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -7,7 +7,7 @@
 #include "octopair/error.hpp"
 #include "processes/leftovers.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -58,4 +58,4 @@ void expect_refused(const std::string& limit, std::uint64_t allowed, const std::
     }
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -11,7 +11,7 @@
 #include "service/server/server.hpp"
 #include "service/server/server_options.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class Served {
 public:
@@ -44,4 +44,4 @@ void check_serves(const std::string& address);
 /// Fails the test unless `call` throws Error{resource_limit} that names the limit and how much it allows.
 void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

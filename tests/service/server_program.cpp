@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 ServerProgram::ServerProgram(Setting setting) : setting_(std::move(setting)) { start(); }
 
@@ -80,4 +80,4 @@ std::size_t ServerProgram::descriptors() const {
     return count;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -9,7 +9,7 @@
 
 #include "io/temporary.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class ServerProgram {
 public:
@@ -51,4 +51,4 @@ private:
     pid_t id_ = 0;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

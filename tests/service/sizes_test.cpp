@@ -6,12 +6,12 @@
 #include "service/server/jobs/job_scheduler.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 using service::most_small_objects;
 using service::piece_bytes;
-using testing::Served;
+using test::Served;
 
 /// `crowd` boxes in one place, each a pair with each other, then others apart.
 std::vector<Box3f> boxes_with(std::uint64_t objects, std::uint64_t crowd) {
@@ -98,4 +98,4 @@ TEST(ServedSizes, OfJoinsWithAnEmptySet) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

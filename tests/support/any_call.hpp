@@ -7,7 +7,7 @@
 #include "octopair/octopair.hpp"
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// One call about the objects of a case, by any engine.
 struct AnyCall {
@@ -44,4 +44,4 @@ struct AnyCall {
     }
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

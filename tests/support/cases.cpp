@@ -8,7 +8,7 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::uint64_t case_seed(const std::string& kind, std::uint64_t i) {
     return samples::mix_bits(salt + i) >> 1;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -13,7 +13,7 @@
 
 #include "octopair/octopair.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// The objects of a call, owned.
 struct OwnedObjects {
@@ -56,4 +56,4 @@ enum class SceneSize : std::uint8_t { small, large };
 /// `usual` scenes, as many as the environment asks for (fewer under sanitizers), or the one of OCTOPAIR_TEST_SEED.
 SceneRange scene_range(SceneSize size, std::uint64_t usual);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <sstream>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::vector<Pair> missing_from(const std::vector<Pair>& list, const std::vector<
                                          << "; they differ from " << a - found.begin() << " on";
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

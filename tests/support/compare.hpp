@@ -1,13 +1,37 @@
-// Comparison of pair lists that says which pair differs, with its boxes.
+// Comparisons of lists, files and boxes that say where two of them differ.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <ostream>
 #include <vector>
 
 #include "octopair/octopair.hpp"
 
-namespace octopair::testing {
+namespace octopair {
+
+/// For GoogleTest, which looks for it in the namespace of Pair.
+inline void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.a << "-" << pair.b; }
+
+}  // namespace octopair
+
+namespace octopair::test {
+
+/// Success if both sequences are equal, element by element; else their sizes and the first elements that differ.
+template <typename Sequence>
+::testing::AssertionResult same_sequence(const Sequence& found, const Sequence& expected) {
+    if (found == expected) return ::testing::AssertionSuccess();
+    const auto [a, b] = std::ranges::mismatch(found, expected);
+    auto failure = ::testing::AssertionFailure();
+    failure << std::size(found) << " elements, not " << std::size(expected) << "; from element "
+            << std::distance(std::begin(found), a) << " on they differ";
+    if (a != std::end(found)) failure << ", found " << ::testing::PrintToString(*a);
+    if (b != std::end(expected)) failure << ", expected " << ::testing::PrintToString(*b);
+    return failure;
+}
 
 /// What a list of pairs was found in; `second` is null but for a join.
 struct Searched {
@@ -23,4 +47,4 @@ struct Searched {
 /// Success if both are the same, in the same order.
 ::testing::AssertionResult same_bytes(const std::vector<Pair>& found, const std::vector<Pair>& expected);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -9,7 +9,7 @@
 
 #include "samples/random.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -450,4 +450,4 @@ std::vector<Box3f> long_tailed_boxes(std::uint64_t objects, std::uint64_t seed) 
     return boxes;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -11,7 +11,7 @@
 
 #include "support/cases.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 std::vector<std::string> family_names();
 
@@ -23,4 +23,4 @@ Case make_family_case(const std::string& family, std::uint64_t objects, std::uin
 /// with S = .0025, .0115, .041.
 std::vector<Box3f> long_tailed_boxes(std::uint64_t objects, std::uint64_t seed);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -11,7 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// `control`: of the processor; on others than x86-64 a rounding mode of <cfenv>.
 struct CallerState {
@@ -62,4 +62,4 @@ void call_in(const CallerState& state, Body&& body) {
     EXPECT_EQ(after, state.control) << state.name;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

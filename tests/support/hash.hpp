@@ -7,7 +7,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class Hash {
 public:
@@ -37,4 +37,4 @@ std::uint64_t hash_of(const Items& items) {
     return hash.value();
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -8,7 +8,7 @@
 #include "samples/random.hpp"
 #include "samples/scenes.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 namespace {
 
@@ -281,4 +281,4 @@ std::string param_name(const ::testing::TestParamInfo<std::string>& info) {
     return name;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -9,7 +9,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// All kinds of samples, then "lattice", "duplicates", "segments" and so on (kinds.cpp).
 std::vector<std::string> all_kind_names();
@@ -28,4 +28,4 @@ Box3d rounded_to_float32(const Box3d& box);
 /// Names a parametrised test by its kind.
 std::string param_name(const ::testing::TestParamInfo<std::string>& info);
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

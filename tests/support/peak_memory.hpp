@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// The most memory this process ever had resident, in bytes.
 inline std::uint64_t peak_rss() {
@@ -14,4 +14,4 @@ inline std::uint64_t peak_rss() {
     return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 struct Pinned {
     std::string_view kind;
@@ -49,4 +49,4 @@ inline const Pinned& pinned_scene(std::string_view kind) {
     return *found;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

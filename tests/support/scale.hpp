@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace octopair::testing {
+namespace octopair::test {
 
 #ifdef OCTOPAIR_TEST_SANITIZED
 inline constexpr bool sanitized = true;
@@ -25,4 +25,4 @@ constexpr std::uint64_t scaled(std::uint64_t full, std::uint64_t divisor) {
     return sanitized ? (full + divisor - 1) / divisor : full;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -12,11 +12,11 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::Case;
-using testing::same_pairs;
+using test::Case;
+using test::same_pairs;
 
 std::vector<Pair> found_by(const RowSearch& search) {
     std::vector<Pair> pairs;
@@ -36,7 +36,7 @@ void expect_judged(const RowSearch& search, const std::vector<Pair>& pairs) {
             if (search.is_pair(a, b)) judged.push_back({a, b});
         }
     }
-    EXPECT_TRUE(testing::same_bytes(judged, pairs));
+    EXPECT_TRUE(test::same_bytes(judged, pairs));
 }
 
 void expect_right(const SearchedObjects& objects, unsigned threads) {
@@ -47,15 +47,15 @@ void expect_right(const SearchedObjects& objects, unsigned threads) {
                                   : baselines::oracle_pairs(objects.first, objects.margin);
     const std::vector<Pair> found = found_by(search);
     EXPECT_TRUE(same_pairs(found, expected, {objects.first, objects.second}));
-    EXPECT_TRUE(testing::same_bytes(found, expected));
+    EXPECT_TRUE(test::same_bytes(found, expected));
     if (objects.first.size() <= 200) expect_judged(search, expected);
 }
 
 class RowSearchOfKind : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
-    for (std::uint64_t i = 0; i < testing::case_count(testing::scaled(60, 5)); ++i) {
-        const Case asked = testing::make_case(GetParam(), testing::case_seed(GetParam(), i));
+    for (std::uint64_t i = 0; i < test::case_count(test::scaled(60, 5)); ++i) {
+        const Case asked = test::make_case(GetParam(), test::case_seed(GetParam(), i));
         const Objects first = asked.first.view();
         const Objects second = asked.second ? asked.second->view() : Objects{};
         expect_right({first, asked.second ? &second : nullptr, asked.margin}, asked.threads[i % 3]);
@@ -63,7 +63,7 @@ TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(testing::all_kind_names()), testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 /// All boxes with corners among a few numbers.
 template <typename Real>
@@ -109,7 +109,7 @@ TEST(RowSearch, NoObjects) {
 }
 
 TEST(RowSearch, AnyNumberOfObjects) {
-    const std::vector<Box3f> boxes = testing::make_boxes("uniform", 600, 1);
+    const std::vector<Box3f> boxes = test::make_boxes("uniform", 600, 1);
     for (std::size_t n = 1; n <= boxes.size(); n += 1 + n / 40) {
         expect_right({{std::span(boxes).first(n), {}}, nullptr, 0.01}, unsigned(1 + n % 4));
         ASSERT_FALSE(HasFailure()) << n;
@@ -117,7 +117,7 @@ TEST(RowSearch, AnyNumberOfObjects) {
 }
 
 TEST(RowSearch, StopsWhenAsked) {
-    const std::vector<Box3f> boxes = testing::make_boxes("uniform", 5000, 1);
+    const std::vector<Box3f> boxes = test::make_boxes("uniform", 5000, 1);
     std::stop_source stop;
     stop.request_stop();
     Team team(1);
@@ -130,4 +130,4 @@ TEST(RowSearch, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -11,13 +11,13 @@
 #include "samples/random.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 /// Objects, their pairs in ascending order, and an order that stands for the octal one.
 struct Scene {
     Scene(std::uint64_t objects, bool with_second)
-        : boxes(testing::make_boxes("dense", objects, 3)), more(testing::make_boxes("dense", objects / 2, 4)) {
+        : boxes(test::make_boxes("dense", objects, 3)), more(test::make_boxes("dense", objects / 2, 4)) {
         first = {std::span<const Box3f>(boxes), {}};
         second = {std::span<const Box3f>(more), {}};
         join = with_second;
@@ -283,4 +283,4 @@ TEST(Verifier, FindsAnInvalidBoxThatWasNotRefused) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -21,7 +21,6 @@
 #include "io/formats.hpp"
 #include "io/results/pair_writer.hpp"
 #ifdef OCTOPAIR_WITH_MPI
-#include "cli/detect/rank_detection.hpp"
 #include "cli/ranks/cluster.hpp"
 #endif
 
@@ -60,25 +59,29 @@ int exit_status_of(const DetectRequest& request, const DetectReport& report) {
     return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
 }
 
+/// Detects on the processes of a group; its first rank says what came of it.
+DetectReport detect_and_report(const DetectRequest& request, Group& group, const std::stop_token& stop) {
+    std::optional<Outcome> outcome;
+    group.together([&] {
+        if (group.first()) outcome.emplace(request, stop);
+    });
+    const DetectReport report = request.events ? detect_events(request, stop) : detect(request, group, stop);
+    group.together([&] {
+        if (outcome) outcome->tell(report);
+    });
+    return report;
+}
+
 #ifdef OCTOPAIR_WITH_MPI
-/// The first rank speaks for all.
 int run_on_ranks(const DetectRequest& request) {
     const Interrupt interrupt;
     Cluster cluster;
     try {
-        std::optional<Outcome> outcome;
-        cluster.together([&] {
-            if (cluster.first()) outcome.emplace(request, interrupt.token());
-        });
-        const DetectReport report = detect_on_ranks(request, cluster, interrupt.token());
-        cluster.together([&] {
-            if (cluster.first()) outcome->tell(report);
-        });
-        return exit_status_of(request, report);
+        return exit_status_of(request, detect_and_report(request, cluster, interrupt.token()));
     } catch (const Error& error) {
         if (!cluster.ends_alike()) throw;
         if (cluster.first()) (void)fail(error);
-        // Once one has ended with a failure, mpirun may kill the others in the middle of a word.
+        // Without this barrier, mpirun may kill the first rank in the middle of its message when another rank exits.
         cluster.together([] {});
         return exit_status(error.code());
     }
@@ -90,11 +93,8 @@ int run_detect(const DetectRequest& request) {
     if (request.engine.has_ranks()) return run_on_ranks(request);
 #endif
     const Interrupt interrupt;
-    Outcome outcome(request, interrupt.token());
-    const DetectReport report =
-        request.events ? detect_events(request, interrupt.token()) : detect(request, interrupt.token());
-    outcome.tell(report);
-    return exit_status_of(request, report);
+    Group alone;
+    return exit_status_of(request, detect_and_report(request, alone, interrupt.token()));
 }
 
 void add_what(Command& command, DetectRequest& request) {

@@ -9,6 +9,7 @@
 
 #include "cli/detect/stage.hpp"
 #include "cli/engine_choice.hpp"
+#include "cli/ranks/group.hpp"
 #include "io/results/baseline.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
@@ -75,13 +76,9 @@ private:
     void add(const Verification& verification);
 };
 
-class ProgressLine;
-
-/// Of the call about a frame, after those that the report tells of. Borrows the progress.
-Options call_options(const DetectRequest& request, const DetectReport& report, std::uint64_t frame,
-                     ProgressLine& progress);
-
-/// Does it all but the stats. Throws Error.
-DetectReport detect(const DetectRequest& request, const std::stop_token& stop);
+/// Finds the pairs of a request, on one process or on the ranks of a group, and writes them.
+/// Collective. Throws: Error, the same on all ranks.
+/// Returns the report of this rank: the numbers of all ranks, with the seconds of this one.
+DetectReport detect(const DetectRequest& request, Group& group, const std::stop_token& stop);
 
 }  // namespace octopair::cli

@@ -45,7 +45,7 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
 
 std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options) {
     const std::uint64_t limit = options.limit.value_or(std::numeric_limits<std::uint64_t>::max());
-    const std::vector<Share> shares = cluster_.comm().all_gather(Share{summary.collisions, summary.truncated});
+    const std::vector<Share> shares = cluster_.all_gather(Share{summary.collisions, summary.truncated});
     std::uint64_t before = 0, all = 0;
     for (unsigned rank = 0; rank < cluster_.ranks(); ++rank) {
         if (rank == cluster_.rank()) before = all;
@@ -58,7 +58,7 @@ std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options
     std::vector<Work> own;
     own.reserve(summary.filters.size());
     for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.seconds});
-    const std::vector<Work> works = cluster_.comm().all_gather(std::span<const Work>(own)).values;
+    const std::vector<Work> works = cluster_.all_gather(std::span<const Work>(own));
     for (std::size_t i = 0; i < works.size(); ++i) {
         if (i / own.size() == cluster_.rank()) continue;
         FilterCounts& counts = summary.filters[i % own.size()];

@@ -28,8 +28,8 @@ public:
 
     /// Collective: `block` of rank `from`; the others have none to give. On the first rank, what has come.
     const Block& bring(const Block& block) {
-        const auto lengths = cluster_.comm().all_gather(
-            Lengths{block.pairs.size(), block.findings.size(), block.contacts.size()})[from_];
+        const auto lengths =
+            cluster_.all_gather(Lengths{block.pairs.size(), block.findings.size(), block.contacts.size()})[from_];
         cluster_.together([&] {
             if (!cluster_.first()) return;
             come_.pairs.resize(std::size_t(lengths.pairs));
@@ -45,10 +45,7 @@ public:
 private:
     template <typename Value>
     void carry(const std::vector<Value>& own, std::vector<Value>& come) {
-        Exchange counts{RankCounts(cluster_.ranks(), 0), RankCounts(cluster_.ranks(), 0)};
-        if (cluster_.rank() == from_) counts.sent[0] = own.size();
-        if (cluster_.first()) counts.received[from_] = come.size();
-        cluster_.comm().exchange(own.data(), come.data(), counts);
+        cluster_.send_to_first(from_, std::span<const Value>(own), std::span(come));
     }
 
     Cluster& cluster_;
@@ -102,7 +99,7 @@ void CollisionPiece::cut(std::uint64_t most) {
 }
 
 void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer) {
-    const std::vector<std::uint64_t> blocks = cluster.comm().all_gather(std::uint64_t(piece.blocks().size()));
+    const std::vector<std::uint64_t> blocks = cluster.all_gather(std::uint64_t(piece.blocks().size()));
     for (unsigned from = 0; from < cluster.ranks(); ++from) {
         Carrier carrier(cluster, from);
         const Block none;

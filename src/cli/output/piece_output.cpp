@@ -1,16 +1,22 @@
 #include "cli/output/piece_output.hpp"
 
 #include <array>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/detect/stage.hpp"
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats.hpp"
+#include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/output/collision_piece.hpp"
+#endif
 
 namespace octopair::cli {
 
@@ -30,6 +36,7 @@ public:
     void write(std::uint64_t frame, std::span<const Pair64> piece) override {
         write_piece(frame, io::NpyType::uint64, piece.size(), std::span<const std::span<const Pair64>>(&piece, 1));
     }
+    void write(std::uint64_t, const CollisionPiece&) override {}  // collisions go to the first rank
     void finish() override {}
 
 private:
@@ -38,7 +45,7 @@ private:
     void write_piece(std::uint64_t frame, io::NpyType type, std::uint64_t pairs,
                      std::span<const std::span<const AnyPair>> chunks) {
         if (moving_) open(io::frame_path(path_, frame));
-        const std::vector<std::uint64_t> sizes = cluster_.comm().all_gather(pairs);
+        const std::vector<std::uint64_t> sizes = cluster_.all_gather(pairs);
         const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t(0));
         const std::uint64_t before = std::accumulate(sizes.begin(), sizes.begin() + cluster_.rank(), std::uint64_t(0));
         const std::string header = io::make_npy_header(type, std::array<std::uint64_t, 2>{all, 2});
@@ -64,7 +71,7 @@ private:
             file_.emplace(path, io::AtomicFile::Shared{});
             temporary = file_->temporary();
         });
-        temporary = cluster_.told_by_first(temporary);
+        temporary = cluster_.broadcast_text(temporary);
         cluster_.together([&] {
             if (!cluster_.first()) part_.emplace(temporary, path);
         });
@@ -77,46 +84,60 @@ private:
     std::optional<io::FilePart> part_;    // the others'
 };
 
-/// The first rank writes all.
+/// The first rank writes the pieces of all ranks.
 class RelayedOutput final : public PieceOutput {
 public:
-    RelayedOutput(Cluster& cluster, std::unique_ptr<io::PairWriter> writer)
+    /// `writer`: none but on the first rank.
+    RelayedOutput(Cluster& cluster, std::unique_ptr<FoundWriter> writer)
         : cluster_(cluster), writer_(std::move(writer)) {}
 
     void write(std::uint64_t frame, const PairList& piece) override {
-        cluster_.together([&] {
-            if (writer_) writer_->begin_frame(frame);
-        });
-        cluster_.relay(piece, [&](std::span<const Pair> pairs) { writer_->write(pairs); });
-        cluster_.together([&] {
-            if (writer_) writer_->end_frame();
-        });
+        write_frame(frame,
+                    [&] { cluster_.relay(piece, [&](std::span<const Pair> pairs) { writer_->write(pairs, {}); }); });
     }
     void write(std::uint64_t, std::span<const Pair64>) override {
         throw Error(ErrorCode::usage, "indices of 64 bits go to .npy files alone");
+    }
+    void write(std::uint64_t frame, const CollisionPiece& piece) override {
+        write_frame(frame, [&] { relay_collisions(piece); });
     }
     void finish() override {
         cluster_.together([&] {
             if (writer_) writer_->finish();
         });
     }
+    std::optional<io::ChangeCounts> changes() const override { return writer_ ? writer_->changes() : std::nullopt; }
 
 private:
+    void write_frame(std::uint64_t frame, const std::function<void()>& write_all) {
+        cluster_.together([&] {
+            if (writer_) writer_->begin_frame(frame);
+        });
+        write_all();
+        cluster_.together([&] {
+            if (writer_) writer_->end_frame();
+        });
+    }
+#ifdef OCTOPAIR_WITH_PIPELINE
+    void relay_collisions(const CollisionPiece& piece) { relay(cluster_, piece, writer_.get()); }
+#else
+    void relay_collisions(const CollisionPiece&) {}  // no collisions without filters
+#endif
+
     Cluster& cluster_;
-    std::unique_ptr<io::PairWriter> writer_;  // the first rank's
+    std::unique_ptr<FoundWriter> writer_;
 };
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): all of it goes to one of the two.
-std::unique_ptr<PieceOutput> make_piece_output(const DetectRequest& request, Cluster& cluster,
-                                               const io::PairNames& names, const std::stop_token& stop, bool moving) {
-    if (io::is_array_file(request.output)) return std::make_unique<SharedNpy>(cluster, request.output, moving);
-    std::unique_ptr<io::PairWriter> writer;
+std::unique_ptr<PieceOutput> make_piece_output(const DetectRequest& request, Cluster& cluster, const FoundIn& sets,
+                                               const std::stop_token& stop) {
+    if (io::is_array_file(request.output) && !has_filters(request)) {
+        return std::make_unique<SharedNpy>(cluster, request.output, sets.moving);
+    }
+    std::unique_ptr<FoundWriter> writer;
     cluster.together([&] {
-        if (!cluster.first()) return;
-        writer = request.output.empty() ? io::make_csv_writer(std::make_unique<io::StandardOutput>(stop), moving)
-                                        : io::make_file_writer(request.output, moving, names);
+        if (cluster.first()) writer = make_found_writer(request, sets, stop);
     });
     return std::make_unique<RelayedOutput>(cluster, std::move(writer));
 }

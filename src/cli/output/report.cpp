@@ -119,16 +119,18 @@ std::string summary_text(const DetectReport& report) {
     const EngineDescription& engine = report.engine;
     if (!engine.server.empty()) return text + fmt::format(" on server {}\n", engine.server);
     if (engine.ranks > 0) {
-        return text + fmt::format(" on {} with {} each\n", plural(engine.ranks, "rank"), plural(engine.threads, "thread"));
+        return text +
+               fmt::format(" on {} with {} each\n", plural(engine.ranks, "rank"), plural(engine.threads, "thread"));
     }
-    return text + " on " + (engine.workers > 0 ? plural(engine.workers, "worker") : plural(engine.threads, "thread")) + '\n';
+    return text + " on " + (engine.workers > 0 ? plural(engine.workers, "worker") : plural(engine.threads, "thread")) +
+           '\n';
 }
 
 std::string stats_json(const DetectReport& report) {
     nlohmann::ordered_json stats = {
-        {"objects", report.objects},          {"frames", report.frames},        {"pairs", report.pairs},
-        {"truncated", report.truncated},      {"verified", report.verified},    {"engine", report.engine.engine},
-        {"threads", report.engine.threads},     {"workers", report.engine.workers}, {"entries", report.entries},
+        {"objects", report.objects},          {"frames", report.frames},          {"pairs", report.pairs},
+        {"truncated", report.truncated},      {"verified", report.verified},      {"engine", report.engine.engine},
+        {"threads", report.engine.threads},   {"workers", report.engine.workers}, {"entries", report.entries},
         {"peak_rss_bytes", peak_rss_bytes()}, {"seconds", seconds_json(report)}};
     if (!report.not_checked.empty()) stats["not_checked"] = report.not_checked;
     if (report.engine.ranks > 0) stats["ranks"] = report.engine.ranks;

@@ -48,7 +48,9 @@ void Cluster::joint(const std::function<void()>& part) {
     }
 }
 
-std::string Cluster::told_by_first(const std::string& text) {
+void Cluster::refuse_object(std::uint64_t position, const std::string& message) { throw BadObject{position, message}; }
+
+std::string Cluster::broadcast_text(const std::string& text) {
     std::string told(comm_.all_gather(std::uint64_t(text.size())).front(), ' ');
     if (first()) told = text;
     comm_.broadcast(std::span(told), 0);
@@ -97,14 +99,11 @@ void Cluster::relay(const PairList& piece, const std::function<void(std::span<co
     for (unsigned from = 1; from < ranks(); ++from) {
         for (std::uint64_t left = sizes[from]; left > 0;) {
             const std::uint64_t count = std::min(left, most);
-            Exchange counts{RankCounts(ranks(), 0), RankCounts(ranks(), 0)};
-            if (rank() == from) counts.sent[0] = count;
-            if (first()) counts.received[from] = count;
             together([&] {
                 if (first() || rank() == from) some.resize(std::size_t(count));
                 if (rank() == from) reader.read(some);
             });
-            comm_.exchange(some.data(), some.data(), counts);
+            send_to_first(from, std::span<const Pair>(some), std::span(some));
             together([&] {
                 if (first()) take(some);
             });

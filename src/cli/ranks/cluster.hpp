@@ -1,46 +1,61 @@
 // Cluster: this process as one rank of an MPI program, from MPI_Init to MPI_Finalize.
 //
-// What may fail on one rank runs in together(), so that all ranks end alike; one that fails alone all the same ends the
-// whole program, so that no other waits for it.
+// Invariants
+//   Code that may fail on one rank runs in together(), so that all ranks end with the same error.
+//   A rank that fails outside of together() and joint() ends the whole program, because the other ranks would wait for it.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "cli/ranks/group.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::cli {
 
-class Cluster {
+class Cluster final : public Group {
 public:
-    Cluster() = default;
-    Cluster(const Cluster&) = delete;
-    Cluster& operator=(const Cluster&) = delete;
-    ~Cluster() = default;
-
-    Communicator& comm() { return comm_; }
-    unsigned rank() const { return comm_.rank(); }
-    unsigned ranks() const { return comm_.size(); }
-    bool first() const { return rank() == 0; }
-    /// Ends all ranks at once, whatever they do; mpirun ends with this status.
+    unsigned rank() const override { return comm_.rank(); }
+    unsigned ranks() const override { return comm_.size(); }
+    /// Ends all ranks at once; mpirun ends with this status.
     [[noreturn]] static void abort(int status);
 
-    /// Whether what was thrown last was thrown on all ranks.
+    /// True if the last error was thrown on all ranks.
     bool ends_alike() const { return run_.ends_alike; }
 
-    /// Collective. Throws on all ranks, the same Error, if `part` throws on any.
-    void together(const std::function<void()>& part);
-    /// Collective: for a part that ends alike on all ranks by itself, as an engine's calls do.
+    void together(const std::function<void()>& part) override;
+    [[noreturn]] void refuse_object(std::uint64_t position, const std::string& message) override;
+    /// Collective. Runs `part`, whose errors are the same on all ranks without together(): for example an engine's call.
     void joint(const std::function<void()>& part);
-    /// Collective: the text of the first rank, on all.
-    std::string told_by_first(const std::string& text);
-    /// Collective: `take` gets all ranks' pairs on the first rank, in order, some at a time. What it throws is thrown on
-    /// all.
+
+    /// Collective. Returns the text of the first rank.
+    std::string broadcast_text(const std::string& text);
+    /// Collective. Returns one value of each rank, by rank.
+    template <typename Value>
+    std::vector<Value> all_gather(const Value& own) {
+        return comm_.all_gather(own);
+    }
+    /// Collective. Returns the values of all ranks, by rank.
+    template <typename Value>
+    std::vector<Value> all_gather(std::span<const Value> own) {
+        return comm_.all_gather(own).values;
+    }
+    /// Collective. Copies `own` of rank `from` to `received` of the first rank, which has room for as many values.
+    template <typename Value>
+    void send_to_first(unsigned from, std::span<const Value> own, std::span<Value> received) {
+        Exchange counts{RankCounts(ranks(), 0), RankCounts(ranks(), 0)};
+        if (rank() == from) counts.sent[0] = own.size();
+        if (first()) counts.received[from] = received.size();
+        comm_.exchange(own.data(), received.data(), counts);
+    }
+    /// Collective. On the first rank, `take` gets the pairs of all ranks, in the order of the ranks, at most a million at a
+    /// time.
+    /// Throws: what `take` throws, on all ranks.
     void relay(const PairList& piece, const std::function<void(std::span<const Pair>)>& take);
 
 private:

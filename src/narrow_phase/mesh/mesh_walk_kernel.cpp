@@ -12,9 +12,41 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Walks with a test: test.apart(a, b) is true if the boxes of two nodes are farther apart than the walk's reach.
+template <typename Test>
+unsigned walk_with(const Test& test, MeshWalk& walk, std::span<NodePair> leaves) {
+    unsigned found = 0;
+    while (!walk.waiting.empty() && found < leaves.size()) {
+        const NodePair at = walk.waiting.pop();
+        const MeshNode &node_a = walk.nodes_a[at.a], &node_b = walk.nodes_b[at.b];
+        if (node_a.is_leaf() && node_b.is_leaf()) {
+            leaves[found++] = at;
+            continue;
+        }
+        const auto children = children_of(at, node_a, node_b, walk.separation);
+        for (const NodePair& child : {children[1], children[0]}) {
+            walk.waiting.push_if(child, !test.apart(walk.nodes_a[child.a], walk.nodes_b[child.b]));
+        }
+    }
+    return found;
+}
+
+/// The specification of the other tests.
+struct ScalarTest {
+    explicit ScalarTest(const MeshWalk& walk) : separation(walk.separation), reach(walk.reach) {}
+    bool apart(const MeshNode& a, const MeshNode& b) const { return separation.apart(a, b, reach); }
+
+    const Separation& separation;
+    float reach;
+};
+
+unsigned next_leaves_by_scalars(MeshWalk& walk, std::span<NodePair> leaves) {
+    return walk_with(ScalarTest(walk), walk, leaves);
+}
+
 #if HWY_TARGET == HWY_SCALAR
 
-unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) { return next_leaves_scalar(walk, leaves); }
+unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) { return next_leaves_by_scalars(walk, leaves); }
 
 #else
 
@@ -58,9 +90,10 @@ struct VectorAxes {
 };
 
 struct OwnTest {
-    explicit OwnTest(const Separation& separation) : of_a(separation.of_a()), of_b(separation.of_b()) {}
+    explicit OwnTest(const MeshWalk& walk)
+        : of_a(walk.separation.of_a()), of_b(walk.separation.of_b()), reach(hn::Set(D(), walk.reach)) {}
 
-    bool apart(const MeshNode& a, const MeshNode& b, V reach) const {
+    bool apart(const MeshNode& a, const MeshNode& b) const {
         const D d;
         const V in_a = of_a.gaps(hn::Load(d, a.centre), hn::Load(d, a.half), b);
         const V in_b = of_b.gaps(hn::Load(d, b.centre), hn::Load(d, b.half), a);
@@ -68,41 +101,25 @@ struct OwnTest {
     }
 
     VectorAxes of_a, of_b;
+    V reach;
 };
 
 struct WorldTest {
-    explicit WorldTest(const Separation& separation) : axes(*separation.of_world()), own(separation.of_world()->own) {}
+    explicit WorldTest(const MeshWalk& walk)
+        : axes(*walk.separation.of_world()), own(walk.separation.of_world()->own), reach(hn::Set(D(), walk.reach)) {}
 
-    bool apart(const MeshNode& a, const MeshNode& b, V reach) const {
+    bool apart(const MeshNode& a, const MeshNode& b) const {
         return !hn::AllFalse(D(), hn::Gt(axes.gaps(own.centre(a), own.half(a), b), reach));
     }
 
     VectorAxes axes;
     VectorMap own;
+    V reach;
 };
 
-template <typename Test>
-unsigned walk_with(const Test& test, MeshWalk& walk, std::span<NodePair> leaves) {
-    const V reach = hn::Set(D(), walk.reach);
-    unsigned found = 0;
-    while (!walk.waiting.empty() && found < leaves.size()) {
-        const NodePair at = walk.waiting.pop();
-        const MeshNode &node_a = walk.nodes_a[at.a], &node_b = walk.nodes_b[at.b];
-        if (node_a.is_leaf() && node_b.is_leaf()) {
-            leaves[found++] = at;
-            continue;
-        }
-        const auto children = children_of(at, node_a, node_b, walk.separation);
-        for (const NodePair& child : {children[1], children[0]}) {
-            walk.waiting.push_if(child, !test.apart(walk.nodes_a[child.a], walk.nodes_b[child.b], reach));
-        }
-    }
-    return found;
-}
-
 unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) {
-    return walk.separation.of_world() ? walk_with(WorldTest(walk.separation), walk, leaves)
-                                      : walk_with(OwnTest(walk.separation), walk, leaves);
+    return walk.separation.of_world() ? walk_with(WorldTest(walk), walk, leaves)
+                                      : walk_with(OwnTest(walk), walk, leaves);
 }
 
 #endif
@@ -122,21 +139,7 @@ unsigned next_leaves(MeshWalk& walk, std::span<NodePair> leaves) {
 }
 
 unsigned next_leaves_scalar(MeshWalk& walk, std::span<NodePair> leaves) {
-    unsigned found = 0;
-    while (!walk.waiting.empty() && found < leaves.size()) {
-        const NodePair at = walk.waiting.pop();
-        const MeshNode &node_a = walk.nodes_a[at.a], &node_b = walk.nodes_b[at.b];
-        if (node_a.is_leaf() && node_b.is_leaf()) {
-            leaves[found++] = at;
-            continue;
-        }
-        const auto children = children_of(at, node_a, node_b, walk.separation);
-        for (const NodePair& child : {children[1], children[0]}) {
-            const MeshNode &a = walk.nodes_a[child.a], &b = walk.nodes_b[child.b];
-            if (!walk.separation.apart(a, b, walk.reach)) walk.waiting.push(child);
-        }
-    }
-    return found;
+    return HWY_STATIC_DISPATCH(next_leaves_by_scalars)(walk, leaves);
 }
 
 }  // namespace octopair

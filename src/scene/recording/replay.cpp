@@ -43,7 +43,6 @@ public:
 
 private:
     void make(const RecordedCall& call);
-    void add(const RecordedCall& call);
     void step(const RecordedResult* then, const std::stop_token& stop);
 
     RecordingReader& reader_;
@@ -76,30 +75,11 @@ ReplayReport Replay::run(const std::stop_token& stop) {
 void Replay::make(const RecordedCall& call) {
     ++report_.calls;
     try {
-        switch (call.kind) {
-            case RecordKind::add:
-                return add(call);
-            case RecordKind::move:
-                return scene_.move(call.ids, call.objects.boxes);
-            case RecordKind::sweep:
-                return scene_.sweep(call.ids, call.objects.boxes);
-            case RecordKind::remove:
-                return scene_.remove(call.ids);
-            case RecordKind::set_traits:
-                return scene_.set_traits(call.ids, call.traits);
-            case RecordKind::step:
-            case RecordKind::result:
-                return;
-        }
+        change_scene(scene_, call, ids_);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::bad_input) throw;
         reader_.refuse(call.offset, error.what());
     }
-}
-
-void Replay::add(const RecordedCall& call) {
-    ids_.resize(std::size_t(call.objects.size()));
-    scene_.add(call.objects, ids_, call.traits);
 }
 
 void Replay::step(const RecordedResult* then, const std::stop_token& stop) {
@@ -121,6 +101,26 @@ void Replay::step(const RecordedResult* then, const std::stop_token& stop) {
 }
 
 }  // namespace
+
+void change_scene(Scene& scene, const RecordedCall& call, std::vector<ObjectId>& ids) {
+    switch (call.kind) {
+        case RecordKind::add:
+            ids.resize(std::size_t(call.objects.size()));
+            scene.add(call.objects, ids, call.traits);
+            return;
+        case RecordKind::move:
+            return scene.move(call.ids, call.objects.boxes);
+        case RecordKind::sweep:
+            return scene.sweep(call.ids, call.objects.boxes);
+        case RecordKind::remove:
+            return scene.remove(call.ids);
+        case RecordKind::set_traits:
+            return scene.set_traits(call.ids, call.traits);
+        case RecordKind::step:
+        case RecordKind::result:
+            return;
+    }
+}
 
 ReplayReport replay(RecordingReader& reader, const ReplayOptions& options, const std::stop_token& stop) {
     return Replay(reader, options).run(stop);

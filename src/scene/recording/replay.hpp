@@ -28,6 +28,11 @@ struct ReplayReport {
     bool unfinished = false;               ///< it ends within a step, which was made here
 };
 
+/// Makes a recorded call on a scene, except steps and results, which change no object. `ids`: memory for the ids of an
+/// addition, kept from call to call.
+/// Throws: what the scene throws.
+void change_scene(Scene& scene, const RecordedCall& call, std::vector<ObjectId>& ids);
+
 /// Calls that failed are not in a recording; of a step that failed there is the beginning, and it is passed over, unless
 /// nothing comes after it: then it may be what ended the recorded process, and is made.
 ///

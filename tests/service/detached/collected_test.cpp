@@ -11,7 +11,7 @@
 #include "service/protocol/status.hpp"
 #include "support/compare.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 class Collected : public ::testing::Test {
@@ -137,4 +137,4 @@ TEST_F(Collected, IsAsItWasAfterARestart) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

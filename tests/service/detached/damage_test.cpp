@@ -4,7 +4,7 @@
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 class Damage : public ::testing::Test {
@@ -100,4 +100,4 @@ TEST_F(Damage, OfPairs) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -6,7 +6,7 @@
 #include "service/server/jobs/server_job.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 TEST(Drained, WaitsForWhatRuns) {
@@ -52,8 +52,8 @@ public:
     void later(std::function<void()> errand) override { errand(); }
 };
 
-/// Jobs of no objects, in engine_widths of their own.
-class DrainedLanes : public ::testing::Test {
+/// Jobs of no objects, in a scheduler of their own.
+class DrainedScheduler : public ::testing::Test {
 protected:
     std::shared_ptr<service::ServerJob> queued_job(bool detached) {
         service::ServerJob::Parts parts;
@@ -72,7 +72,7 @@ protected:
     const std::unique_ptr<Engine> engine_ = make_local_engine(1);
 };
 
-TEST_F(DrainedLanes, BeginNoDetachedJobs) {
+TEST_F(DrainedScheduler, BeginNoDetachedJobs) {
     const auto before = queued_job(true), held = queued_job(true), attached = queued_job(false);
     service::JobScheduler engine_widths({make, make}, {1, 1, 0});
     engine_widths.add(before);
@@ -84,7 +84,7 @@ TEST_F(DrainedLanes, BeginNoDetachedJobs) {
     EXPECT_EQ(int(held->state()), int(v1::QUEUED));
 }
 
-TEST_F(DrainedLanes, RunNoDetachedJobsAtOnce) {
+TEST_F(DrainedScheduler, RunNoDetachedJobsAtOnce) {
     const auto detached = queued_job(true), attached = queued_job(false);
     service::JobScheduler engine_widths({make, make}, {1, 1, 1});
     engine_widths.hold_detached();
@@ -95,4 +95,4 @@ TEST_F(DrainedLanes, RunNoDetachedJobsAtOnce) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

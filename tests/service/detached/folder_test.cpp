@@ -6,7 +6,7 @@
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 TEST(Folder, IsItsOwnersAndOneServers) {
@@ -128,4 +128,4 @@ TEST_F(FolderOfADoneJob, FindsAnewWhatHasNoWholeResult) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

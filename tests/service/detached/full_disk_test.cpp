@@ -8,7 +8,7 @@
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 /// Mounts a disk of 3 MB at a folder, for this process alone. Says why not, if it may not.
@@ -54,4 +54,4 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

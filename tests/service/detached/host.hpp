@@ -20,7 +20,7 @@
 #include "service/server/server.hpp"
 #include "support/kinds.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class ServerContext {
 public:
@@ -120,4 +120,4 @@ inline std::vector<Pair> pairs_there(JobClient& client, const std::string& id) {
 
 inline const std::string some_id = "01234567-89ab-cdef-0123-456789abcdef";
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -13,7 +13,7 @@
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 class ServeProgram {
@@ -115,4 +115,4 @@ TEST(Killed, WhileAJobIsSubmittedTakesItOnce) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

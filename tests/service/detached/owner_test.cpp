@@ -3,7 +3,7 @@
 
 #include "service/detached/host.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 TEST(Owner, AloneSeesAJob) {
@@ -37,4 +37,4 @@ TEST(Owner, AloneSeesAJob) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -3,12 +3,12 @@
 #include "service/metrics_page.hpp"
 #include "service/raw_call.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 void show_metrics(service::ServerOptions& options) { options.metrics = service::parse_address("localhost:0"); }
 
-TEST(DetachedLedger, CountsJobs) {
+TEST(DetachedServerLog, CountsJobs) {
     const ServerContext host(show_metrics);
     const auto client = host.client();
     const auto boxes = make_boxes("uniform", 1000, 1);
@@ -26,7 +26,7 @@ TEST(DetachedLedger, CountsJobs) {
     EXPECT_NE(host.log().find("job ended"), std::string::npos) << host.log();
 }
 
-TEST(DetachedLedger, CountsRefusals) {
+TEST(DetachedServerLog, CountsRefusals) {
     const ServerContext host([](service::ServerOptions& options) {
         show_metrics(options);
         options.limits.objects = 2;
@@ -37,7 +37,7 @@ TEST(DetachedLedger, CountsRefusals) {
 }
 
 /// Complete messages, each with next to nothing.
-TEST(DetachedLedger, CountsUploadsThatStall) {
+TEST(DetachedServerLog, CountsUploadsThatStall) {
     const ServerContext host([](service::ServerOptions& options) {
         show_metrics(options);
         options.stall = std::chrono::seconds(1);
@@ -56,4 +56,4 @@ TEST(DetachedLedger, CountsUploadsThatStall) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

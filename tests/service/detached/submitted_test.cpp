@@ -2,7 +2,7 @@
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 TEST(Submitted, FindsWhatTheLocalEngineFinds) {
@@ -89,4 +89,4 @@ TEST(Submitted, FailsForWhatIsNoBox) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -6,7 +6,7 @@
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 namespace {
 
 /// Some tenths of a second of work, more than a lane for small jobs takes.
@@ -123,4 +123,4 @@ TEST(WaitingAtFirst, RefusesTokensThatCannotBeSent) {
 }
 
 }  // namespace
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -7,7 +7,7 @@
 
 #include "service/scenes/scene_server.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
@@ -48,7 +48,7 @@ protected:
         EXPECT_FALSE(step.full) << "the server has another scene than before";
     }
 
-    testing::SceneServer server_;
+    test::SceneServer server_;
     Scene local_;
     RemoteScene remote_ = server_.scene();
     std::vector<ObjectId> ids_ = std::vector<ObjectId>(2);
@@ -104,4 +104,4 @@ TEST(RemoteSceneConnect, WhereNobodyListens) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -6,7 +6,7 @@
 #include "service/protocol/limit_error.hpp"
 #include "service/scenes/scene_server.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 constexpr Box3f elsewhere = {{5, 5, 5}, {6, 6, 6}};
@@ -21,7 +21,7 @@ std::vector<ObjectId> add_pair(RemoteScene& scene) {
 }
 
 TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
-    testing::SceneServer server;
+    test::SceneServer server;
     RemoteScene scene = connect_scene(server.address(), {}, {.patience = std::chrono::milliseconds(100)});
     const std::vector<ObjectId> ids = add_pair(scene);
     (void)scene.step();
@@ -37,7 +37,7 @@ TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
     server.come();
     const StepResult* step = nullptr;
     // With so little patience one may miss it again.
-    EXPECT_TRUE(testing::comes_true([&] {
+    EXPECT_TRUE(test::comes_true([&] {
         try {
             step = &scene.step();
         } catch (const Error& error) {
@@ -53,7 +53,7 @@ TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
 }
 
 TEST(RemoteSceneFaults, AServerThatIsAwayForAWhileIsWaitedFor) {
-    testing::SceneServer server;
+    test::SceneServer server;
     RemoteScene scene = server.scene();
     (void)add_pair(scene);
     (void)scene.step();
@@ -66,7 +66,7 @@ TEST(RemoteSceneFaults, AServerThatIsAwayForAWhileIsWaitedFor) {
 }
 
 TEST(RemoteSceneFaults, AServerThatGoesDownDoesNotWaitForIdleScenes) {
-    testing::SceneServer server;
+    test::SceneServer server;
     RemoteScene scene = server.scene();
     (void)add_pair(scene);
     (void)scene.step();
@@ -77,7 +77,7 @@ TEST(RemoteSceneFaults, AServerThatGoesDownDoesNotWaitForIdleScenes) {
 }
 
 TEST(RemoteSceneFaults, AClientThatGoesAwayFreesItsScene) {
-    testing::SceneServer server({.jobs = 1});
+    test::SceneServer server({.jobs = 1});
     std::optional<RemoteScene> first = server.scene();
     RemoteScene second = server.scene();
     (void)add_pair(*first);
@@ -93,11 +93,11 @@ TEST(RemoteSceneFaults, AClientThatGoesAwayFreesItsScene) {
     };
     EXPECT_FALSE(steps()) << "a scene that does not count";
     first.reset();
-    EXPECT_TRUE(testing::comes_true(steps));
+    EXPECT_TRUE(test::comes_true(steps));
 }
 
 TEST(RemoteSceneFaults, AStopBeforeAStepLeavesTheServersScene) {
-    testing::SceneServer server;
+    test::SceneServer server;
     RemoteScene scene = server.scene();
     (void)add_pair(scene);
     (void)scene.step();
@@ -108,4 +108,4 @@ TEST(RemoteSceneFaults, AStopBeforeAStepLeavesTheServersScene) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

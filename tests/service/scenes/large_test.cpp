@@ -5,16 +5,16 @@
 #include "service/scenes/scene_server.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 std::vector<Pair> list(std::span<const Pair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 TEST(RemoteSceneLarge, AFrameOfAMillionObjects) {
-    const std::uint64_t count = testing::scaled(1'000'000, 10);
+    const std::uint64_t count = test::scaled(1'000'000, 10);
     const std::vector<Box3f> boxes = samples::make_scene("uniform", count, 1);
     const std::vector<Box3f> moved = samples::make_scene("uniform", count, 2);
-    testing::SceneServer server;
+    test::SceneServer server;
     RemoteScene remote = server.scene();
     Scene local;
     std::vector<ObjectId> ids(boxes.size());
@@ -33,4 +33,4 @@ TEST(RemoteSceneLarge, AFrameOfAMillionObjects) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

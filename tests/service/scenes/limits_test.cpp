@@ -8,7 +8,7 @@
 #include "service/scenes/raw_scene.hpp"
 #include "service/scenes/scene_server.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
 std::vector<ObjectId> add_boxes(RemoteScene& scene, std::size_t count) {
@@ -29,7 +29,7 @@ std::string limit_of(RemoteScene& scene) {
 }
 
 TEST(RemoteSceneLimits, Objects) {
-    testing::SceneServer server({.objects = 100});
+    test::SceneServer server({.objects = 100});
     RemoteScene scene = server.scene();
     std::vector<ObjectId> ids = add_boxes(scene, 100);
     EXPECT_EQ(limit_of(scene), "none");
@@ -41,7 +41,7 @@ TEST(RemoteSceneLimits, Objects) {
 }
 
 TEST(RemoteSceneLimits, IndicesOfRemovedObjectsAreFreeAgain) {
-    testing::SceneServer server({.objects = 100});
+    test::SceneServer server({.objects = 100});
     RemoteScene scene = server.scene();
     std::vector<ObjectId> ids = add_boxes(scene, 100);
     for (int i = 0; i < 5; ++i) {
@@ -53,12 +53,12 @@ TEST(RemoteSceneLimits, IndicesOfRemovedObjectsAreFreeAgain) {
 }
 
 TEST(RemoteSceneLimits, Memory) {
-    testing::SceneServer server({.memory_bytes = 16'000'000});
+    test::SceneServer server({.memory_bytes = 16'000'000});
     RemoteScene scene = server.scene(), other = server.scene();
     (void)add_boxes(scene, 100'000);
     EXPECT_EQ(limit_of(scene), "memory_bytes 16000000");
     (void)add_boxes(other, 50'000);
-    EXPECT_TRUE(testing::comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene has memory";
+    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene has memory";
 }
 
 void add_crowd(RemoteScene& scene, std::size_t count) {
@@ -68,14 +68,14 @@ void add_crowd(RemoteScene& scene, std::size_t count) {
 }
 
 TEST(RemoteSceneLimits, MemoryForPairs) {
-    testing::SceneServer server({.memory_bytes = 30'000'000});
+    test::SceneServer server({.memory_bytes = 30'000'000});
     RemoteScene scene = server.scene();
     add_crowd(scene, 40'000);
     EXPECT_EQ(limit_of(scene), "memory_bytes 30000000") << "800 million pairs, 6.4 GB";
 }
 
 TEST(RemoteSceneLimits, Pairs) {
-    testing::SceneServer server({.pairs = 2000});
+    test::SceneServer server({.pairs = 2000});
     RemoteScene scene = server.scene();
     add_crowd(scene, 63);
     EXPECT_EQ(limit_of(scene), "none") << "1,953 pairs";
@@ -84,16 +84,16 @@ TEST(RemoteSceneLimits, Pairs) {
 }
 
 TEST(RemoteSceneLimits, PlacesOfAClient) {
-    testing::SceneServer server({.jobs_per_client = 1});
+    test::SceneServer server({.jobs_per_client = 1});
     RemoteScene scene = server.scene(), other = server.scene();
     EXPECT_EQ(limit_of(scene), "none");
     EXPECT_EQ(limit_of(other), "jobs_per_client 1");
 }
 
 TEST(RemoteSceneLimits, AFrameThatStallsEnds) {
-    testing::SceneServer server({}, std::chrono::seconds(1));
-    testing::RawScene scene(server.address());
-    testing::Records records;
+    test::SceneServer server({}, std::chrono::seconds(1));
+    test::RawScene scene(server.address());
+    test::Records records;
     records.boxes(10).step().boxes(1);
     ASSERT_TRUE(scene.send(records.bytes));
     const grpc::Status status = scene.end();
@@ -102,7 +102,7 @@ TEST(RemoteSceneLimits, AFrameThatStallsEnds) {
 }
 
 TEST(RemoteSceneLimits, ASceneMayBeIdleBetweenFrames) {
-    testing::SceneServer server({}, std::chrono::seconds(1));
+    test::SceneServer server({}, std::chrono::seconds(1));
     RemoteScene scene = server.scene();
     const std::vector<ObjectId> ids = add_boxes(scene, 10);
     (void)scene.step();
@@ -111,15 +111,15 @@ TEST(RemoteSceneLimits, ASceneMayBeIdleBetweenFrames) {
 }
 
 TEST(RemoteSceneLimits, AClientThatDoesNotReadIsLeft) {
-    testing::SceneServer server({.jobs = 1}, std::chrono::seconds(1));
-    testing::RawScene scene(server.address());
-    testing::Records records;
+    test::SceneServer server({.jobs = 1}, std::chrono::seconds(1));
+    test::RawScene scene(server.address());
+    test::Records records;
     records.boxes(2000).step();  // 2 million pairs, 16 MB
     ASSERT_TRUE(scene.send(records.bytes));
     RemoteScene other = server.scene();
-    EXPECT_TRUE(testing::comes_true([&] { return limit_of(other) == "jobs 1"; })) << "the scene has not begun";
-    EXPECT_TRUE(testing::comes_true([&] { return limit_of(other) == "none"; }));
+    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "jobs 1"; })) << "the scene has not begun";
+    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; }));
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -8,11 +8,11 @@
 #include "service/scenes/raw_scene.hpp"
 #include "service/scenes/scene_server.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-using testing::RawScene;
-using testing::Records;
+using test::RawScene;
+using test::Records;
 
 class SceneMessages : public ::testing::Test {
 protected:
@@ -30,7 +30,7 @@ protected:
         EXPECT_EQ(scene.step().pairs(), 0u);
     }
 
-    testing::SceneServer server_;
+    test::SceneServer server_;
 };
 
 TEST_F(SceneMessages, BytesThatAreNoRecording) {
@@ -85,4 +85,4 @@ TEST_F(SceneMessages, PiecesOfAnyLength) {
 }
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -11,16 +11,16 @@
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
-namespace octopair {
+namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_a_kind = testing::scaled(10, 5);
+constexpr std::uint64_t histories_a_kind = test::scaled(10, 5);
 
 /// A local and a remote scene that must not differ.
 class TwinScene {
 public:
     TwinScene() = default;
-    TwinScene(const SceneOptions& options, testing::SceneServer& server, std::uint64_t seed)
+    TwinScene(const SceneOptions& options, test::SceneServer& server, std::uint64_t seed)
         : server_(&server),
           random_(seed),
           local_(std::in_place, options),
@@ -91,7 +91,7 @@ private:
         return remote_->step();
     }
 
-    testing::SceneServer* server_ = nullptr;
+    test::SceneServer* server_ = nullptr;
     std::mt19937_64 random_;
     std::optional<Scene> local_;
     std::optional<RemoteScene> remote_;
@@ -100,20 +100,19 @@ private:
 class RemoteSceneProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
-    testing::SceneServer server;
-    const std::uint64_t count = testing::case_count(histories_a_kind);
+    test::SceneServer server;
+    const std::uint64_t count = test::case_count(histories_a_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t seed = testing::case_seed(GetParam(), i);
+        const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        testing::History<TwinScene> history(
-            GetParam(), seed, [&](const SceneOptions& options) { return TwinScene(options, server, seed); });
+        test::History<TwinScene> history(GetParam(), seed,
+                                         [&](const SceneOptions& options) { return TwinScene(options, server, seed); });
         history.run();
         if (HasFailure()) return;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(testing::all_kind_names()),
-                         testing::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
 }  // namespace
-}  // namespace octopair
+}  // namespace octopair::test

@@ -13,7 +13,7 @@
 #include "service/client/connection.hpp"
 #include "service/client/scene_stream.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 /// Records as a recorder writes them, in memory.
 class Records final : public CallEncoder {
@@ -75,4 +75,4 @@ private:
     service::SceneStream stream_;
 };
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

@@ -17,7 +17,7 @@
 #include "octopair/remote_scene.hpp"
 #include "service/server/server.hpp"
 
-namespace octopair::testing {
+namespace octopair::test {
 
 class SceneServer {
 public:
@@ -68,4 +68,4 @@ bool comes_true(Condition&& holds) {
     return false;
 }
 
-}  // namespace octopair::testing
+}  // namespace octopair::test

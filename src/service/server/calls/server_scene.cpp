@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "scene/recording/replay.hpp"
 #include "service/protocol/limit_error.hpp"
 
 namespace octopair::service {
@@ -26,29 +27,9 @@ SceneOptions ServerScene::within_limits(SceneOptions options) {
 }
 
 void ServerScene::make(const RecordedCall& call) {
-    switch (call.kind) {
-        case RecordKind::add:
-            return add(call);
-        case RecordKind::move:
-            return scene_.move(call.ids, call.objects.boxes);
-        case RecordKind::sweep:
-            return scene_.sweep(call.ids, call.objects.boxes);
-        case RecordKind::remove:
-            scene_.remove(call.ids);
-            removed_ += call.ids.size();
-            return;
-        case RecordKind::set_traits:
-            return scene_.set_traits(call.ids, call.traits);
-        case RecordKind::step:
-        case RecordKind::result:
-            return;
-    }
-}
-
-void ServerScene::add(const RecordedCall& call) {
-    make_room(call.objects.size());
-    ids_.resize(std::size_t(call.objects.size()));
-    scene_.add(call.objects, ids_, call.traits);
+    if (call.kind == RecordKind::add) make_room(call.objects.size());
+    change_scene(scene_, call, ids_);
+    if (call.kind == RecordKind::remove) removed_ += call.ids.size();
 }
 
 /// What takes memory is an index, whether there is an object at it or not.

@@ -25,7 +25,6 @@ public:
 
 private:
     SceneOptions within_limits(SceneOptions options);
-    void add(const RecordedCall& call);
     void make_room(std::uint64_t objects);
 
     ServerContext& server_;

@@ -1,7 +1,7 @@
 #include "service/server/jobs/job_scheduler.hpp"
 
-#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "service/protocol/job_spec.hpp"
 #include "service/server/jobs/server_job.hpp"
@@ -10,6 +10,7 @@ namespace octopair::service {
 
 namespace {
 
+/// How soon a job that waits for memory asks again: nothing signals that memory was given back.
 constexpr std::chrono::milliseconds ask_again(20);
 
 }  // namespace
@@ -28,56 +29,28 @@ JobScheduler::JobScheduler(const Makers& makers, const Widths& widths) : instant
 JobScheduler::~JobScheduler() { stop(); }
 
 void JobScheduler::stop() {
-    for (Queue* queue : {&small_, &large_}) {
-        const std::lock_guard lock(queue->mutex);
-        queue->ending = true;
-        queue->changed.notify_all();
-    }
+    small_.close();
+    large_.close();
     threads_.clear();
-}
-
-void JobScheduler::hold_detached() {
-    for (Queue* queue : {&small_, &large_}) {
-        const std::lock_guard lock(queue->mutex);
-        queue->holds_detached = true;
-    }
 }
 
 void JobScheduler::start(Queue& queue, const EngineMaker& maker, unsigned width) {
     engines_.push_back(maker(width));
-    threads_.emplace_back([&queue, &engine = *engines_.back()] { drive(queue, engine); });
+    threads_.emplace_back([this, &queue, &engine = *engines_.back()] {
+        queue.run([this](Queue::Items& jobs) { return first_ready(jobs); }, ask_again,
+                  [&engine](const std::shared_ptr<ServerJob>& job) { job->run(engine); });
+    });
 }
 
-void JobScheduler::drive(Queue& queue, Engine& engine) {
-    for (;;) {
-        std::shared_ptr<ServerJob> job;
-        {
-            std::unique_lock lock(queue.mutex);
-            while (!queue.ending && !(job = next(queue))) {
-                // Memory is given back without a word to the engine_widths.
-                queue.jobs.empty() ? queue.changed.wait(lock) : (void)queue.changed.wait_for(lock, ask_again);
-            }
-            if (queue.ending) return;
-        }
-        job->run(engine);
+/// Returns the first job that can run, or jobs.end().
+JobScheduler::Queue::Items::iterator JobScheduler::first_ready(Queue::Items& jobs) const {
+    bool detached_wait = holds_detached_;
+    for (auto job = jobs.begin(); job != jobs.end(); ++job) {
+        if ((*job)->detached() && detached_wait) continue;
+        if ((*job)->ask_memory()) return job;
+        detached_wait = true;
     }
-}
-
-/// The first job that can run; with the lock held. A detached job that waits for memory lets attached ones, which have
-/// theirs, pass, but no other detached one: so it has its turn.
-std::shared_ptr<ServerJob> JobScheduler::next(Queue& queue) {
-    bool waits = queue.holds_detached;
-    for (auto at = queue.jobs.begin(); at != queue.jobs.end(); ++at) {
-        if ((*at)->detached() && waits) continue;
-        if (!(*at)->ask_memory()) {
-            waits = true;
-            continue;
-        }
-        std::shared_ptr<ServerJob> job = std::move(*at);
-        queue.jobs.erase(at);
-        return job;
-    }
-    return {};
+    return jobs.end();
 }
 
 Engine& JobScheduler::engine_for(std::uint64_t objects) { return *engines_[objects <= most_small_objects ? 1 : 0]; }
@@ -95,29 +68,12 @@ bool JobScheduler::run_at_once(ServerJob& job) {
 void JobScheduler::add(std::shared_ptr<ServerJob> job) {
     const std::uint64_t objects = object_count(job->spec());
     if (objects <= most_instant_objects && !job->detached() && run_at_once(*job)) return;
-    Queue& queue = queue_of(objects);
-    const std::lock_guard lock(queue.mutex);
-    if (queue.jobs.size() >= queue.drop_from) {  // those that were cancelled while they waited
-        std::erase_if(queue.jobs, [](const auto& waiting) { return waiting->ended(); });
-        queue.drop_from = std::max(Queue().drop_from, 2 * queue.jobs.size());
-    }
-    queue.jobs.push_back(std::move(job));
-    queue.changed.notify_one();
+    queue_of(objects).add(std::move(job), [](const auto& waiting) { return waiting->ended(); });
 }
 
 std::uint64_t JobScheduler::queued_before(const ServerJob& job) const {
-    for (const Queue* queue : {&small_, &large_}) {
-        const std::lock_guard lock(queue->mutex);
-        const auto same = [&](const auto& waiting) { return waiting.get() == &job; };
-        const auto found = std::find_if(queue->jobs.begin(), queue->jobs.end(), same);
-        if (found != queue->jobs.end()) return std::uint64_t(found - queue->jobs.begin());
-    }
-    return 0;
-}
-
-std::uint64_t JobScheduler::waiting() const {
-    const std::scoped_lock lock(small_.mutex, large_.mutex);
-    return small_.jobs.size() + large_.jobs.size();
+    const auto is_job = [&](const auto& waiting) { return waiting.get() == &job; };
+    return small_.waiting_before(is_job) + large_.waiting_before(is_job);
 }
 
 std::uint64_t JobScheduler::sum(const std::function<std::uint64_t(const Engine&)>& value) const {

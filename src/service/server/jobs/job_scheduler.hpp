@@ -1,87 +1,81 @@
-// JobScheduler: the engines of a server and the threads that drive them.
+// JobScheduler: the engines of a server, the threads that drive them, and the jobs that wait for them.
 //
-// Small jobs have engine_widths of their own, an engine of one thread each, so that they do not wait for large ones, which have
-// one lane with all threads. Within a lane's queue jobs run in the order in which they came. Jobs so small that waking a
-// thread would cost as much as they do run where they came in, as long as an engine for these is free; but no detached ones,
-// which wait for memory and disks.
+// Invariants
+//   Jobs of at most `most_small_objects` objects have engines of one thread each, so they never wait for large jobs. Large
+//   jobs share one engine with all threads.
+//   In each of the two queues, jobs run in the order in which they were added. A detached job that waits for memory lets
+//   attached jobs pass, but no other detached one.
+//   An attached job of at most `most_instant_objects` objects runs on the calling thread if an instant engine is free.
+//   Waking a thread would take as long as the job.
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "base/work_queue.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::service {
 
 class ServerJob;
 
-/// Makes an engine of so many threads or workers.
+/// Makes an engine with `width` threads or workers.
 using EngineMaker = std::function<std::unique_ptr<Engine>(unsigned width)>;
 
-/// Of jobs with so many objects one thread is as good as several, and starts at once.
+/// Up to here one thread is as fast as several, and starts sooner.
 inline constexpr std::uint64_t most_small_objects = 20000;
-
 inline constexpr std::uint64_t most_instant_objects = 2000;
 
+/// Thread safety: all functions but the destructor may be called from any thread.
 class JobScheduler {
 public:
     struct Widths {
-        unsigned large = 1;    ///< threads or workers of the large lane, at least 1
-        unsigned small = 1;    ///< engine_widths, at least 1
-        unsigned instant = 0;  ///< engines for jobs that run where they came in
+        unsigned large = 1;    ///< threads or workers of the engine for large jobs, at least 1
+        unsigned small = 1;    ///< number of engines for small jobs, at least 1
+        unsigned instant = 0;  ///< number of engines for jobs that run on the calling thread
     };
-    /// Of the engine for large jobs, and of those for small ones.
     struct Makers {
-        const EngineMaker &large, &small;
+        const EngineMaker &large, &small;  ///< make the engine for large jobs, and those for small and instant ones
     };
     JobScheduler(const Makers& makers, const Widths& widths);
     JobScheduler(const JobScheduler&) = delete;
     JobScheduler& operator=(const JobScheduler&) = delete;
-    /// Waits for the jobs that run; those that wait do not run any more.
+    /// Waits for the jobs that run. Jobs that wait do not run any more.
     ~JobScheduler();
 
-    /// The engine that will run a job of so many objects, or one like it: for its input. Thread-safe.
+    /// Returns an engine that allocates the input of a job with `objects` objects.
     Engine& engine_for(std::uint64_t objects);
-    /// Of a job in state queued, which may have ended on return. Thread-safe.
+    /// Requires: `job` is in state queued. It may have ended on return.
     void add(std::shared_ptr<ServerJob> job);
-    /// Detached jobs that wait do so from here on, for the next server. Thread-safe.
-    void hold_detached();
-    /// Of others that wait before it; none, if it does not wait.
+    /// From now on no detached job starts: those that wait are left to the next server.
+    void hold_detached() { holds_detached_ = true; }
+
+    /// Returns the number of jobs that wait before `job`; 0 if it does not wait.
     std::uint64_t queued_before(const ServerJob& job) const;
-    std::uint64_t waiting() const;
-    /// Added up over all engines.
+    std::uint64_t waiting() const { return small_.waiting() + large_.waiting(); }
+    /// Returns the sum of value(engine) over all engines but the instant ones.
     std::uint64_t sum(const std::function<std::uint64_t(const Engine&)>& value) const;
 
 private:
-    struct Queue {
-        mutable std::mutex mutex;
-        std::condition_variable changed;
-        std::deque<std::shared_ptr<ServerJob>> jobs;
-        std::size_t drop_from = 64;
-        bool holds_detached = false;
-        bool ending = false;
-    };
-
+    using Queue = WorkQueue<std::shared_ptr<ServerJob>>;
     struct Instant {
         std::mutex mutex;
         std::unique_ptr<Engine> engine;
     };
-
     bool run_at_once(ServerJob& job);
     Queue& queue_of(std::uint64_t objects) { return objects <= most_small_objects ? small_ : large_; }
     void stop();
     void start(Queue& queue, const EngineMaker& maker, unsigned width);
-    static void drive(Queue& queue, Engine& engine);
-    static std::shared_ptr<ServerJob> next(Queue& queue);
+    Queue::Items::iterator first_ready(Queue::Items& jobs) const;
 
     Queue small_, large_;
-    std::vector<std::unique_ptr<Engine>> engines_;  // the large lane's first
+    std::atomic<bool> holds_detached_ = false;
+    std::vector<std::unique_ptr<Engine>> engines_;  // the one for large jobs first
     std::vector<Instant> instant_;
     std::vector<std::jthread> threads_;
 };

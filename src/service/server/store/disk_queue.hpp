@@ -1,35 +1,33 @@
-// DiskQueue: work that waits for disks, done one after another on a thread of its own, so that no thread of gRPC waits.
+// DiskQueue: tasks that wait for disks, run one after another on a thread of their own, so that no thread of gRPC waits.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <functional>
-#include <mutex>
 #include <thread>
+#include <utility>
+
+#include "base/work_queue.hpp"
 
 namespace octopair::service {
 
 class DiskQueue {
 public:
-    /// Throws nothing.
-    using Errand = std::function<void()>;
+    /// Must not throw.
+    using DiskTask = std::function<void()>;
 
-    DiskQueue() : thread_([this] { run(); }) {}
+    DiskQueue() : thread_([this] { tasks_.run([](const DiskTask& task) { task(); }); }) {}
     DiskQueue(const DiskQueue&) = delete;
     DiskQueue& operator=(const DiskQueue&) = delete;
-    /// Does what was added.
-    ~DiskQueue();
+    /// Runs all tasks that were added.
+    ~DiskQueue() {
+        tasks_.finish();
+        thread_.join();
+    }
 
-    /// Thread-safe.
-    void add(Errand errand);
+    /// Thread safety: may be called from any thread.
+    void add(DiskTask task) { tasks_.add(std::move(task)); }
 
 private:
-    void run();
-
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Errand> disk_queue_;
-    bool ending_ = false;
+    WorkQueue<DiskTask> tasks_;
     std::thread thread_;
 };
 

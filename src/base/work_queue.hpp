@@ -1,0 +1,144 @@
+// WorkQueue: a first-in, first-out queue of items, and the loop of the threads that work on them.
+//
+// Invariants
+//   An item is waiting, or in work by exactly one thread, or gone.
+//   A thread in run() takes the first waiting item, or the first one that its `choose` accepts.
+//   After close() or finish() no thread waits for items.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <iterator>
+#include <list>
+#include <mutex>
+#include <utility>
+
+namespace octopair {
+
+/// Thread safety: all functions may be called from any thread. The owner joins its threads before the queue is destroyed.
+template <typename Item>
+class WorkQueue {
+public:
+    using Items = std::list<Item>;
+
+    /// Appends an item and wakes a thread.
+    void add(Item item) {
+        Items added;
+        added.push_back(std::move(item));
+        const std::lock_guard lock(mutex_);
+        append(added);
+    }
+
+    /// Appends an item. Removes the waiting items for which is_obsolete(item) holds, each time the queue has doubled.
+    /// Complexity: constant on average.
+    template <typename IsObsolete>
+    void add(Item item, const IsObsolete& is_obsolete) {
+        Items added;
+        added.push_back(std::move(item));
+        const std::lock_guard lock(mutex_);
+        if (waiting_.size() >= clean_at_) {
+            waiting_.remove_if(is_obsolete);
+            clean_at_ = std::max(smallest_to_clean, 2 * waiting_.size());
+        }
+        append(added);
+    }
+
+    /// Calls work(item) for one item after another on the calling thread, until close() or finish(). `work` must not throw.
+    template <typename Work>
+    void run(const Work& work) {
+        constexpr std::chrono::hours never(1);
+        run([](Items& waiting) { return waiting.begin(); }, never, work);
+    }
+
+    /// The same for the items that choose(waiting) returns an iterator to, or waiting.end() where none can be worked on yet.
+    /// `choose` runs with the queue locked, and again after `retry` while items wait.
+    template <typename Choose, typename Work>
+    void run(const Choose& choose, std::chrono::nanoseconds retry, const Work& work) {
+        std::unique_lock lock(mutex_);
+        for (auto next = take(lock, choose, retry); next != in_work_.end(); next = take(lock, choose, retry)) {
+            lock.unlock();
+            work(*next);
+            Items done;
+            lock.lock();
+            done.splice(done.begin(), in_work_, next);
+            if (is_idle()) idle_.notify_all();
+            lock.unlock();
+            done.clear();  // not with the queue locked: an item's destructor may take long, or add another item
+            lock.lock();
+        }
+    }
+
+    /// Lets run() return after the item in work; waiting items stay.
+    void close() { end(End::now); }
+    /// Lets run() return once no item waits.
+    void finish() { end(End::when_empty); }
+
+    /// Returns once no item waits or is in work.
+    void wait_until_idle() {
+        std::unique_lock lock(mutex_);
+        idle_.wait(lock, [&] { return is_idle(); });
+    }
+
+    std::size_t waiting() const {
+        const std::lock_guard lock(mutex_);
+        return waiting_.size();
+    }
+
+    /// Returns copies of all items: those in work, then those that wait, first to last.
+    std::list<Item> items() const {
+        const std::lock_guard lock(mutex_);
+        Items all = in_work_;
+        all.insert(all.end(), waiting_.begin(), waiting_.end());
+        return all;
+    }
+
+    /// Returns how many items wait before the first one for which is_wanted(item) holds; 0 if none does.
+    template <typename IsWanted>
+    std::size_t waiting_before(const IsWanted& is_wanted) const {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::ranges::find_if(waiting_, is_wanted);
+        return found == waiting_.end() ? 0 : std::size_t(std::distance(waiting_.begin(), found));
+    }
+
+private:
+    enum class End : unsigned char { never, when_empty, now };
+    static constexpr std::size_t smallest_to_clean = 64;
+
+    bool is_idle() const { return waiting_.empty() && in_work_.empty(); }
+
+    void append(Items& added) {
+        waiting_.splice(waiting_.end(), added);
+        changed_.notify_one();
+    }
+
+    void end(End end) {
+        const std::lock_guard lock(mutex_);
+        end_ = end;
+        changed_.notify_all();
+    }
+
+    /// Waits for an item and moves it to those in work; returns in_work_.end() where run() is to return.
+    template <typename Choose>
+    typename Items::iterator take(std::unique_lock<std::mutex>& lock, const Choose& choose,
+                                  std::chrono::nanoseconds retry) {
+        for (;;) {
+            if (end_ == End::now || (end_ == End::when_empty && waiting_.empty())) return in_work_.end();
+            const auto chosen = waiting_.empty() ? waiting_.end() : choose(waiting_);
+            if (chosen != waiting_.end()) {
+                in_work_.splice(in_work_.end(), waiting_, chosen);
+                return std::prev(in_work_.end());
+            }
+            waiting_.empty() ? changed_.wait(lock) : (void)changed_.wait_for(lock, retry);
+        }
+    }
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_, idle_;
+    Items waiting_, in_work_;
+    std::size_t clean_at_ = smallest_to_clean;
+    End end_ = End::never;
+};
+
+}  // namespace octopair

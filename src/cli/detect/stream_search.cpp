@@ -1,0 +1,88 @@
+// The search of one process: pairs, or the collisions that filters let through, go to the output as they are found.
+
+#include <functional>
+#include <optional>
+
+#include "base/timed.hpp"
+#include "cli/detect/filter_row.hpp"
+#include "cli/detect/frame_search.hpp"
+#include "cli/output/found_writer.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+class StreamSearch final : public FrameSearch {
+public:
+    explicit StreamSearch(DetectRun& run) : run_(run), engine_(make_engine(run.request.engine)) {}
+
+    void prepare() override {
+#ifdef OCTOPAIR_WITH_PIPELINE
+        if (has_filters(run_.request)) {
+            const Timed timed(run_.report.seconds.prepare);
+            run_.progress.show("preparing", 0);
+            row_ = make_filter_row(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
+                                   run_.stop);
+        }
+#endif
+        if (run_.request.count_only) return;
+        writer_ =
+            make_found_writer(run_.request, {run_.inputs.first, run_.second_or_first(), run_.report.moving}, run_.stop);
+    }
+
+    void search(std::uint64_t frame) override {
+        if (writer_ == nullptr) return find(frame);
+        timed_write([&] { writer_->begin_frame(frame); });
+        find(frame);
+        run_.progress.clear();
+        timed_write([&] { writer_->end_frame(); });
+    }
+
+    void finish() override {
+        if (writer_ == nullptr) return;
+        timed_write([&] { writer_->finish(); });
+        run_.report.changes = writer_->changes();
+    }
+
+private:
+    void find(std::uint64_t frame) {
+        const Options options = run_.call_options(frame);
+        const double written_before = run_.report.seconds.write;
+        const auto written = [&] { return run_.report.seconds.write - written_before; };
+        if (row_ != nullptr) {
+            const PipelineSummary summary = row_->run(*engine_, frame, collision_sink(), options);
+            run_.report.add(summary, written());
+        } else {
+            const Input input(run_.inputs.first.frame(frame),
+                              run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
+            const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
+            run_.report.add(summary, written());
+        }
+    }
+
+    /// Returns an empty sink, which counts, if nothing is written.
+    CollisionSink collision_sink() {
+        if (writer_ == nullptr) return {};
+        return [&](const Batch& batch) { timed_write([&] { writer_->write(batch.pairs(), batch.findings()); }); };
+    }
+    PairSink pair_sink() {
+        if (writer_ == nullptr) return {};
+        return [&](std::span<const Pair> pairs) { timed_write([&] { writer_->write(pairs, {}); }); };
+    }
+
+    void timed_write(const std::function<void()>& write) {
+        const Timed timed(run_.report.seconds.write);
+        write();
+    }
+
+    DetectRun& run_;
+    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<FilterRow> row_;       // none: pairs as they are
+    std::unique_ptr<FoundWriter> writer_;  // none: pairs are only counted
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSearch> make_stream_search(DetectRun& run) { return std::make_unique<StreamSearch>(run); }
+
+}  // namespace octopair::cli

@@ -1,0 +1,155 @@
+// The sweeps of large and crowded sets, each against testing all pairs of boxes.
+#include "octree/sweep/recursive_sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/scale.hpp"
+
+namespace octopair::test {
+namespace {
+
+/// Overlapping entries are pairs; those of two sets only across the sets.
+class PlainRule final : public PairRule {
+public:
+    explicit PlainRule(std::uint32_t second_begin) : second_begin_(second_begin) {}
+    bool join() const override { return second_begin_ > 0; }
+    std::uint32_t second_begin() const override { return second_begin_; }
+    bool exact() const override { return true; }
+    RoundingSlack slack() const override { return {}; }
+    bool is_pair(std::uint32_t, std::uint32_t) const override { return true; }
+
+private:
+    std::uint32_t second_begin_;
+};
+
+class CollectingWriter final : public ShareWriter {
+public:
+    bool counting() const override { return false; }
+    void write(std::span<const Pair> pairs) override { found.insert(found.end(), pairs.begin(), pairs.end()); }
+    void write_count(std::uint64_t) override { FAIL() << "the pairs themselves are wanted"; }
+
+    std::vector<Pair> found;
+};
+
+enum class Shape : std::uint8_t { cubes, rods, coincident, lattice };
+
+std::vector<Entry> make_entries(Shape shape, std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> place(0, 10), length(0, 1);
+    std::vector<Entry> entries(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t long_axis = shape == Shape::rods ? i % 3 : 3;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            float low = place(random), high = low + length(random);
+            if (axis == long_axis) low = 0, high = 11;
+            if (shape == Shape::coincident) low = 1, high = 2;
+            if (shape == Shape::lattice) low = float(random() % 4), high = low + float(random() % 2);
+            entries[i].min[axis] = low;
+            entries[i].max[axis] = high;
+        }
+        entries[i].object = std::uint32_t(i);
+        entries[i].mask = 0;
+    }
+    return entries;
+}
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs sorted(const std::vector<Pair>& found) {
+    Pairs pairs;
+    for (const Pair& pair : found) pairs.emplace_back(pair.a, pair.b);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+/// All overlapping pairs with the first in [0, rows) and the second in [columns, entries.size()).
+Pairs brute_force(const std::vector<Entry>& entries, std::size_t rows, std::size_t columns) {
+    Pairs pairs;
+    for (std::uint32_t a = 0; a < rows; ++a) {
+        for (std::uint32_t b = std::max(a + 1, std::uint32_t(columns)); b < entries.size(); ++b) {
+            if (overlap(entries[a], entries[b])) pairs.emplace_back(a, std::uint32_t(b - columns));
+        }
+    }
+    return pairs;
+}
+
+class SweepsOf : public ::testing::TestWithParam<Shape> {
+protected:
+    using Method = void (*)(const ScanContext&, const SweepInput&, Executor&);
+
+    void expect_all_pairs(std::size_t count, Method method) const {
+        const std::vector<Entry> entries = make_entries(GetParam(), count, unsigned(count));
+        expect_pairs({{entries}, {entries}, true}, 0, brute_force(entries, count, 0), method);
+        const std::size_t half = count / 3;
+        const std::span<const Entry> all = entries;
+        expect_pairs({{all.first(half)}, {all.subspan(half)}, false}, std::uint32_t(half),
+                     brute_force(entries, half, half), method);
+    }
+
+private:
+    static void expect_pairs(const SweepInput& input, std::uint32_t second_begin, const Pairs& expected,
+                             Method method) {
+        const PlainRule rule(second_begin);
+        const ScanContext context{rule, {}};
+        CollectingWriter writer;
+        SerialExecutor executor(writer);
+        method(context, input, executor);
+        EXPECT_EQ(sorted(writer.found), expected) << (input.self ? "one set" : "two sets");
+    }
+};
+
+// More than two tiles of 4,096 rows, so that rows meet the columns of other tiles.
+TEST_P(SweepsOf, TiledSweepFindsAllPairs) {
+    for (const std::size_t count : {1u, 2u, 300u, 9'000u}) {
+        if (GetParam() == Shape::coincident && count > 300) continue;  // all of 40 million pairs
+        expect_all_pairs(count, [](const ScanContext& context, const SweepInput& input, Executor& executor) {
+            tiled_sweep(context, input, 0, executor);
+        });
+    }
+}
+
+TEST_P(SweepsOf, TheAxisDoesNotMatter) {
+    expect_all_pairs(700, [](const ScanContext& context, const SweepInput& input, Executor& executor) {
+        tiled_sweep(context, input, 2, executor);
+    });
+}
+
+TEST_P(SweepsOf, RecursiveSweepFindsAllPairs) {
+    for (const std::size_t count : {1u, 2u, 3u, 50u, 700u, 6'000u}) {
+        if (GetParam() == Shape::coincident && count > 700) continue;
+        expect_all_pairs(count, recursive_sweep);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SweepsOf,
+                         ::testing::Values(Shape::cubes, Shape::rods, Shape::coincident, Shape::lattice));
+
+TEST(ChooseSweep, TakesTheAxisThatSeparatesBest) {
+    std::vector<Entry> plates(3'000);  // thin on y alone
+    for (std::size_t i = 0; i < plates.size(); ++i) {
+        plates[i] = {{0, float(i), 0}, {1, float(i) + 0.5f, 1}, std::uint32_t(i), 0};
+    }
+    SweepOrder order({});
+    const SweepChoice choice = choose_sweep({{plates}, {plates}, true}, order, {});
+    EXPECT_EQ(choice.axis, 1u);
+    EXPECT_TRUE(choice.good);
+}
+
+TEST(PartByShape, PartsBoxesByTheAxesOnWhichTheyAreLong) {
+    const std::vector<Entry> rods = make_entries(Shape::rods, 90, 1);
+    const auto parts = part_by_shape({rods});
+    std::size_t all = 0;
+    for (unsigned axes = 0; axes < 8; ++axes) {
+        all += parts[axes].size();
+        for (const std::uint32_t position : parts[axes]) EXPECT_EQ(axes, 1u << position % 3);
+    }
+    EXPECT_EQ(all, rods.size());
+}
+
+}  // namespace
+}  // namespace octopair::test

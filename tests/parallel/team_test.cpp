@@ -1,0 +1,72 @@
+// Team: every index once, workers apart, exceptions, helpers.
+#include "parallel/team.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace octopair::test {
+namespace {
+
+class TeamOf : public ::testing::TestWithParam<unsigned> {
+protected:
+    Team team_{GetParam()};
+};
+
+TEST_P(TeamOf, CallsTheBodyOnceForEachIndex) {
+    for (const std::size_t count : {0u, 1u, 2u, 1'000u}) {
+        std::vector<std::atomic<int>> times(count);
+        team_.for_each(count, [&](std::size_t i, unsigned) { ++times[i]; });
+        for (const auto& calls : times) EXPECT_EQ(calls, 1);
+    }
+}
+
+TEST_P(TeamOf, NoTwoRunningBodiesShareAWorker) {
+    std::vector<std::atomic<int>> running(team_.threads());
+    std::atomic<int> shared = 0;
+    team_.for_each(500, [&](std::size_t, unsigned worker) {
+        if (++running[worker] != 1) ++shared;
+        std::this_thread::yield();
+        --running[worker];
+    });
+    EXPECT_EQ(shared, 0);
+}
+
+TEST_P(TeamOf, RethrowsTheFailureOfABody) {
+    std::atomic<int> begun = 0;
+    const auto body = [&](std::size_t i, unsigned) {
+        ++begun;
+        if (i == 3) throw std::runtime_error("index 3");
+    };
+    EXPECT_THROW(team_.for_each(100'000, body), std::runtime_error);
+    EXPECT_LT(begun, 100'000);
+    team_.for_each(10, [&](std::size_t, unsigned) {});  // and can be used again
+}
+
+TEST_P(TeamOf, LeadsOnTheCallingThread) {
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> led = false, over = false;
+    std::atomic<unsigned> helpers = 0;
+    team_.with_helpers(
+        [&] {
+            EXPECT_EQ(std::this_thread::get_id(), caller);
+            led = true;
+            over = true;
+        },
+        [&] {
+            ++helpers;
+            while (!over) std::this_thread::yield();
+        });
+    EXPECT_TRUE(led);
+    EXPECT_LT(helpers, team_.threads());
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, TeamOf, ::testing::Values(1u, 2u, 5u));
+
+TEST(Team, HasAThreadForEachCoreByDefault) { EXPECT_GE(Team(0).threads(), 1u); }
+
+}  // namespace
+}  // namespace octopair::test
