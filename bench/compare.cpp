@@ -1,11 +1,11 @@
-// octopair against its peers, its baselines and the limits of the hardware, side by side.
+// Compares octopair with its peers, its baselines and the limits of the hardware.
 //
 //     octopair_compare [--scene KIND...] [--input FILE...] [--objects N...] [--threads K] [--rounds R] [--seconds S]
 //                      [--least R] [--only NAME...] [--first] [--json FILE]
 //
-// A row tells the median (peers/comparison.hpp: all contenders take turns; Google Benchmark runs one after the other, so
-// this is not built on it); standard error tells what has just been done. Who finds other pairs than the first contender
-// is marked, and makes the exit status 1. `--first` times nothing but the first run, for a fresh engine in a fresh process.
+// Each row shows the median. All contenders take turns (peers/comparison.hpp); Google Benchmark is not used because it runs
+// them one after the other. Standard error shows the progress. A contender that finds other pairs than the first contender
+// is marked, and the exit status is 1. With `--first`, only the first run is timed: a fresh engine in a fresh process.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -75,7 +75,8 @@ nlohmann::ordered_json scene_json(const Scene& scene, const std::vector<Row>& ro
     return {{"scene", scene.name}, {"objects", scene.boxes.size()}, {"threads", threads}, {"rows", list}};
 }
 
-/// Three quarters of the machine's memory at most: what needs more fails, where it would else bring all to a halt.
+/// Limits memory to three quarters of the machine's memory. A contender that needs more fails and does not stall the
+/// machine.
 void limit_memory() {
     const rlim_t bytes = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGESIZE)) / 4 * 3;
     const rlimit limit{bytes, bytes};

@@ -1,11 +1,12 @@
-// Engines: threads, worker processes, and worker processes arranged as in the paper, on the same scenes.
+// Compares engines on equal scenes: threads, worker processes, and worker processes arranged like in the paper.
 //
 //     octopair_engines [--workers K] [--rounds N] [--quick] [--json FILE]
 //
-// All engines take turns in one process, round by round, with engines and lists kept (engines/contest.hpp); a row tells the
-// median, the first call and the making of the engine. Before that, the memory of each, in all its processes together
-// (engines/memory.hpp). Who finds other pairs than the first is marked, and makes the exit status 1; an aim that is missed
-// does not, since the machine has a say in it. `--quick` has a tenth of the objects in large scenes, and a third of the rounds.
+// All engines take turns in one process, round by round, and keep their lists (engines/contest.hpp). Each row shows the
+// median, the first call and the start of the engine. Before, the program measures the memory of each engine over all its
+// processes (engines/memory.hpp). An engine that finds other pairs than the first engine is marked, and the exit status is 1.
+// A missed aim does not change the exit status, because times depend on the machine. `--quick` uses a tenth of the objects in
+// large scenes, and a third of the rounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -37,7 +38,7 @@ struct Request {
 std::string order_name(Order order) { return order == Order::octal ? "octal" : "ascending"; }
 std::string measure_name(Measure measure) { return measure == Measure::ratio ? "ratio" : "difference"; }
 
-/// Small enough to try the program.
+/// Reduces the number of objects for a quick trial of the program.
 void shrink(std::uint64_t& objects) {
     if (objects > 100'000) objects /= 10;
 }

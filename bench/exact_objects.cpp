@@ -1,10 +1,10 @@
-// Instances of a mesh that collide: octopair's pipeline beside FCL's dynamic AABB tree with FCL's own narrow phase.
+// Collisions of instances of a mesh: octopair's pipeline, and FCL's dynamic AABB tree with FCL's own narrow phase.
 //
 //     octopair_exact_objects [--objects N] [--threads K] [--rounds R] [--json FILE]
 //
-// Both begin with the mesh and the poses and end with the pairs of objects that collide; what is made of the mesh, the
-// boxes and the tree of the broad phase is in the time. They take turns, round by round. FCL knows surfaces alone, so what
-// octopair finds contained is left out where the two are compared; if they differ, the exit status is 1.
+// Both start with the mesh and the poses and end with the pairs of objects that collide. Time includes data built from the
+// mesh, the boxes and the tree of the broad phase. Both take turns, round by round. FCL tests only surfaces, so pairs that
+// octopair finds contained are not compared. If the other pairs differ, the exit status is 1.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -37,7 +37,7 @@ struct Scene {
     std::vector<Pose> poses;
 };
 
-/// 5,000 triangles an object, and room for each so that it collides with about one other.
+/// Makes objects with 5,000 triangles each, at a density where each object collides with about one other.
 Scene make_scene(const Request& request) {
     Scene scene{samples::torus_mesh({50, 50, 0.2, 1}), {}};
     samples::RandomStream random(2, 0);

@@ -1,12 +1,12 @@
-// Moving scenes: octopair::Scene frame by frame beside a full detection of every frame, and beside its peers.
+// Moving scenes: octopair::Scene frame by frame, compared with full detection of every frame and with its peers.
 //
 //     octopair_frames [--case NAME...] [--frames N] [--seconds S] [--quick] [--json FILE]
 //
-// Boxes of the kind uniform move as frames/motion.hpp says. All trackers take turns, frame by frame (frames/tracking.hpp);
-// a row tells the median, the 95th percentile and the slowest frame after the first, and the median of the processor's time,
-// which says more where others use the machine as well. The case `memory` measures what a scene takes, in processes of their
-// own. Who finds other pairs than the full detection is marked, and makes the exit status 1; a goal that is missed does not,
-// since the machine has a say in it. `--quick` has a tenth of the objects and of the frames.
+// Boxes of the kind uniform move (frames/motion.hpp). All trackers take turns, frame by frame (frames/tracking.hpp). Each row
+// shows the median, the 95th percentile and the slowest frame after the first, and the median of processor time. Processor
+// time is more reliable when other programs use the machine. The case `memory` measures the memory of a scene in separate
+// processes. A tracker that finds other pairs than full detection is marked, and the exit status is 1. A missed goal does not
+// change the exit status, because times depend on the machine. `--quick` uses a tenth of the objects and of the frames.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -114,7 +114,7 @@ Json memory_json(const MemoryCase& which, const MemoryUse& use) {
             {"steady", use.steady},         {"most", promised_bytes(double(which.objects), double(use.pairs))}};
 }
 
-/// Small enough to try the program.
+/// Reduces the number of objects for a quick trial of the program.
 void shrink(std::uint64_t& objects) { objects = std::max<std::uint64_t>(1000, objects / 10); }
 
 Json run_memory(const Request& request) {
@@ -136,7 +136,7 @@ Json run_memory(const Request& request) {
     return rows;
 }
 
-/// False if some tracker found other pairs.
+/// Returns false if a tracker found other pairs.
 bool run_case(const FrameCase& which, const FramePlan& plan, Json& results) {
     const auto tell = [&](std::string_view what) { fmt::print(stderr, "{}: {}\n", which.name, what); };
     const std::vector<Track> tracks = track(which, plan, tell);

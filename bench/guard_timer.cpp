@@ -1,9 +1,9 @@
-// Times octopair on one scene, by its public interface alone: what bench/guard links against each commit.
+// Times octopair on one scene through the public interface alone. bench/guard links this program with each commit.
 //
 //     guard_timer FILE.npy THREADS     FILE: float32, shape (n, 6)
 //
-// Prints the number of pairs and the median nanoseconds an object. The first call is not counted; then it calls until
-// half a second has gone, but at least 3 times.
+// Prints the number of pairs and the median nanoseconds per object. The first call is not counted. Further calls run for half
+// a second, but at least 3 times.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace {
 
-/// The rows behind the header, whose length its bytes 8 and 9 tell.
+/// Reads the rows after the header; bytes 8 and 9 hold the length of the header.
 std::vector<octopair::Box3f> read_boxes(const std::string& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const auto size = std::uint64_t(file.tellg());

@@ -1,4 +1,4 @@
-// Measuring memory in a process of its own, where no other case has left any.
+// Runs a memory measurement in its own process, without memory left by other cases.
 #pragma once
 
 #include <sys/wait.h>
@@ -9,8 +9,8 @@
 
 namespace octopair::bench {
 
-/// What `measure` returns, which goes through a pipe as it lies in memory. Forks, so it is to be called while the process
-/// has one thread. Throws std::runtime_error if the other process fails.
+/// Returns the result of `measure`, which runs in a child process and is copied through a pipe as bytes. Forks.
+/// Requires: the process has one thread. Throws: std::runtime_error if the child process fails.
 template <typename Measure>
 auto measured_apart(const Measure& measure) {
     using Use = decltype(measure());

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes what was measured into pages: the text between <!-- begin NAME --> and <!-- end NAME -->.
+"""Writes measured results into pages: the text between <!-- begin NAME --> and <!-- end NAME -->.
 
     bench/page.py RESULTS PAGE...
 
-RESULTS: the folder that bench/results fills. What stands outside those marks is written by people and stays as it is. A
-mark whose files are missing stays as well.
+RESULTS: the folder that bench/results fills. Text outside the marks stays unchanged. A block whose
+files are missing stays unchanged, too.
 """
 import json
 import pathlib
@@ -21,7 +21,7 @@ def load(path):
 
 
 def machine(results):
-    """What measured."""
+    """Returns the machine and build of the measurements."""
     others = [*sorted(results.glob("peers_*.json")), *results.glob("frames.json"), *results.glob("engines.json"),
               *results.glob("service.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
@@ -39,7 +39,7 @@ def seconds_at(study, finder, processors, objects):
 
 
 def short(results):
-    """One table: a million objects, published, the paper's algorithm here, octopair."""
+    """Returns a table for a million objects: published times, the paper's algorithm on this machine, octopair."""
     study = load(results / "paper.json")
     million = 1_000_000
     published = next(table for table in study["published"]["tables"] if table["objects"] == million)
@@ -62,12 +62,12 @@ def paper(results):
 
 
 def measured_on(said):
-    """Of what was measured apart from the rest."""
+    """Returns the machine and build of a separate measurement."""
     return f"Measured on {said['processor']}, {said['cores']} cores, commit {said['commit']}.\n\n"
 
 
 def machines(results):
-    """On which machine, and the tables."""
+    """Returns the machine of the measurement, and the tables."""
     return (measured_on(load(results / "machines.json"))
             + verbatim((results / "machines.txt").read_text(encoding="utf-8")))
 
@@ -77,7 +77,7 @@ def scenes(results):
 
 
 def cell(row, ours):
-    """Milliseconds, and how many times slower than octopair."""
+    """Returns milliseconds, and the ratio to octopair."""
     if row is None:
         return "–"
     if "left_out_above" in row:
@@ -94,7 +94,7 @@ def cell(row, ours):
 
 
 def peers(results, name):
-    """A table: contenders down, scenes across."""
+    """Returns a table with a row per contender and a column per scene."""
     columns = []
     for result in load(results / f"peers_{name}.json")["results"]:
         rows = {row["contender"]: row for row in result["rows"]}
@@ -110,7 +110,7 @@ def peers(results, name):
 
 
 def milliseconds(seconds):
-    """With as many digits as say something."""
+    """Formats milliseconds with the significant digits."""
     value = seconds * 1e3
     return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
 
@@ -119,14 +119,14 @@ TIMES = ("median_seconds", "percentile95_seconds", "slowest_seconds", "median_pr
 
 
 def case_title(case):
-    """What a case of moving scenes is, as the first cell of its rows."""
+    """Describes a case of moving scenes, for the first cell of its rows."""
     moved = "all moved" if case["share"] == 1 else f"{case['share'] * 100:g}% moved"
     threads = f"{case['threads']} thread{'s' if case['threads'] > 1 else ''}"
     return f"{case['objects']:,}, {moved}, {threads}"
 
 
 def frames(results):
-    """A row for each case and tracker; how many times slower than the scene with all pairs."""
+    """Returns a row for each case and tracker, with the ratio to the scene with all pairs."""
     lines = ["| objects | milliseconds a frame | median | 95% | slowest | processor | against scene | frames/s |",
              "|---|---|--:|--:|--:|--:|--:|--:|"]
     for case in load(results / "frames.json")["results"]:
@@ -147,7 +147,7 @@ def frames(results):
 
 
 def goal_text(goal):
-    """What a goal bounds."""
+    """Describes the ratio that a goal bounds."""
     against = goal["against"][0] if len(goal["against"]) == 1 else "the fastest peer"
     if goal["against"] == [goal["tracker"]]:
         return f"{goal['tracker']}: {goal['statistic']} frame / its median"
@@ -155,12 +155,12 @@ def goal_text(goal):
 
 
 def share_text(ratio):
-    """A ratio, or its inverse where that is easier to read."""
+    """Formats a ratio, or its inverse below 0.995."""
     return f"1/{1 / ratio:.3g}" if ratio < 0.995 else f"{ratio:.3g}"
 
 
 def frame_goals(results):
-    """Aims and what was measured."""
+    """Returns aims with the measured values."""
     lines = ["| objects | what | aim: at most | measured | processor | |", "|---|---|--:|--:|--:|---|"]
     for case in load(results / "frames.json")["results"]:
         for goal in case["goals"]:
@@ -171,7 +171,7 @@ def frame_goals(results):
 
 
 def frame_memory(results):
-    """Bytes an object."""
+    """Returns a table of bytes per object."""
     lines = ["| bytes an object | moved | pairs an object | peak, first frame | peak, later | steady | promised |",
              "|---|--:|--:|--:|--:|--:|--:|"]
     for row in load(results / "frames.json")["memory"]:
@@ -183,13 +183,13 @@ def frame_memory(results):
 
 
 def engine_results(results):
-    """Each contest with what it is, as the first cell of its rows."""
+    """Yields each contest with its description, for the first cell of its rows."""
     for contest in load(results / "engines.json")["results"]:
         yield f"{contest['scene']}, {contest['objects']:,}, {contest['order']}", contest
 
 
 def engines(results):
-    """A row for each scene, order and engine; how many times slower than local."""
+    """Returns a row for each scene, order and engine, with the ratio to the local engine."""
     lines = ["| boxes, order | milliseconds | median | against local | first call | start of the engine |",
              "|---|---|--:|--:|--:|--:|"]
     for title, contest in engine_results(results):
@@ -204,12 +204,12 @@ def engines(results):
 
 
 def aim_value(aim, value):
-    """What an aim bounds: a ratio, or milliseconds."""
+    """Formats the bound of an aim: a ratio, or milliseconds."""
     return f"{value:.2f}" if aim["measure"] == "ratio" else f"{value * 1e3:.2f} ms"
 
 
 def engine_aims(results):
-    """Aims and what was measured, times and memory."""
+    """Returns aims with the measured times and memory."""
     lines = ["| boxes, order | what | aim | measured | |", "|---|---|--:|--:|---|"]
     for title, contest in engine_results(results):
         for aim in contest["aims"]:
@@ -229,7 +229,7 @@ def engine_aims(results):
 
 
 def engine_memory(results):
-    """Bytes an object of all processes together, beyond boxes and pairs."""
+    """Returns bytes per object over all processes, beyond boxes and pairs."""
     lines = ["| boxes, order | engine | engine alone, MB | bytes an object: kept | highest |", "|---|---|--:|--:|--:|"]
     for row in load(results / "engines.json")["memory"]:
         objects = row["objects"]
@@ -241,7 +241,7 @@ def engine_memory(results):
 
 
 def engine_choice(results):
-    """Local and processes side by side, octal order, for who must choose."""
+    """Compares the engines local and processes in octal order, to help users choose."""
     lines = ["| milliseconds | local | processes | difference |", "|---|--:|--:|--:|"]
     starts = {}
     for _, contest in engine_results(results):
@@ -258,7 +258,7 @@ def engine_choice(results):
 
 
 def service(results):
-    """A row for each job and order, and one for a scene's frame: here, and on a server."""
+    """Returns a row for each job and order, and for a frame of a scene: locally, and on a server."""
     study = load(results / "service.json")
     lines = ["| milliseconds | local | on a server | against local | `submit()` |", "|---|--:|--:|--:|--:|"]
     rows = [(f"{row['objects']:,} boxes, {row['order']}", row) for row in study["against_local"]]
@@ -274,7 +274,7 @@ def service(results):
 
 
 def service_crowds(results):
-    """Many clients at once."""
+    """Returns a table for many concurrent clients."""
     lines = ["| clients | boxes a job | jobs | wrong or lost | jobs a second | ms: median | 99% | slowest |",
              "|--:|--:|--:|--:|--:|--:|--:|--:|"]
     for row in load(results / "service.json")["crowds"]:
@@ -286,7 +286,7 @@ def service_crowds(results):
 
 
 def service_aims(results):
-    """Aims and what was measured."""
+    """Returns aims with the measured values."""
     lines = ["| what | aim | measured | |", "|---|--:|--:|---|"]
     for aim in load(results / "service.json")["aims"]:
         cells = [aim["what"], f"at {'most' if aim['at_most'] else 'least'} {aim['bound']:,g}", f"{aim['reached']:,.3g}"
@@ -296,14 +296,14 @@ def service_aims(results):
 
 
 def scaling_results(results):
-    """Each scene with its title."""
+    """Yields each scene with its title."""
     for path in [results / "scaling.json", *results.glob("scaling_weak.json")]:
         for result in load(path)["results"]:
             yield f"{result['scene']}, {result['objects']:,}{' a core' if result['weak'] else ''}", result
 
 
 def scaling(results):
-    """A row for each number of threads and of ranks on each scene."""
+    """Returns a row for each number of threads and of ranks on each scene."""
     lines = ["| scene, objects | on | milliseconds | times one thread | efficiency | against threads |",
              "|---|---|--:|--:|--:|--:|"]
     for title, result in scaling_results(results):
@@ -319,7 +319,7 @@ def scaling(results):
 
 
 def scaling_aims(results):
-    """Aims of ranks against threads, and what was measured."""
+    """Returns aims of ranks against threads, with the measured values."""
     lines = ["| scene, objects | what | aim | measured | |", "|---|---|--:|--:|---|"]
     for title, result in scaling_results(results):
         for aim in result["aims"]:
@@ -331,7 +331,7 @@ def scaling_aims(results):
 
 
 def cluster(results):
-    """A row for each number of ranks in each call."""
+    """Returns a row for each number of ranks in each call."""
     lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object |",
              "|---|--:|--:|--:|--:|--:|--:|"]
     study = load(results / "cluster.json")
@@ -361,7 +361,7 @@ def median(numbers):
 
 
 def exact_objects(results):
-    """Instances of a mesh, beside FCL."""
+    """Returns a table for instances of a mesh, compared with FCL."""
     first = load(results / "exact_objects_1.json")
     rows = [(f"octopair, {study['threads']} thread{'s' if study['threads'] > 1 else ''}",
              median(study["octopair_seconds"]), median(study["fcl_seconds"]))
@@ -374,7 +374,7 @@ def exact_objects(results):
 
 
 def self_intersections(results):
-    """Triangles of one mesh, beside CGAL."""
+    """Returns a table for triangles of one mesh, compared with CGAL."""
     study = load(results / "self_intersections.json")
     ours = study["contenders"][0]["median_seconds"]
     lines = [f"| {study['triangles']:,} triangles, {study['pairs']:,} pairs that meet, {study['threads']} threads | "
@@ -385,7 +385,7 @@ def self_intersections(results):
 
 
 def model(name):
-    """What bench/scaling_model.py makes of it."""
+    """Returns a function that loads a table of bench/scaling_model.py."""
     return lambda results: load(results / "model.json")[name]
 
 
@@ -401,7 +401,7 @@ for table in ("1m_1", "1m_2", "100k_1", "100k_2", "10k_1", "real_1"):
 
 
 def fill(page, results):
-    """The page with every block written anew."""
+    """Returns the page with every block rewritten."""
     def block(match):
         name = match[1]
         try:

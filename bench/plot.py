@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Draws what was measured, as SVG.
+"""Draws measured results as SVG.
 
     bench/plot.py FOLDER [--paper FILE] [--peers FILE...] [--scaling FILE...] [--cluster FILE]
 
 FILE: the JSON of `octopair-bench paper`, of octopair_compare, of `octopair-bench scaling` and of `octopair-bench cluster`.
 Written to FOLDER: figure-5.svg and components.svg from the first, peers-1m.svg from the comparisons of a million objects on
-one thread, scaling.svg, cluster-efficiency.svg and cluster-steps.svg. The same files give the same bytes. Needs Matplotlib
+one thread, scaling.svg, cluster-efficiency.svg and cluster-steps.svg. Equal files give equal bytes. Needs Matplotlib
 (scripts/setup bench), which Debian has for its own Python.
 """
 import argparse
@@ -18,7 +18,7 @@ import matplotlib
 matplotlib.use("svg")
 from matplotlib import pyplot, ticker  # noqa: E402 (the backend comes first)
 
-# The palette of Okabe and Ito: told apart by all kinds of eyes.
+# Palette of Okabe and Ito, distinguishable for colour-blind readers.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
     "#000000", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
 LINES = [BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK]
@@ -39,13 +39,13 @@ def load(path):
 
 
 def save(figure, folder, name):
-    """On a white ground of its own, so that it is read as well where the page is dark."""
+    """Saves a figure on a white background, which is readable on dark pages, too."""
     figure.savefig(folder / name, facecolor="white", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)
 
 
 def setup_text(series):
-    """On how many processors."""
+    """Returns the label of a number of processors."""
     count, machines = series["processors"], series["machines"]
     if machines > 1:
         return f"{machines} x {count // machines} processors"
@@ -53,7 +53,7 @@ def setup_text(series):
 
 
 def fit_curve(fits, objects):
-    """The fit with the smaller residual: its name, and its milliseconds at each number of objects."""
+    """Returns the name of the fit with the smaller residual, and its milliseconds at each number of objects."""
     linear, log = fits["n"], fits["n_log2_n"]
     if linear["residual"] <= log["residual"]:
         return "a n", [1e3 * linear["a"] * n for n in objects]
@@ -61,7 +61,7 @@ def fit_curve(fits, objects):
 
 
 def draw_lines(axes, all_series):
-    """Time against objects: a line for each number of processors, and its fit, dashed."""
+    """Draws time against objects: a line for each number of processors, and its fit, dashed."""
     for series, color in zip(all_series, LINES):
         points = series["points"]
         millions = [point["objects"] / MILLION for point in points]
@@ -80,7 +80,7 @@ def draw_lines(axes, all_series):
 
 
 def figure_5(study, folder):
-    """The paper's figure 5, here: its algorithm and octopair, each on a scale of its own."""
+    """Draws the paper's figure 5 as measured: its algorithm and octopair, each with its own scale."""
     figure, panels = pyplot.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
     titles = {"paper": "the paper's algorithm", "octopair": "octopair"}
     for axes, (finder, title) in zip(panels, titles.items()):
@@ -96,7 +96,7 @@ STEPS = [("octal codes (encode)", BLUE, "octal_codes", "encode"), ("sort (scatte
 
 
 def component_bars(study):
-    """(label, seconds by step) of each bar."""
+    """Returns (label, seconds by step) for each bar."""
     published = study["published"]["components"]
     bars = [(f"as published, on\n{published['processors']}; no scan given",
              [published.get(paper, 0) / 1e6 for _, _, paper, _ in STEPS])]
@@ -113,7 +113,7 @@ def component_bars(study):
 
 
 def components(study, folder):
-    """Each step's share of the steps' time, one bar for each way; the sum stands beside it."""
+    """Draws a bar for each algorithm: the share of each step, with the total time as text."""
     bars = component_bars(study)
     figure, axes = pyplot.subplots(figsize=(9, 3.2), layout="constrained")
     left = [0.0] * len(bars)
@@ -138,14 +138,14 @@ def components(study, folder):
 
 
 def slower_by(result):
-    """How many times slower than octopair each peer is in a scene."""
+    """Returns the ratio of each peer's time to octopair's time in a scene."""
     seconds = {row["contender"]: row["median_seconds"] for row in result["rows"]
                if not row.get("out_of_memory") and "median_seconds" in row}
     return {name: seconds[name] / seconds["octopair"] for name in PEERS if name in seconds}
 
 
 def draw_peers(axes, results):
-    """Groups of bars, a group for each scene."""
+    """Draws a group of bars for each scene."""
     width = 0.86 / len(PEERS)
     for i, (name, color) in enumerate(PEERS.items()):
         bars = [(scene + (i - (len(PEERS) - 1) / 2) * width, slower_by(result).get(name))
@@ -160,7 +160,7 @@ def draw_peers(axes, results):
 
 
 def peers(results, folder):
-    """Times slower than octopair, on a logarithmic scale."""
+    """Draws the ratios to octopair's time, on a logarithmic scale."""
     chosen = [r for r in results if r["objects"] == MILLION and r["threads"] == 1]
     if not chosen:
         return
@@ -181,7 +181,7 @@ def peers(results, folder):
 
 
 def core_axis(axes, counts, label):
-    """Logarithmic, with a mark at each count."""
+    """Makes the axis logarithmic, with a mark at each count."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(ticker.FixedLocator(sorted(counts)))
     axes.xaxis.set_minor_locator(ticker.NullLocator())
@@ -190,7 +190,7 @@ def core_axis(axes, counts, label):
 
 
 def panels(count):
-    """A figure of so many panels, up to three in a row, and these."""
+    """Returns a figure with `count` panels, up to three in a row, and the panels."""
     columns = 2 if count in (2, 4) else min(count, 3)
     rows = math.ceil(count / columns)
     figure, grid = pyplot.subplots(rows, columns, figsize=(9, 3.2 * rows), squeeze=False, layout="constrained")
@@ -200,7 +200,7 @@ def panels(count):
 
 
 def legend_above(figure, all_axes):
-    """One for all panels, each label once."""
+    """Adds a legend for all panels, with each label once."""
     labels = {label: handle for axes in all_axes for handle, label in zip(*axes.get_legend_handles_labels())}
     inches = 0.35
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - inches / figure.get_figheight()))
@@ -208,14 +208,14 @@ def legend_above(figure, all_axes):
 
 
 def engine_text(row):
-    """Threads, ranks, or ranks of several threads."""
+    """Returns the kind of engine: threads, ranks, or ranks of several threads."""
     if row["engine"] == "local":
         return "threads"
     return "ranks" if row["threads"] == 1 else f"ranks of {row['threads']} threads"
 
 
 def draw_speedups(axes, result):
-    """A line for each kind of engine: objects in the same time, against one thread."""
+    """Draws a line for each kind of engine: objects in equal time, relative to one thread."""
     engines = {}
     for row in result["rows"]:
         engines.setdefault(engine_text(row), []).append(row)
@@ -231,7 +231,7 @@ def draw_speedups(axes, result):
 
 
 def scaling(results, folder):
-    """Speedup by cores, a panel for each scene."""
+    """Draws the speedup by cores, with a panel for each scene."""
     figure, all_axes = panels(len(results))
     for axes, result in zip(all_axes, results):
         draw_speedups(axes, result)
@@ -245,12 +245,12 @@ RANK_STEPS = {"join": BLACK, "plan": GREEN, "route": PURPLE, "pack": YELLOW, "bu
 
 
 def rank_seconds(costs):
-    """Processor seconds of a rank's computing."""
+    """Returns the processor seconds of a rank's computing."""
     return sum(seconds for step, seconds in costs["cpu_seconds"].items() if step in RANK_STEPS)
 
 
 def calls_of(cluster):
-    """The runs of each call that was measured on one rank too, by number of ranks, under what tells it from others."""
+    """Returns the runs by call and number of ranks, for calls that were also measured on one rank."""
     calls = {}
     for run in cluster["runs"]:
         name = f"{run['scene']}, {run['objects']:,}"
@@ -261,7 +261,7 @@ def calls_of(cluster):
 
 
 def cluster_efficiency(cluster, folder):
-    """Of the critical path: the seconds of one rank, over what so many slowest ranks take."""
+    """Draws the efficiency: seconds of one rank over number of ranks times seconds of the slowest rank."""
     figure, axes = pyplot.subplots(figsize=(9, 3.8), layout="constrained")
     calls = calls_of(cluster)
     for i, (name, runs) in enumerate(calls.items()):
@@ -277,7 +277,7 @@ def cluster_efficiency(cluster, folder):
 
 
 def draw_steps(axes, runs):
-    """A bar for each number of ranks, as high as so many slowest ranks take; in it what all ranks' steps add up to."""
+    """Draws a bar for each number of ranks, as high as that number times the slowest rank, with the sums of steps."""
     ranks = sorted(runs)
     bottom = [0.0] * len(ranks)
     for step, color in RANK_STEPS.items():
@@ -295,7 +295,7 @@ def draw_steps(axes, runs):
 
 
 def cluster_steps(cluster, folder):
-    """What a call costs all ranks together, a panel for each."""
+    """Draws the total costs of all ranks, with a panel for each call."""
     calls = calls_of(cluster)
     figure, all_axes = panels(len(calls))
     for axes, (name, runs) in zip(all_axes, calls.items()):

@@ -1,4 +1,4 @@
-// How much memory of this process lies in the machine's, as Linux tells it.
+// Resident memory of this process, from Linux.
 #pragma once
 
 #include <cstdlib>
@@ -7,7 +7,8 @@
 
 namespace octopair::bench {
 
-/// A line of /proc/self/status, in bytes: VmRSS, or VmHWM for the highest since forget_peak(). 0 where there is none.
+/// Returns a line of /proc/self/status in bytes, or 0 if the line is missing. VmRSS: current; VmHWM: highest since
+/// forget_peak().
 inline double status_bytes(const std::string& name) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {

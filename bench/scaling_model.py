@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A cost model of ranks, fitted to what `octopair-bench cluster` measured (docs/scaling.md).
+"""A cost model of ranks, fitted to measurements of `octopair-bench cluster` (docs/scaling.md).
 
     scaling_model.py RESULTS > RESULTS/model.json     the tables that bench/page.py puts there
 
-Of n objects on k ranks, boxes spread evenly:
+Costs of n evenly spread objects on k ranks:
 
     shared   s = sigma (k / n)^(1/3)                          the part of the objects that several ranks receive: surfaces
     plan    c r + d n + e k   seconds                        r = (n / k) (1 + s) objects received; d: what every rank does for
@@ -11,7 +11,7 @@ Of n objects on k ranks, boxes spread evenly:
     compute  r (a + b log2 r) + m k   seconds                 all other steps
     bytes    28 r (k - 1) / k + f n + g k + h                 that a rank sends
     messages p (k - 1) + q                                    that a rank sends
-    network  messages x latency + bytes / bandwidth           a model: nothing of it was measured
+    network  messages x latency + bytes / bandwidth           a model, not measured
 
 Constants come from least squares of relative errors on some of the runs; the others check them.
 """
@@ -27,14 +27,14 @@ NETWORKS = {"1 Gbit/s, 50 us": (50e-6, 125e6), "25 Gbit/s, 5 us": (5e-6, 3.125e9
 
 
 def runs_of(results):
-    """Of uniform scenes on several ranks."""
+    """Returns the runs of uniform scenes on several ranks."""
     runs = [run for name in ("cluster.json", "cluster_sizes.json")
             for run in json.loads((results / name).read_text(encoding="utf-8"))["runs"]]
     return [run for run in runs if run["scene"] == "uniform" and run["ranks"] > 1]
 
 
 def mean_seconds(run, steps):
-    """Of the ranks."""
+    """Returns the mean seconds of the ranks in `steps`."""
     return sum(rank["cpu_seconds"][step] for rank in run["alone"] for step in steps) / run["ranks"]
 
 
@@ -43,7 +43,7 @@ def planning(run):
 
 
 def computing(run):
-    """All but planning."""
+    """Returns the mean seconds of all steps except planning."""
     return mean_seconds(run, set(run["alone"][0]["cpu_seconds"]) - {"plan", "mpi"})
 
 
@@ -52,7 +52,7 @@ def per_rank(run, name):
 
 
 def fit(rows, values):
-    """Not negative: a constant that would be is left out. Least squares of relative errors."""
+    """Least squares of relative errors, without negative constants: such a constant is left out."""
     rows, values = numpy.array(rows, float), numpy.array(values, float)
     used = list(range(rows.shape[1]))
     while True:
@@ -65,7 +65,7 @@ def fit(rows, values):
 
 
 class Model:
-    """What the constants say of a call."""
+    """Predictions of the model for a call."""
 
     def __init__(self, runs):
         self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
@@ -89,7 +89,7 @@ class Model:
         return [received, received * math.log2(received), k]
 
     def seconds(self, n, k):
-        """Of received objects, of the tree, of other ranks."""
+        """Returns the seconds for received objects, for the tree, and for other ranks."""
         own, logarithm, ranks = (a * b for a, b in zip(self.compute, self.compute_row(n, k)))
         c, d, e = self.plan
         return own + logarithm + c * self.received(n, k), d * n, ranks + e * k
@@ -118,7 +118,7 @@ def constants_text(model):
 
 
 def check_text(model, runs):
-    """Measured and as the model says, of runs that it was not fitted to."""
+    """Returns measured and predicted values of runs that were not used for the fit."""
     rows = []
     for run in sorted(runs, key=lambda run: (run["objects"], run["ranks"])):
         n, k = run["objects"], run["ranks"]
@@ -131,7 +131,7 @@ def check_text(model, runs):
 
 
 def far_text(model):
-    """Far beyond what was measured."""
+    """Returns predictions far beyond the measured range."""
     rows = []
     for n, k in ((10**8, 64), (10**9, 512), (10**9, 4096), (10**10, 1024), (10**10, 4096)):
         objects, tree, ranks = model.seconds(n, k)
@@ -145,7 +145,7 @@ def far_text(model):
 
 
 def texts(results):
-    """The tables of docs/scaling.md."""
+    """Returns the tables of docs/scaling.md."""
     runs = runs_of(results)
     model = Model([run for run in runs if run["objects"] not in CHECKED])
     checked = [run for run in runs if run["objects"] in CHECKED]

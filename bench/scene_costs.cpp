@@ -1,9 +1,9 @@
-// What each kind of scene costs: time, entries and memory an object, side by side with uniform.
+// Costs of each kind of scene: time, entries and memory per object, next to the kind uniform.
 //
 //     scene_costs [OBJECTS [THREADS]]           all kinds, each in a process of its own
 //     scene_costs OBJECTS THREADS KIND float32|float64
 //
-// Memory is the highest resident size during the first call, above the one before it and without the pairs found. Times
+// Memory is the highest resident size during the first call, minus the size before the call and the size of the pairs. Times
 // are medians of 5 further calls in octal order into a reused list.
 
 #include <algorithm>
@@ -52,7 +52,8 @@ void measure(const std::string& kind, std::uint64_t objects, unsigned threads) {
     std::fflush(stdout);
 }
 
-/// Kinds that have so many pairs that a list of them is no measure of anything else, or that are another kind at first.
+/// Returns whether a kind is left out: its list of pairs dominates all other costs, or its first frame equals another
+/// kind.
 bool left_out(std::string_view kind) { return kind == "coincident" || kind == "brownian"; }
 
 }  // namespace

@@ -1,9 +1,9 @@
-// Self-intersections of a closed mesh: the pipeline, from vertices to pairs, beside CGAL's self_intersections.
+// Self-intersections of a closed mesh: octopair's pipeline, from vertices to pairs, and CGAL's self_intersections.
 //
 //     octopair_self_intersections [--triangles N] [--threads K] [--rounds N] [--seed S] [--json FILE]
 //
-// All take turns, round by round; the first round is not counted. Ours starts from vertices and triangles, as a user does:
-// triangles' places and boxes are in its time. Pairs other than ours make the exit status 1.
+// All contenders take turns, round by round; the first round is not counted. octopair starts from vertices and triangles, like
+// a user. Its time includes making triangles and boxes. If another contender finds other pairs, the exit status is 1.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -50,7 +50,7 @@ struct Contender {
     }
 };
 
-/// Triangles by their corners' places, made on several threads in memory that nothing else writes before.
+/// Returns triangles with the positions of their corners. Several threads write them into uninitialised memory.
 std::unique_ptr<Triangle3d[]> triangles_of(const shape::Mesh& mesh, unsigned threads) {
     const std::size_t count = mesh.triangles.size();
     auto triangles = std::make_unique_for_overwrite<Triangle3d[]>(count);

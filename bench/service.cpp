@@ -1,8 +1,8 @@
-// The server: what it costs that pairs are found elsewhere, and how many clients it bears.
+// Server benchmark: overhead of remote calls, and behaviour with many clients.
 //
 //     octopair_service [--rounds N] [--quick] [--json FILE]
 //
-// A server of this build on a Unix socket, on two threads, and its clients in this process, on the same machine.
+// A server of this build listens on a Unix socket, with two threads. Its clients are in this process, on the same machine.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,10 +28,10 @@ struct Request {
     std::string json;
 };
 
-/// What is aimed at, and what was reached.
+/// Aims, with the values reached.
 class Aims {
 public:
-    /// Says on the line of a measurement whether it was.
+    /// Returns the text that states, on the line of a measurement, whether the aim was reached.
     const char* at_most(const std::string& what, double bound, double reached) {
         return keep(what, true, bound, reached, reached <= bound);
     }

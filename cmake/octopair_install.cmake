@@ -1,5 +1,5 @@
-# The installed tree: headers, the libraries with their CMake package, the programs, the manual and the completion, and
-# what a server is run with.
+# Installed tree: headers, libraries with their CMake package, programs, the manual, the completion, and files to run a
+# server.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
     return()

@@ -1,6 +1,6 @@
-# What every target of this project is compiled with.
+# Compile options of every target of this project.
 #
-# -ffp-contract=off: a fused multiply-add on one machine and not on another would let the same scene give other bytes.
+# -ffp-contract=off: with a fused multiply-add on some machines only, equal scenes would give different bytes.
 
 set_property(GLOBAL PROPERTY USE_FOLDERS ON)
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -14,10 +14,10 @@ function(octopair_target target)
                                              -Wold-style-cast -Wcast-align -Woverloaded-virtual -Wconversion
                                              -Wno-sign-conversion)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        # g++ 12 sees overlapping copies in "text" + std::string (GCC bug 105651).
+        # g++ 12 reports overlapping copies in "text" + std::string (GCC bug 105651).
         target_compile_options(${target} PRIVATE -Wno-restrict)
         if(CMAKE_UNITY_BUILD)
-            # g++ takes the sources that a unity file includes for headers.
+            # g++ treats the sources that a unity file includes as headers.
             target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
         endif()
     endif()
@@ -44,7 +44,7 @@ function(octopair_optimise_sanitized)
     endif()
 endfunction()
 
-# Has CMake compile these sources alone: Highway includes each of them again for each instruction set.
+# Compiles these sources separately, without unity files: Highway includes each source again for each instruction set.
 function(octopair_kernels)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -1,10 +1,10 @@
-// The loop of a simulation: objects move, collisions are found, objects respond; frame after frame.
+// Loop of a simulation: in each frame objects move, collisions are found, and objects respond.
 //
 //     bounce [OBJECTS [FRAMES [THREADS]]]      default 10000 300 0; 0 threads: one per core
 //
-// Cubes fly about in a room. Two of equal mass that begin to overlap exchange their velocities on the axis on which they
-// overlap least, as in an elastic shock; walls throw them back. The scene says which pairs began, so that a pair which
-// overlaps for several frames is answered once.
+// Cubes move in a room. Two cubes of equal mass that begin to overlap exchange their velocities, like in an elastic collision,
+// on the axis with the least overlap. Walls reflect the cubes. The scene reports which pairs began, so a pair that overlaps for
+// several frames gets only one response.
 #include <octopair/octopair.hpp>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ public:
         }
     }
 
-    /// Moves all by a frame; the room is the unit cube.
+    /// Moves all cubes by one frame; the room is the unit cube.
     void advance() {
         for (Cube& cube : cubes_) {
             for (int axis = 0; axis < 3; ++axis) {

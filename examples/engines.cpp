@@ -1,4 +1,4 @@
-// The same search on threads of this process or on worker processes: which one is a matter of one line.
+// One search on threads of this process or on worker processes. Only one line selects the engine.
 //
 //     engines [local|processes ...]      default: both
 #include <octopair/octopair.hpp>
@@ -11,12 +11,12 @@
 
 namespace {
 
-/// The one line. All else of this program knows an Engine and nothing more.
+/// Makes the engine. All other code of this program uses only the interface Engine.
 std::unique_ptr<octopair::Engine> make_engine(const std::string& name) {
     return name == "processes" ? octopair::make_process_engine(2) : octopair::make_local_engine(2);
 }
 
-/// A row of unit boxes, of which every third touches the next.
+/// Returns a row of unit boxes; every third box touches the next.
 std::vector<octopair::Box3f> make_boxes(unsigned count) {
     std::vector<octopair::Box3f> boxes;
     for (unsigned i = 0; i < count; ++i) {

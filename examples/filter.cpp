@@ -1,4 +1,4 @@
-// A filter of one's own behind the pairs of boxes: spheres whose centres are as near as their radii say.
+// User-defined filter after the box test: keeps pairs of spheres whose distance is at most the sum of their radii.
 #include <octopair/octopair.hpp>
 #include <octopair/pipeline.hpp>
 
@@ -23,7 +23,7 @@ octopair::Box3f box_of(const Sphere& s) {
     return box;
 }
 
-/// Lets spheres through that touch, and notes how far apart their centres are, squared and in thousandths.
+/// Keeps spheres that touch, and records the squared distance of their centres in thousandths.
 class SpheresTouch final : public octopair::Filter {
 public:
     explicit SpheresTouch(const std::vector<Sphere>& spheres) : spheres_(spheres) {}

@@ -1,4 +1,4 @@
-// The shortest way from boxes to pairs: three boxes, two of which touch.
+// Minimal use: three boxes, two of which touch.
 #include <octopair/octopair.hpp>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// The ranks of an MPI program, each of which has some of the objects: `mpirun -n 3 ranks`.
+// MPI program whose ranks each have some of the objects: `mpirun -n 3 ranks`.
 #include <octopair/mpi.hpp>
 #include <octopair/octopair.hpp>
 
@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Three boxes in a row for each rank, each of which touches the next, also from rank to rank.
+/// Returns three boxes in a row for each rank. Each box touches the next, also from rank to rank.
 std::vector<octopair::Box3f> own_boxes(int rank) {
     std::vector<octopair::Box3f> boxes;
     for (int i = 3 * rank; i < 3 * rank + 3; ++i) boxes.push_back({{float(i), 0, 0}, {float(i) + 1, 1, 1}});

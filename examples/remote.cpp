@@ -1,4 +1,4 @@
-// A loop at 60 Hz whose pairs are found by a server: it never waits, and takes each result in the frame in which it is there.
+// Loop at 60 Hz with pairs from a server: the loop never waits, and takes each result in the first frame after its arrival.
 //
 //     octopair serve --listen unix:/tmp/octopair &
 //     remote unix:/tmp/octopair [OBJECTS [FRAMES]]
@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::microseconds frame_time(16'667);
 
-/// Cubes in a row: each touches the next.
+/// Returns cubes in a row: each touches the next.
 std::vector<octopair::Box3f> row_of_cubes(std::uint64_t count) {
     std::vector<octopair::Box3f> boxes(count);
     float x = 0;

@@ -1,4 +1,4 @@
-// A scene on a server: example_remote_scene ADDRESS, of a server that was started with `octopair serve --listen ADDRESS`.
+// Scene on a server: example_remote_scene ADDRESS. Start the server with `octopair serve --listen ADDRESS`.
 #include <octopair/octopair.hpp>
 #include <octopair/remote_scene.hpp>
 

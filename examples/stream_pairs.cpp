@@ -1,4 +1,4 @@
-// More pairs than memory: one engine for many calls, pairs counted and streamed through a bounded buffer.
+// More pairs than fit into memory: one engine for many calls, pairs counted and streamed through a bounded buffer.
 #include <octopair/octopair.hpp>
 
 #include <cinttypes>

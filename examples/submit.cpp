@@ -1,4 +1,4 @@
-// A loop that goes on while its pairs are found: a job is submitted, asked now and then, and collected when it has ended.
+// Loop that continues during a search: submits a job, polls the job, and takes the pairs after the end.
 #include <octopair/octopair.hpp>
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Cubes in a row: each touches the next.
+/// Returns cubes in a row: each touches the next.
 octopair::BoxArray<octopair::Box3f> row_of_cubes(octopair::Engine& engine, std::uint64_t count) {
     auto array = engine.allocate_boxes(count);  // or any std::vector of boxes
     float x = 0;
@@ -20,7 +20,7 @@ octopair::BoxArray<octopair::Box3f> row_of_cubes(octopair::Engine& engine, std::
     return array;
 }
 
-/// The loop's own work: a ball that falls and springs back.
+/// Work of the loop: a ball that falls and bounces.
 struct Ball {
     double height = 1, speed = 0;
 

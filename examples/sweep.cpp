@@ -1,5 +1,5 @@
-// A fast projectile is before a thin wall in one frame and behind it in the next: in none of them do they overlap.
-// sweep() looks at the whole way between.
+// A fast projectile is in front of a thin wall in one frame and behind the wall in the next. The boxes overlap in
+// neither frame. sweep() tests the whole path between both frames.
 #include <octopair/octopair.hpp>
 
 #include <array>
@@ -11,7 +11,7 @@ constexpr octopair::Box3f wall = {{0, -5, -5}, {0.1f, 5, 5}};
 constexpr octopair::Box3f before = {{-4, 0, 0}, {-3, 1, 1}};
 constexpr octopair::Box3f behind = {{3, 0, 0}, {4, 1, 1}};
 
-/// How many pairs begin when the projectile flies past the wall.
+/// Returns how many pairs begin when the projectile flies past the wall.
 std::size_t fly(bool swept) {
     octopair::Scene scene;
     std::array<octopair::ObjectId, 2> ids;

@@ -1,4 +1,4 @@
-# What the scripts share; sourced by them, from bash with set -euo pipefail. Everything said goes to standard error.
+# Functions common to the scripts; source from bash with set -euo pipefail. All messages go to standard error.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -8,14 +8,14 @@ fail() {
     exit 1
 }
 
-# The packages of a component, one a line.
+# Prints the packages of a component, one per line.
 packages_of() {
     local list="$root/scripts/packages/$1.txt"
     [ -f "$list" ] || fail "no component '$1'; there are: $(cd "$root/scripts/packages" && ls ./*.txt | sed 's|./||; s|.txt||' | xargs)"
     sed 's/#.*//' "$list" | awk 'NF { print $1 }'
 }
 
-# Runs a command as root: as it is, or through sudo.
+# Runs a command as root: directly, or through sudo.
 as_root() {
     if [ "$(id -u)" = 0 ]; then
         "$@"
@@ -26,7 +26,7 @@ as_root() {
     fi
 }
 
-# Fetches the package lists, once a run of the scripts; a stale list names packages that the mirror no longer has.
+# Fetches the package lists, once per run of a script. A stale list names packages that the mirror no longer has.
 update_package_lists() {
     [ -z "${OCTOPAIR_LISTS_UPDATED:-}" ] || return 0
     say "fetching the package lists (apt-get update)"
@@ -34,8 +34,7 @@ update_package_lists() {
     export OCTOPAIR_LISTS_UPDATED=1
 }
 
-# Has CMake compile through ccache, where it is installed. What was compiled in one checkout serves another: paths below the
-# root do not count.
+# Makes CMake compile through ccache, if installed. Checkouts share the cache, because paths are relative to the root.
 compile_through_ccache() {
     command -v ccache > /dev/null || return 0
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1

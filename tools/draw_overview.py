@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Draws docs/images/overview.svg: boxes in an octree, the colliding ones lit, and the steps that find them.
+"""Draws docs/images/overview.svg: boxes in an octree, colliding boxes highlighted, and the steps of the search.
 
     draw_overview.py > docs/images/overview.svg
 
-The card has its own background, so that it reads the same on white and on dark pages.
+The card has its own background, and looks equal on white and on dark pages.
 """
 import math
 import random
@@ -13,12 +13,12 @@ SCALE, ORIGIN = 198, (252, 236)
 COLD = ("#7c93b8", "#5b7299", "#445879")
 WARM = ("#ffb454", "#f28c28", "#c4661a")
 STEPS = [("boxes", "what you own", "#7c93b8"), ("encode", "box → octal codes", "#38bdf8"),
-         ("sort", "by code", "#38bdf8"), ("merge", "one linear octree", "#38bdf8"),
+         ("count", "entries per octant", "#38bdf8"), ("scatter", "entries to places", "#38bdf8"),
          ("scan", "each octant, once", "#38bdf8"), ("pairs", "exactly those that touch", "#f28c28")]
 
 
 def project(x, y, z):
-    """Isometric: x to the lower right, y to the lower left, z up."""
+    """Projects a point isometrically: x to the lower right, y to the lower left, z up."""
     return ORIGIN[0] + (x - y) * SCALE * math.cos(math.pi / 6), ORIGIN[1] + (x + y) * SCALE / 2 - z * SCALE
 
 
@@ -28,7 +28,7 @@ def polygon(points, **style):
 
 
 def make_boxes():
-    """Small boxes, many near one corner: (low, high)."""
+    """Returns small boxes as (low, high), many near one corner."""
     chance = random.Random(11)
     boxes = []
     while len(boxes) < 96:
@@ -45,7 +45,7 @@ def overlap(a, b):
 
 
 def wall_cells(boxes, axes, cell=(0.0, 0.0), size=1.0):
-    """The octants of the tree as they meet a wall: squares split while more than three centres lie in them."""
+    """Returns the octants that meet a wall: squares are split while they contain more than three centres."""
     inside = [b for b in boxes
               if all(c <= (b[0][a] + b[1][a]) / 2 < c + size for a, c in zip(axes, cell))]
     if len(inside) <= 3 or size < 0.1:
@@ -86,14 +86,14 @@ def draw_steps():
             yield f'<path d="M{x} {y - gap + 2}v{gap - 8}m-4 -1l4 5l4 -5" fill="none" stroke="#64748b" stroke-width="1.6"/>'
 
 
-EXAMPLES = ["min, max", "7 in {8,1}", "{8,1} {8,1} {8,2}", "{8,1} → 7, 19", "7 × 19", "(7, 19)"]
+EXAMPLES = ["min, max", "7 in {8,1}", "{8,1}: 2", "{8,1} → 7, 19", "7 × 19", "(7, 19)"]
 
 
 def main():
     boxes = make_boxes()
     hit = {i for i, a in enumerate(boxes) for j, b in enumerate(boxes) if i != j and overlap(a, b)}
     print(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
-          'role="img" aria-label="Boxes in an octree; encode, sort, merge and scan find the pairs that overlap">')
+          'role="img" aria-label="Boxes in an octree; encode, count, scatter and scan find the pairs that overlap">')
     print('<style>text{font-family:"DejaVu Sans",Verdana,sans-serif}.name{font-size:17px;font-weight:bold}'
           '.caption{font-size:14px;fill:#cbd5e1}.code{font-size:12.5px;fill:#94a3b8;text-anchor:end;'
           'font-family:"DejaVu Sans Mono",Menlo,monospace}</style>')

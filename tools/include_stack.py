@@ -5,20 +5,20 @@
 
 A layer is a folder of src/ with the public headers (include/octopair) that it implements. Including a public header is
 using its layer. The folders of bench/ that octopair-bench is made of are layers, too; nothing in src/ may use them. Public
-headers use only public headers and the standard library. Prints one line for each include that breaks a rule, and exits 1; with --print it
-prints the stack as it is, for docs/design.md.
+headers use only public headers and the standard library. Prints one line for each include that breaks a rule, and exits 1.
+With --print, prints the current stack for docs/design.md.
 """
 import pathlib
 import re
 import sys
 
-# Layers from the bottom up: what they are for, and their public headers.
+# Layers from the bottom up: their purpose, and their public headers.
 LAYERS = {
     "base": ("errors, buffers, checked casts", ["error"]),
-    "parallel": ("threads; the one place that knows oneTBB", []),
+    "parallel": ("threads; the only layer that uses oneTBB", []),
     "geometry": ("points, vectors, poses", ["pose"]),
     "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "summary"]),
-    "octree": ("octal codes; encode, sort, merge, scan", ["octal_code"]),
+    "octree": ("octal codes; encode, count, scatter, scan", ["octal_code"]),
     "verification": ("a second algorithm that checks results", []),
     "engine": ("what all engines share", ["arrangement", "engine", "job", "pair_list"]),
     "engine/threads": ("the engine of threads", []),
@@ -42,10 +42,10 @@ LAYERS = {
     "bench/scaling": ("time by threads and ranks", []),
     "bench/program": ("the program octopair-bench", []),
 }
-# Headers that include a whole library: octopair.hpp brings what octopair::octopair holds, version.hpp uses nothing.
+# Headers that include a whole library: octopair.hpp includes all of octopair::octopair, version.hpp uses nothing.
 WHOLE = {"octopair": "scene", "version": "base"}
 
-# What each layer may use, beside itself.
+# Layers that each layer may use, in addition to itself.
 USES = {
     "base": [],
     "parallel": ["base"],
@@ -76,7 +76,7 @@ USES = {
     "bench/scaling": ["base", "samples", "bench/machine", "bench/cluster"],
     "bench/program": ["base", "samples", "io", "cli/command", "cli/ranks", "bench/paper", "bench/cluster", "bench/scaling"],
 }
-# Layers of which a layer may use the public headers only.
+# Layers from which a layer may use only public headers.
 PUBLIC = {
     "verification": ["boxes"],  # a check that shares code with what it checks would share its errors
     "narrow_phase": ["boxes"],
@@ -101,7 +101,7 @@ THIRD_PARTY = {
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},
 }
-# What a public header of a component cannot do without: its users have it.
+# Third-party headers that the public header of a component needs: its users have them.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}
 SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
@@ -110,19 +110,19 @@ LAYER_OF_HEADER = {header: layer for layer, (_, headers) in LAYERS.items() for h
 
 
 def includes_of(path):
-    """(line number, is quoted, name) of each include of a file."""
+    """Yields (line number, is quoted, name) for each include of a file."""
     text = path.read_text(encoding="utf-8")
     return [(text.count("\n", 0, m.start(2)) + 1, m[1] == '"', m[2]) for m in INCLUDE.finditer(text)]
 
 
 def layer_of(folder):
-    """The layer of a folder, named from src/ or from the root for bench/; None if it has no layer."""
+    """Returns the layer of a folder, named from src/ or from the root for bench/; None if it has no layer."""
     parts = folder.split("/")
     return next((layer for n in (2, 1) if (layer := "/".join(parts[:n])) in LAYERS), None)
 
 
 def layer_included(name):
-    """(the layer of a quoted include, whether it is a public header)."""
+    """Returns (layer of a quoted include, whether it is a public header)."""
     folder, _, file = name.rpartition("/")
     if folder == "octopair":
         return LAYER_OF_HEADER.get(file.removesuffix(".hpp")), True
@@ -130,7 +130,7 @@ def layer_included(name):
 
 
 def complaint_quoted(layer, is_public_header, name):
-    """What is wrong with a file of `layer` including the project's `name`, or None."""
+    """Returns the violation if a file of `layer` includes the project's `name`, or None."""
     used, from_public = layer_included(name)
     if used is None:
         return "no layer holds it; includes are written from src/, bench/ or include/"
@@ -142,7 +142,7 @@ def complaint_quoted(layer, is_public_header, name):
 
 
 def complaint_angled(layer, is_public_header, path, name):
-    """The same for an include in angle brackets."""
+    """Returns the violation for an include in angle brackets, or None."""
     if is_public_header and name in IN_PUBLIC.get(path.name, ()):
         return None
     library, _, rest = name.partition("/")
@@ -157,7 +157,7 @@ def complaint_angled(layer, is_public_header, path, name):
 
 
 def files_of(root):
-    """(path, layer or None, whether it is a public header) of each file that is checked."""
+    """Yields (path, layer or None, whether it is a public header) for each checked file."""
     for path in sorted((root / "include").rglob("*.hpp")):
         yield path, LAYER_OF_HEADER.get(path.stem), True
     for path in sorted((root / "src").rglob("*.[ch]pp")):
@@ -169,7 +169,7 @@ def files_of(root):
 
 
 def check(root):
-    """Complaints as text, for each layer the layers and libraries it uses, and the number of files."""
+    """Returns violations as text, the layers and libraries used by each layer, and the number of files."""
     complaints, used, count = [], {}, 0
     for path, layer, is_public_header in files_of(root):
         where = path.relative_to(root)

@@ -8,7 +8,7 @@ Atoms     in the file's order, "Atoms # full" style (id, molecule, type, charge,
           (image flags are not applied). Repeated N x N x N by the periodic box's lengths, the last axis fastest.
 Rounding  centre + i * length in float64, then once to float32; a box is that centre -/+ R in float32 arithmetic, which
           rounds to nearest. (octopair's own reading of spheres rounds boxes outward: a superset of these.)
-Only Python's standard library is used. The output appears whole or not at all.
+Only Python's standard library is used. The output file appears completely or not at all.
 """
 import argparse
 import array
@@ -19,7 +19,7 @@ import sys
 
 
 def read_atoms(path):
-    """The periodic box's lengths and the atoms' coordinates."""
+    """Returns the lengths of the periodic box and the coordinates of the atoms."""
     opener = gzip.open if path.endswith(".gz") else open
     lengths, atoms, count = {}, [], None
     with opener(path, "rt", encoding="utf-8") as lines:
@@ -45,7 +45,7 @@ def read_atoms(path):
 
 
 def repeated(lengths, atoms, repeat):
-    """Coordinates of all copies, flat, rounded to float32."""
+    """Returns the coordinates of all copies as a flat array, rounded to float32."""
     centres = array.array("f")
     for copy in itertools.product(range(repeat), repeat=3):
         shift = [i * length for i, length in zip(copy, lengths)]

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the rules of HACKING.md that neither compiler, clang-format nor clang-tidy knows.
+"""Checks the rules of HACKING.md that neither compiler, clang-format nor clang-tidy checks.
 
     source_rules.py [ROOT]     ROOT: the project's directory, default the one this file lies in
 
-Prints what breaks a rule, one line each, and exits 1.
+Prints one line for each violation, and exits 1.
 """
 import pathlib
 import re
@@ -15,7 +15,7 @@ TEXT = CODE | {".py", ".cmake", ".txt", ".md", ".sh", ".in", ""}
 LONGEST_FILE = 500
 SNAKE_CASE = re.compile(r"^[a-z][a-z0-9_]*$")
 
-# What, and the pattern of a line that breaks it.
+# Name of a violation, and pattern of a line with it.
 EVERYWHERE = [
     ("unfinished work is not committed", re.compile(r"\b(TODO|FIXME|XXX)\b")),
     ("a path of someone's machine", re.compile(r"(?<![\w.$}/-])/(home|root|work|Users)/\w")),
@@ -40,13 +40,13 @@ def files(root):
 
 
 def has_head(path, lines):
-    """A source file may leave it to its header."""
+    """Returns whether a file has a head comment. A .cpp file may rely on the head of its header."""
     headers = [path.with_suffix(".hpp"), *path.parents[2].glob(f"include/octopair/{path.stem}.hpp")]
     return bool(lines) and (lines[0].startswith("// ") or (path.suffix == ".cpp" and any(h.exists() for h in headers)))
 
 
 def complaints_of(path, parts):
-    """(line number, what) of a file; 0 for the file as a whole."""
+    """Yields (line number, violation) for a file; line 0 means the whole file."""
     lines = path.read_text(encoding="utf-8").splitlines()
     is_code = path.suffix in CODE
     if is_code:

@@ -5,8 +5,8 @@
     test_results.py --slowest BEGIN BUILDS FILE...
                                      prints the tests that took longest, and what took longest to compile since BEGIN,
                                      seconds since 1970, in the build folders in BUILDS
-    test_results.py FILE...          prints the failed tests and the end of what each said, so that it stands where a
-                                     long log ends; files that are missing or unreadable are skipped
+    test_results.py FILE...          prints the failed tests and the end of their output, for the end of a long log;
+                                     files that are missing or unreadable are skipped
 """
 import collections
 import heapq
@@ -14,12 +14,12 @@ import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
 
-LAST_LINES = 40  # of what a test printed
+LAST_LINES = 40  # of the output of a test
 SLOWEST = 10
 
 
 def outcome(case):
-    """Of one test; ctest says of a test whose program was not built that it was skipped, which is a failure here."""
+    """Returns the outcome of a test. ctest reports a test without a built program as skipped; here it counts as failed."""
     if case.get("status") == "run":
         return "passed"
     skipped = case.find("skipped")
@@ -28,7 +28,7 @@ def outcome(case):
 
 
 def tests(results):
-    """Each test in a file, with its outcome; None if there are no results."""
+    """Returns each test in a file with its outcome, or None without results."""
     try:
         cases = ElementTree.parse(results).getroot().iter("testcase")
     except (OSError, ElementTree.ParseError):
@@ -58,7 +58,7 @@ def print_slowest_tests(files):
 
 
 def compiled(builds, begin):
-    """How long, and what: the object files in ninja's logs that were written since `begin`."""
+    """Yields (seconds, object file) from ninja's logs, for files written since `begin`."""
     for log in builds.glob("*/.ninja_log"):
         lines = log.read_text(encoding="utf-8").splitlines()[1:]
         for start, end, written, output, _ in (line.split("\t") for line in lines):

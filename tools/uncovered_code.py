@@ -16,12 +16,12 @@ BRANCH = re.compile(r"^\s*\|\s*Branch \((\d+):(\d+)\): \[True: ([^,]+), False: (
 
 
 def is_positive(count):
-    """llvm-cov abbreviates counts, such as 1.2k."""
+    """Returns whether a count is above 0. llvm-cov abbreviates counts, such as 1.2k."""
     return count.strip() != "0"
 
 
 class Report:
-    """What llvm-cov printed."""
+    """Parsed output of llvm-cov."""
 
     def __init__(self, text, root):
         self.lines = {}  # source lines by (file, line)

@@ -1,10 +1,9 @@
 // I-COLLIDE's sweep and prune (Cohen, Lin, Manocha, Ponamgi 1995; the paper's section 2.3.1).
 //
-// Three lists hold the ends of all intervals in order, a lower end before an upper end of the same value, as boxes are
-// closed. Between frames the ends move little; insertion sort puts them right, and every swap of a lower end with an
-// upper end of another object is an interval overlap that begins or ends. I-COLLIDE keeps a bit per axis for all n^2 /
-// 2 pairs; here the other axes are looked at when a swap begins an overlap, so that the status is just the set of
-// pairs.
+// Three lists hold the ends of all intervals in order. A lower end stands before an upper end of equal value, because
+// boxes are closed. Ends move little between frames, and insertion sort restores the order. Every swap of a lower end
+// with an upper end of another object begins or ends an interval overlap. I-COLLIDE keeps a bit per axis for all n^2 /
+// 2 pairs. Here, a swap that begins an overlap tests the other axes, so the state is only the set of pairs.
 #include <algorithm>
 #include <array>
 #include <unordered_set>
@@ -61,7 +60,7 @@ struct ICollide::State {
         }
     }
 
-    /// `left` goes from behind `right` to before it.
+    /// Updates the pairs after `left` moves from behind `right` to before `right`.
     void note_swap(const End& left, const End& right) {
         if (left.upper == right.upper) return;
         const std::uint64_t key = packed(ordered(left.object, right.object));

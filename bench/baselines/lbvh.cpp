@@ -1,4 +1,4 @@
-// Half traversal of an LBVH: a leaf looks at what comes after it in pre-order only, so that each pair is found once.
+// Half traversal of an LBVH: each leaf visits only later leaves in pre-order, so the traversal finds each pair once.
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>

@@ -21,7 +21,7 @@ struct MortonLeaf {
     }
 };
 
-/// The low 21 bits of `x`, with two zeros before each.
+/// Returns the low 21 bits of `x`, with two zeros before each bit.
 std::uint64_t spread_bits(std::uint64_t x) {
     x = (x | x << 32) & 0x001f00000000ffffu;
     x = (x | x << 16) & 0x001f0000ff0000ffu;
@@ -31,14 +31,14 @@ std::uint64_t spread_bits(std::uint64_t x) {
     return x;
 }
 
-/// Twice the centre, on each axis.
+/// Returns twice the centre, on each axis.
 std::array<double, 3> doubled_centre(const Box3f& box) {
     std::array<double, 3> sum;
     for (unsigned axis = 0; axis < 3; ++axis) sum[axis] = double(box.min[axis]) + double(box.max[axis]);
     return sum;
 }
 
-/// Maps the centres of all boxes to cells of a grid of 2^21 a side.
+/// Maps the centres of all boxes to cells of a grid with 2^21 cells per axis.
 class MortonGrid {
 public:
     explicit MortonGrid(std::span<const Box3f> boxes) {
@@ -111,7 +111,7 @@ public:
 private:
     static constexpr std::uint32_t leaves_of_a_task = 4096;
 
-    /// The first leaf with the highest bit set in which the codes differ; the middle where all codes are the same.
+    /// Returns the first leaf with the highest differing bit of the codes set, or the middle if all codes are equal.
     std::uint32_t split(std::uint32_t first, std::uint32_t last) const {
         const std::uint64_t difference = leaves_[first].code ^ leaves_[last - 1].code;
         if (difference == 0) return first + (last - first) / 2;

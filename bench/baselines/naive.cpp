@@ -1,4 +1,4 @@
-// All pairs, tested one by one: the naive solution of the paper's section 2.3, and the oracle of the tests.
+// Tests of all pairs: the naive solution of the paper's section 2.3, and the oracle of the tests.
 #include <algorithm>
 #include <variant>
 
@@ -20,7 +20,7 @@ std::vector<Pair> test_all(std::span<const Box<Real>> boxes) {
     return pairs;
 }
 
-/// An object as the rule sees it.
+/// Values of an object that the overlap rule uses.
 struct Judged {
     double min[3], max[3];
     double padding;

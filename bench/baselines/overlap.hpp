@@ -1,4 +1,4 @@
-// The test of two closed boxes, and how pairs are written. Internal to the baselines.
+// Overlap test of two closed boxes, and output of pairs. Internal to the baselines.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-// The paper's algorithm as published (section 3.3): octal codes and sort by slaves, merge per machine and at the
-// master, scan with CommonPath, pairs made unique and tested.
+// The paper's algorithm as published (section 3.3). Slaves compute octal codes and sort; each machine merges, then the
+// master; a scan with CommonPath finds pairs; a last step removes duplicates and tests the pairs.
 //
-// Two slips of its pseudo code are put right: the inner loop of step 7 starts behind object1 and stops at the list's
-// end.
+// Two errors of the pseudo code are corrected: the inner loop of step 7 starts after object1 and stops at the end of
+// the list.
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A cube that holds the box, around its centre.
+/// Returns a cube around the centre of the box that contains the box.
 Cube bounding_cube(const Box3f& box) {
     double half = 0;
     for (int axis = 0; axis < 3; ++axis) half = std::max(half, (double(box.max[axis]) - double(box.min[axis])) / 2);
@@ -39,7 +39,7 @@ Cube bounding_cube(const Box3f& box) {
     return cube;
 }
 
-/// The octree's root: a cube that holds all objects.
+/// Returns the root octant of the octree: a cube that contains all objects.
 Cube root_octant(std::span<const Box3f> boxes) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Box3f bounds{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
@@ -52,7 +52,7 @@ Cube root_octant(std::span<const Box3f> boxes) {
     return bounding_cube(bounds);
 }
 
-/// The octant `digit` of `octant`. Neighbours share their border to the last bit, so that no point falls between them.
+/// Returns child `digit` of `octant`. Neighbours share their border bit for bit, so no point lies between two octants.
 Cube child_octant(const Cube& octant, unsigned digit) {
     Cube child = octant;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -69,8 +69,8 @@ bool holds(const Cube& outer, const Cube& inner) {
     return true;
 }
 
-/// SearchOctree of one object: the octants of the fixed level that it meets. One that it fills is stored as a whole, as
-/// what is stored in a non-leaf octant occupies all below (section 2.3.2).
+/// SearchOctree of one object: finds the octants of the fixed level that the object meets. An octant that the object
+/// fills is stored as a whole, because an entry of a non-leaf octant occupies all descendants (section 2.3.2).
 class OctreeSearch {
 public:
     OctreeSearch(unsigned level, EntryList& entries) : level_(level), entries_(entries) {}
@@ -110,7 +110,7 @@ struct SlaveTask {
     PaperSort sort;
 };
 
-/// Steps 2 and 3.
+/// Runs steps 2 and 3.
 void run_slave(const SlaveTask& task, SlaveResult& result) {
     auto start = Clock::now();
     OctreeSearch search(task.level, result.entries);
@@ -138,8 +138,8 @@ EntryList merge_sorted_lists(std::vector<EntryList> lists) {
     return lists.empty() ? EntryList() : std::move(lists.front());
 }
 
-/// Runs `work(i)` for i below `count`, each on a thread of its own. What one throws (there may be too many octants for the
-/// memory) reaches the caller.
+/// Runs `work(i)` for i below `count`, each on its own thread. Throws: the exception of a call, for example when the
+/// octants exceed the memory.
 template <typename Work>
 void run_side_by_side(std::size_t count, const Work& work) {
     std::vector<std::exception_ptr> failures(count);
@@ -161,7 +161,7 @@ void run_side_by_side(std::size_t count, const Work& work) {
     }
 }
 
-/// Steps 1 to 3 on all slaves: equal shares of the objects.
+/// Runs steps 1 to 3 on all slaves, with equal shares of the objects.
 std::vector<EntryList> run_slaves(std::span<const Box3f> boxes, const PaperSettings& settings, PaperSeconds& seconds) {
     const std::size_t slaves = std::size_t(settings.machines) * settings.slaves_per_machine;
     const Cube root = root_octant(boxes);
@@ -180,7 +180,7 @@ std::vector<EntryList> run_slaves(std::span<const Box3f> boxes, const PaperSetti
     return lists;
 }
 
-/// The lists of each machine's slaves merged there, side by side.
+/// Merges the lists of each machine's slaves on that machine, all machines in parallel.
 std::vector<EntryList> merge_on_machines(std::vector<EntryList> lists, unsigned machines) {
     const std::size_t per_machine = lists.size() / machines;
     std::vector<EntryList> merged(machines);
@@ -192,7 +192,7 @@ std::vector<EntryList> merge_on_machines(std::vector<EntryList> lists, unsigned 
     return merged;
 }
 
-/// Step 7: the entries in the octant of an entry, or below it, follow it in the list.
+/// Step 7. The list holds the entries inside the octant of an entry after that entry.
 std::vector<Pair> scan(const EntryList& entries) {
     std::vector<Pair> candidates;
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -204,7 +204,7 @@ std::vector<Pair> scan(const EntryList& entries) {
     return candidates;
 }
 
-/// The level at which the octree has about as many octants as there are objects.
+/// Returns the level at which the octree has about as many octants as there are objects.
 unsigned usual_level(std::size_t objects) {
     unsigned level = 1;
     while (level < 8 && (std::size_t(1) << (3 * level)) < objects) ++level;

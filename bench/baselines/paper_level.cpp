@@ -1,4 +1,4 @@
-// Which fixed depth suits a scene.
+// Search for the fixed depth that suits a scene best.
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -12,7 +12,7 @@ namespace octopair::baselines {
 
 namespace {
 
-/// Infinite where the octants do not fit the memory.
+/// Returns the run time, or infinity if the octants do not fit into the memory.
 double seconds_at(unsigned level, std::span<const Box3f> boxes, PaperSettings settings) {
     settings.level = level;
     const auto begin = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// How the slaves of the paper's algorithm sort: by std::sort, as the paper does by qsort, or by octopair's radix sort.
+// Sort of the slaves in the paper's algorithm: std::sort, where the paper uses qsort, or octopair's radix sort.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace octopair::baselines {
 
 using PaperEntry = std::pair<OctalCode, std::uint32_t>;
 
-/// Sorts entries that are ascending by object, with codes of `level` at most, into the pre-order of the octree, then by
-/// object. Deeper than level 9 a code does not fit a key of 32 bits, and std::sort does it.
+/// Sorts entries into the pre-order of the octree, then by object. Requires: entries ascend by object, and codes have
+/// at most `level`. Deeper than level 9 a code does not fit into a key of 32 bits, so std::sort is used.
 void sort_entries(std::vector<PaperEntry>& entries, PaperSort sort, unsigned level);
 
 }  // namespace octopair::baselines

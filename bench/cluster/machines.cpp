@@ -22,13 +22,13 @@ double slowest_of(const EachRank& ranks, double RankCosts::*step) {
     return most;
 }
 
-/// Of what a rank sends to all others alike, the part that leaves its machine.
+/// Returns the part of the data broadcast by a rank that leaves the machine of the rank.
 double leaving(const Setup& setup) {
     if (setup.ranks <= setup.ranks_per_machine) return 0;
     return double(setup.ranks - setup.ranks_per_machine) / double(setup.ranks - 1);
 }
 
-/// Bytes through the busiest port, one direction after another where one has to wait for the other.
+/// Returns the bytes through the busiest port. Adds both directions where one must wait for the other.
 double port_bytes(const Measured& measured) {
     const EachRank& ranks = measured.together;
     const Setup& setup = measured.setup;
@@ -56,7 +56,7 @@ const Measured* find(const std::vector<Measured>& all, const Setup& setup) {
     return found == all.end() ? nullptr : &*found;
 }
 
-/// One table: a scene with so many objects, by processors.
+/// Table of one scene and number of objects, by processors.
 class MachineTable {
 public:
     MachineTable(const std::vector<Measured>& all, const Setup& setup, const Network& network)
@@ -118,7 +118,7 @@ private:
                time_cells({times.all(), ranks}, serial.all(), 12);
     }
 
-    /// A time, in so many columns, and its efficiency.
+    /// Formats a time, in `width` columns, and its efficiency.
     static std::string time_cells(const paper::TimedRun& run, double serial_seconds, int width) {
         const std::string time = fmt::format("{:>{}}", paper::microseconds(run.seconds), width);
         if (run.processors == 1 || serial_seconds == 0) return time + fmt::format("{:>8}", "-");
@@ -130,7 +130,8 @@ private:
     const Network& network_;
 };
 
-/// Those of the paper's arrangement with most ranks and, of these, most objects, beside the paper's own.
+/// Formats the components of the paper's arrangement next to the paper's figures. Uses the run with most ranks and,
+/// among equals, most objects.
 std::string components_text(const std::vector<Measured>& all, const Network& network) {
     const Measured* most = nullptr;
     for (const Measured& measured : all) {

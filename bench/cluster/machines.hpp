@@ -1,9 +1,12 @@
-// The paper's cluster again: tables 1 and 2 and the component times with several processors on each machine, for the paper's
-// arrangement of ranks and for octopair's.
+// The paper's cluster, measured again: tables 1 and 2 and the component times with several processors on each machine.
+// Covers the paper's arrangement of ranks and octopair's.
 //
-// One machine measures what each rank of many computes. What a network would add is a model: every machine has one port, of
-// a bandwidth in each direction; a message takes a latency beside; messages of one rank follow each other, and what goes over
-// the network does not overlap with computing. Ranks of one machine do not need it. Waiting is what others compute.
+// Computing is measured on one machine, for each rank of many. The network time is a model:
+// - Every machine has one port, with a bandwidth in each direction.
+// - Each message adds a latency. Messages of one rank follow each other.
+// - Network transfers do not overlap with computing.
+// - Ranks of one machine do not use the network.
+// - A rank that waits adds no time beyond the computing of other ranks.
 //
 // Source: Lucchesi, Egbert, Harris 2014, section 5.
 #pragma once
@@ -15,30 +18,30 @@
 
 namespace octopair::cluster {
 
-/// The paper's: "upward of eight times faster than a 100baseT Ethernet". Of its latency it says that it is low.
+/// The paper's network: "upward of eight times faster than a 100baseT Ethernet". The paper calls its latency low.
 struct Network {
     double latency_seconds = 10e-6;
     double bytes_per_second = 100e6;
 };
 
-/// The seconds of a call.
+/// Seconds of a call.
 struct Modelled {
-    double computing = 0;  ///< measured: critical_path()
-    double network = 0;    ///< the model
+    double computing = 0;  ///< measured by critical_path()
+    double network = 0;    ///< computed by the model
     double all() const { return computing + network; }
 };
 Modelled modelled(const Measured& measured, const Network& network);
 
-/// Seconds of computing from the begin to the end of a call. Where ranks share every step: of the slowest. In the paper's
-/// arrangement steps wait for each other: each takes as long as on its slowest rank, and the master merges when the machines
-/// have.
+/// Returns the seconds of computing from the begin to the end of a call. If ranks share every step: the seconds of the
+/// slowest rank. In the paper's arrangement, steps wait for each other: each step takes the time of its slowest rank,
+/// and the master merges after the machines.
 double critical_path(const Measured& measured);
-/// Of the paper's arrangement: lists merged at the master, and on the slowest of the other machines.
+/// Returns the seconds of merging in the paper's arrangement: at the master, or on the slowest of the other machines.
 double merged_at_master(const EachRank& ranks);
 double merged_on_machines(const EachRank& ranks);
 
-/// Tables for people; one JSON object for programs, ended by a newline. Setups that are to have an efficiency need their
-/// scene on one rank among `all`.
+/// Tables for people, and one JSON object for programs, ended by a newline. Efficiency needs the scene on one rank in
+/// `all`.
 std::string machines_text(const std::vector<Measured>& all, const Network& network);
 std::string machines_json(const std::vector<Measured>& all, const Network& network);
 

@@ -1,4 +1,4 @@
-// What a call cost the ranks of a cluster, step by step, and what follows from it.
+// Costs of a call on the ranks of a cluster, step by step, and derived quantities.
 #pragma once
 
 #include <cstdint>
@@ -10,53 +10,53 @@
 
 namespace octopair::cluster {
 
-/// One scene on so many ranks.
+/// One scene on a number of ranks.
 struct Setup {
-    std::string scene = "uniform";  ///< a kind of samples/scenes.hpp, seed 1
+    std::string scene = "uniform";  ///< kind of samples/scenes.hpp, seed 1
     std::uint64_t objects = 0;
     unsigned ranks = 1;
-    /// As the paper arranges ranks, all objects are the first one's, as there; else each has an equal part.
+    /// `paper`: rank 0 has all objects, like the paper's master. `shared`: each rank has an equal part.
     Arrangement arrangement = Arrangement::shared;
-    unsigned ranks_per_machine = 2;  ///< of Arrangement::paper
+    unsigned ranks_per_machine = 2;  ///< only for Arrangement::paper
 
     bool same_call(const Setup& other) const {
         return scene == other.scene && objects == other.objects && arrangement == other.arrangement;
     }
 };
 
-/// "shared", "paper".
+/// Returns "shared" or "paper".
 std::string_view arrangement_name(Arrangement arrangement);
-/// Throws Error{usage} for what is neither.
+/// Returns the arrangement with this name. Throws: Error{usage} if no arrangement has this name.
 Arrangement arrangement_of(std::string_view name);
 
-/// Of each rank the median of each step.
+/// Median of each step, for each rank.
 using EachRank = std::vector<RankCosts>;
 
 struct Measured {
     Setup setup;
     std::uint64_t pairs = 0, entries = 0;
-    double wall_seconds = 0;  ///< the median of the first rank's calls
-    /// While all ranks share the cores and caches of this machine; and of the same call with one rank at a time, the
-    /// others asleep and what they sent at hand, as on a machine of its own.
+    double wall_seconds = 0;  ///< median over the calls of rank 0
+    /// `together`: all ranks share the cores and caches of this machine. `alone`: one rank at a time repeats the call
+    /// with the received data at hand, like on its own machine; other ranks sleep.
     EachRank together, alone;
 
     double bytes_per_object() const;
     double messages_per_rank() const;
-    /// The part of all objects that went to several ranks.
+    /// Returns the part of all objects that several ranks received.
     double shared() const;
 };
 
-/// Processor seconds of computing: of one rank, of the slowest, on average.
+/// Processor seconds of computing: of one rank, of the slowest rank, and on average.
 double computing(const RankCosts& costs);
 double slowest(const EachRank& ranks);
 double mean(const EachRank& ranks);
 inline double imbalance(const EachRank& ranks) { return slowest(ranks) / mean(ranks); }
-/// The seconds of one rank, over what so many slowest ranks take.
+/// Returns the seconds of one rank over the number of ranks times the seconds of the slowest rank.
 inline double efficiency(const EachRank& one, const EachRank& ranks) {
     return slowest(one) / (double(ranks.size()) * slowest(ranks));
 }
 
-/// One step of a rank's costs.
+/// One step in the costs of a rank.
 struct Step {
     const char* name;
     double RankCosts::*seconds;
@@ -67,7 +67,8 @@ inline constexpr Step computing_steps[] = {
     {"scan", &RankCosts::scan}, {"order", &RankCosts::order},
 };
 
-/// JSON, an array of one object for each; and back. Throws Error{engine_failed} for text that is none.
+/// Writes and reads a JSON array with one object per measurement. Throws: Error{engine_failed} for text of another
+/// form.
 std::string measured_json(const std::vector<Measured>& all);
 std::vector<Measured> measured_of(const std::string& json);
 

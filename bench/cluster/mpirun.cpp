@@ -19,7 +19,7 @@ namespace octopair::cluster {
 
 namespace {
 
-/// Open MPI's; other MPIs do not look at them. What the caller has set stands.
+/// Sets variables of Open MPI that other MPIs ignore. Keeps variables that the caller has set.
 void allow_many_ranks() {
     constexpr int keep = 0;
     ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", keep);
@@ -29,7 +29,7 @@ void allow_many_ranks() {
     ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", keep);
 }
 
-/// Of signals that this process has blocked, the other one shall hear.
+/// Starts the command. The child receives signals that this process has blocked.
 pid_t start(std::vector<char*>& words) {
     posix_spawnattr_t attributes;
     ::posix_spawnattr_init(&attributes);

@@ -1,4 +1,4 @@
-// A command under mpirun.
+// Runs a command under mpirun.
 #pragma once
 
 #include <stop_token>
@@ -8,13 +8,13 @@
 namespace octopair::cluster {
 
 struct MpirunCommand {
-    std::string mpirun;  ///< with options of its own, separated by spaces
+    std::string mpirun;  ///< command with options, separated by spaces
     unsigned ranks = 1;
     std::vector<std::string> command;
 };
 
-/// Runs it to its end, with more ranks than cores and by root where need be. Throws Error{engine_failed} if it cannot be
-/// started or fails, Error{cancelled} soon after a stop request.
+/// Runs the command to its end; more ranks than cores and user root are allowed. Throws: Error{engine_failed} if the
+/// command cannot start or fails; Error{cancelled} soon after a stop request.
 void run_under_mpirun(const MpirunCommand& command, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

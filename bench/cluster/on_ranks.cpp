@@ -11,7 +11,7 @@ namespace octopair::cluster {
 
 namespace {
 
-/// Objects [begin, end) of the scene.
+/// Returns objects [begin, end) of the scene.
 std::vector<Box3f> make_slice(const Setup& setup, std::uint64_t begin, std::uint64_t end) {
     std::vector<Box3f> own;
     if (begin == end) return own;
@@ -47,7 +47,7 @@ RankCosts median(const std::vector<RankCosts>& runs) {
 
 namespace {
 
-/// One rank and its slice of a scene.
+/// One rank with its slice of a scene.
 class Measuring {
 public:
     Measuring(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop)
@@ -117,7 +117,7 @@ private:
         return engine_->find_pairs({std::span(own_), {}}, pairs_, options, stop_);
     }
 
-    /// Without taking time from a rank that is not there yet, as MPI's own barrier would.
+    /// Waits for all ranks. Unlike MPI's barrier, takes no processor time from ranks that are still computing.
     void wait_for_all() {
         constexpr auto nap = std::chrono::milliseconds(10);
         MPI_Request request = MPI_REQUEST_NULL;

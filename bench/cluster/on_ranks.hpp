@@ -1,4 +1,4 @@
-// The side of the ranks: the calls that are measured.
+// Measurement of calls on the ranks.
 #pragma once
 
 #include <mpi.h>
@@ -9,8 +9,9 @@
 
 namespace octopair::cluster {
 
-/// Collective: so many calls together, and each rank as many alone, after one that is not counted; each rank makes its slice
-/// of the scene. What the first rank returns has the costs of all. Pairs are listed in octal order, as ranks with one thread find them.
+/// Collective. Measures `rounds` calls of all ranks together, then as many of each rank alone, after one warm-up call.
+/// Each rank makes its slice of the scene. Rank 0 returns the costs of all ranks. Pairs are listed in octal order, by
+/// ranks with one thread.
 Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

@@ -1,4 +1,4 @@
-// A file of this process's, gone at its end: where a program that runs meanwhile leaves what it found.
+// Temporary file of this process, removed at its end: receives the results of a child program.
 #pragma once
 
 #include <unistd.h>

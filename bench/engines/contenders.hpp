@@ -1,4 +1,4 @@
-// The engines that octopair_engines compares, by name.
+// Engines that octopair_engines compares, by name.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,8 @@
 
 namespace octopair::bench {
 
-/// A scene's boxes where an engine's calls find them, and who keeps that memory: nobody where it is the caller's own.
+/// Boxes of a scene where the engine's calls read them, and the owner of that memory; no owner if the caller owns the
+/// memory.
 struct PlacedBoxes {
     std::span<const Box3f> boxes;
     std::shared_ptr<const void> keeper = {};
@@ -19,7 +20,7 @@ struct PlacedBoxes {
 
 struct Contender {
     std::string name;
-    std::function<std::unique_ptr<Engine>(unsigned width)> make;  ///< of so many threads or workers
+    std::function<std::unique_ptr<Engine>(unsigned width)> make;  ///< with `width` threads or workers
     std::function<PlacedBoxes(Engine&, std::span<const Box3f>)> place;
 };
 
@@ -27,7 +28,7 @@ inline const std::string local_name = "local";
 inline const std::string processes_name = "processes";
 inline const std::string paper_name = "processes, as in the paper";
 
-/// The first is believed.
+/// Returns all contenders. The pairs of the first contender are the reference.
 std::vector<Contender> contenders();
 
 }  // namespace octopair::bench

@@ -20,7 +20,7 @@ double timed(const Body& body) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// An engine with its boxes and its list.
+/// An engine with its boxes and its pair list.
 class Runner {
 public:
     Runner(const Contender& contender, std::span<const Box3f> boxes, unsigned width) {

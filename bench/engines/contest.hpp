@@ -1,7 +1,7 @@
-// One scene: all engines take turns, round by round, on the same boxes, and what they find is compared.
+// One scene: all engines take turns, round by round, on equal boxes, and their pairs are compared.
 //
-// Each engine and its list are kept from call to call. The first call of each is told apart: it meets memory that is new.
-// What is compared is not timed.
+// Each engine and its list are kept from call to call. The first call of each engine is recorded separately, because it
+// touches new memory. Comparison of pairs is not timed.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace octopair::bench {
 
-/// Of the medians of two engines: how many times as long as the other's, or how many seconds more.
+/// Comparison of the medians of two engines: their ratio, or their difference in seconds.
 enum class Measure : std::uint8_t { ratio, difference };
 
 struct Aim {
     std::string engine, against;
     Measure measure = Measure::ratio;
-    bool at_most = true;  ///< else at least
+    bool at_most = true;  ///< false: at least
     double bound = 1;
 };
 
@@ -34,23 +34,23 @@ struct Contest {
 
 struct Entrant {
     std::string engine;
-    double start_seconds = 0;  ///< to make it
-    double first_seconds = 0;  ///< the first call
+    double start_seconds = 0;  ///< start of the engine
+    double first_seconds = 0;  ///< first call
     std::vector<double> seconds;
     std::uint64_t pairs = 0;
-    bool agrees = true;  ///< with the first engine, pair by pair
+    bool agrees = true;  ///< equal to the first engine, pair by pair
 
     double median() const;
 };
 
-/// What an aim bounds. Throws std::out_of_range for an engine that is not there.
+/// Returns the quantity that an aim bounds. Throws: std::out_of_range for an unknown engine.
 double reached(const Aim& aim, const std::vector<Entrant>& entrants);
 bool kept(const Aim& aim, const std::vector<Entrant>& entrants);
 
-/// With so many rounds for the large scenes; the small ones have ten times as many.
+/// Returns all contests, with `rounds` rounds for large scenes and ten times as many for small scenes.
 std::vector<Contest> contests(unsigned rounds);
 
-/// In the order of contenders(), each with `width` threads or workers.
+/// Runs a contest with `width` threads or workers per engine. Returns the entrants in the order of contenders().
 std::vector<Entrant> hold(const Contest& contest, unsigned width);
 
 }  // namespace octopair::bench

@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned calls = 5;
 
-/// The proportional set size of one process; 0 if it is not to be seen.
+/// Returns the proportional set size of one process, or 0 if the size cannot be read.
 double bytes_of(const std::string& process) {
     std::ifstream rollup("/proc/" + process + "/smaps_rollup");
     for (std::string line; std::getline(rollup, line);) {
@@ -28,7 +28,7 @@ double bytes_of(const std::string& process) {
     return 0;
 }
 
-/// Of this process and its children.
+/// Returns the sum over this process and its children.
 double bytes_of_all() {
     double bytes = bytes_of("self");
     for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -38,7 +38,7 @@ double bytes_of_all() {
     return bytes;
 }
 
-/// Looks again and again from a thread of its own.
+/// Samples the memory repeatedly on its own thread.
 class Watch {
 public:
     Watch() : thread_([this] { look(); }) {}

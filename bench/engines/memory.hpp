@@ -1,8 +1,9 @@
-// The memory of an engine: of the application and its worker processes together, beyond boxes and pairs.
+// Memory of an engine: of the application and its worker processes together, beyond boxes and pairs.
 //
-// Each case is measured by an application of its own. What counts is the proportional set size of that process and of its
-// children: each page that is there, once, however many of them map it. Boxes count where the application made them, so a
-// copy of them is the engine's; pairs are 8 bytes each, and what a list takes beyond that is the engine's as well.
+// A separate application process measures each case. The measure is the sum of proportional set sizes of that process
+// and its children: each resident page counts once, however many processes map the page. Only the application's own
+// boxes are subtracted, so a copy of the boxes counts for the engine. Pairs are subtracted with 8 bytes each; the rest
+// of a list counts for the engine.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +14,29 @@
 
 namespace octopair::bench {
 
-constexpr double most_engine_bytes = 80;  ///< an object, in all processes of the process engine
+constexpr double most_engine_bytes = 80;  ///< per object, over all processes of the process engine
 
 struct EngineMemoryCase {
-    std::string engine;  ///< by its name among contenders()
+    std::string engine;  ///< name in contenders()
     std::string kind;
     std::uint64_t objects;
     Order order;
 };
 
-/// In bytes, beyond boxes and pairs.
+/// Bytes beyond boxes and pairs.
 struct EngineMemoryUse {
     std::uint64_t pairs = 0;
-    double idle = 0;     ///< once the engine is made, before its first call
+    double idle = 0;     ///< after the start of the engine, before its first call
     double kept = 0;     ///< after the calls, by the engine and its list
-    double highest = 0;  ///< during the calls, as often as it could be looked at
+    double highest = 0;  ///< highest sample during the calls
 
-    /// Whether one can look at all: not every system shows what processes share.
+    /// Returns whether memory could be measured: not every system reports shared pages.
     bool known() const { return kept > 0; }
 };
 
 std::vector<EngineMemoryCase> engine_memory_cases();
 
-/// Forks, so it is to be called while the process has one thread. Throws std::runtime_error if the other process fails.
+/// Forks. Requires: the process has one thread. Throws: std::runtime_error if the child process fails.
 EngineMemoryUse measure_memory(const EngineMemoryCase& which, unsigned width);
 
 }  // namespace octopair::bench

@@ -1,4 +1,4 @@
-// The cases of octopair_frames: how many objects, how many of them move, who keeps track, and what is aimed at.
+// Cases of octopair_frames: number of objects, share that moves, trackers and goals.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace octopair::bench {
 
 enum class Statistic : std::uint8_t { median, slowest };
 
-/// A statistic of one tracker over the median of another, the fastest of several.
+/// Bound of a statistic of one tracker over the median of another tracker: the fastest of several.
 struct Goal {
     std::string tracker;
     Statistic statistic;
@@ -19,10 +19,10 @@ struct Goal {
 
 struct FrameCase {
     std::string name;
-    std::uint64_t objects;  ///< of the kind uniform
-    double share;           ///< of them move in a frame
+    std::uint64_t objects;  ///< boxes of the kind uniform
+    double share;           ///< share of the objects that moves in a frame
     unsigned threads;
-    std::vector<std::string> trackers;  ///< the first is believed
+    std::vector<std::string> trackers;  ///< the first is the reference
     std::vector<Goal> goals;
 };
 

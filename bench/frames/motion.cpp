@@ -41,7 +41,8 @@ Motion::Motion(std::vector<Box3f> boxes, double share)
     }
 }
 
-/// Knuth's selection sampling: each set of so many objects is as likely, and comes out ascending.
+/// Draws the moving objects by Knuth's selection sampling: each set of that size is equally likely, and the result
+/// ascends.
 void Motion::draw_movers() {
     std::size_t drawn = 0;
     for (std::uint32_t i = 0; drawn < moved_.size(); ++i) {

@@ -1,8 +1,8 @@
 // Motion: boxes that move slightly from frame to frame.
 //
-// An object has a direction of its own, which it keeps: on each axis up to 10% of its size a frame, either way. Where a step
-// would leave the world, the bounds of all boxes at first, the object turns back on that axis. If not all move, those that do
-// are drawn afresh for each frame. The same seed gives the same frames on every machine.
+// Each object keeps a fixed step per frame: on each axis up to 10% of its size, in either direction. The world is the
+// bounds of all initial boxes; an object turns back on an axis where a step would leave the world. If only a share
+// moves, each frame draws new movers. Equal seeds give equal frames on every machine.
 #pragma once
 
 #include <vector>
@@ -14,14 +14,14 @@ namespace octopair::bench {
 
 class Motion {
 public:
-    /// `share` of the objects move in a frame, 0 to 1.
+    /// `share`: part of the objects that moves in a frame, 0 to 1.
     Motion(std::vector<Box3f> boxes, double share);
 
-    /// Before the first call of next(), the first frame.
+    /// Returns the current boxes: of the first frame before the first call of next().
     std::span<const Box3f> boxes() const { return boxes_; }
-    /// Objects that move in a frame.
+    /// Returns the number of objects that move in a frame.
     std::size_t movers() const { return moved_.size(); }
-    /// Moves on; what it returns is valid until the next call.
+    /// Advances by a frame. The result is valid until the next call.
     Frame next();
 
 private:

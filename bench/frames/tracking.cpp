@@ -54,7 +54,7 @@ std::vector<Runner> make_runners(const FrameCase& which) {
     return runners;
 }
 
-/// The first runner's pairs are what the others' are held against.
+/// Compares the pairs of all runners with the pairs of the first runner.
 void judge(std::vector<Runner>& runners) {
     const Found expected = runners.front().tracker->found();
     for (Runner& runner : runners) {
@@ -76,7 +76,8 @@ void run_frame(std::vector<Runner>& runners, const Frame& frame) {
     }
 }
 
-/// Who has missed a frame cannot go on, so it ends for good. The first one stays: it is needed to judge the others.
+/// Stops slow trackers. A tracker that missed a frame cannot continue. The first tracker is the reference and always
+/// stays.
 void end_slow(std::vector<Runner>& runners, const FramePlan& plan) {
     for (std::size_t i = 1; i < runners.size(); ++i) {
         Runner& runner = runners[i];

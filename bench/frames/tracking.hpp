@@ -1,6 +1,6 @@
-// One case: all trackers take turns, frame by frame, on the same boxes; each frame's pairs are compared.
+// One case: all trackers take turns, frame by frame, on equal boxes, and the pairs of each frame are compared.
 //
-// The first frame, in which a tracker takes the objects in, is not counted. What is compared is not timed.
+// The first frame, which inserts the objects, is not counted. Comparison of pairs is not timed.
 #pragma once
 
 #include <functional>
@@ -14,33 +14,33 @@ namespace octopair::bench {
 struct FramePlan {
     unsigned frames = 100;  ///< after the first
     unsigned least_frames = 10;
-    double most_seconds = 30;  ///< after which a peer ends, but not before `least_frames`
+    double most_seconds = 30;  ///< a slower peer stops, after `least_frames` at least
 };
 
-/// `processor`: of all threads of this process. Where others use the machine as well it says more of a frame that takes
-/// longer than a turn on the processor.
+/// `processor`: processor time of all threads of this process. More reliable for long frames when other programs use
+/// the machine.
 enum class Clock : std::uint8_t { wall, processor };
 
 struct Track {
     std::string tracker;
     double first_seconds = 0;
     std::vector<double> seconds;            ///< of each frame after the first, wall clock
-    std::vector<double> processor_seconds;  ///< likewise
-    std::uint64_t pairs = 0;                ///< of its last frame
-    std::uint64_t differing = 0;            ///< frames in which it found other pairs than the first tracker
-    std::uint64_t differs_pairs = 0;        ///< what it found in the first of these
+    std::vector<double> processor_seconds;  ///< of each frame after the first, processor time
+    std::uint64_t pairs = 0;                ///< of the last frame
+    std::uint64_t differing = 0;            ///< frames with other pairs than the first tracker's
+    std::uint64_t differs_pairs = 0;        ///< pairs found in the first differing frame
 
-    /// The time that `share` of the frames do not exceed: 0.5 for the median, 1 for the slowest.
+    /// Returns the time that `share` of the frames do not exceed: 0.5 for the median, 1 for the slowest.
     double quantile(double share, Clock clock = Clock::wall) const;
 };
 
-/// How far a goal is reached: the ratio that it bounds. Throws std::out_of_range for a tracker that is not there.
+/// Returns the ratio that a goal bounds. Throws: std::out_of_range for an unknown tracker.
 double reached(const Goal& goal, const std::vector<Track>& tracks, Clock clock = Clock::wall);
 
-/// Is told what has just been done.
+/// Receives the step that has just finished.
 using TrackingProgress = std::function<void(std::string_view)>;
 
-/// In the order of the case's trackers.
+/// Runs a case. Returns tracks in the order of the case's trackers.
 std::vector<Track> track(const FrameCase& which, const FramePlan& plan, const TrackingProgress& progress);
 
 }  // namespace octopair::bench

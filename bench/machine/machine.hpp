@@ -1,12 +1,12 @@
-// What measured: the machine and the build, as files of results say it.
+// Machine and build of a measurement, for files of results.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace octopair::bench {
 
-/// `version`, `commit` ("unknown" where it was not built from one), `compiler`, `processor`, `cores`. No date: the same
-/// build on the same machine says the same.
+/// Returns `version`, `commit` ("unknown" outside a git checkout), `compiler`, `processor` and `cores`. No date:
+/// results of equal builds on one machine are equal.
 nlohmann::ordered_json machine_json();
 
 }  // namespace octopair::bench

@@ -13,7 +13,7 @@ double root_mean_square(std::span<const double> values) {
     return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
 }
 
-/// The `a` that makes the sum of (a f(n) / t - 1)^2 least.
+/// Returns the `a` that minimises the sum of (a f(n) / t - 1)^2.
 template <typename Function>
 Fit fit_function(std::span<const Sample> samples, const Function& function) {
     std::vector<double> ratios;

@@ -10,16 +10,16 @@
 
 namespace octopair::paper {
 
-/// The middle one; of an even number, the upper of the two in the middle. 0 of none.
+/// Returns the median: the upper of the two middle values for an even number, 0 for no values.
 double median(std::vector<double> values);
-/// The median distance from the median, as a part of it.
+/// Returns the median distance from the median, relative to the median.
 double relative_spread(const std::vector<double>& values);
 
 /// One point of a curve; objects >= 2, seconds > 0.
 struct Sample {
     double objects;
     double seconds;
-    double spread;  ///< relative, of the runs behind it
+    double spread;  ///< relative spread of the runs of this point
 };
 
 struct Fit {
@@ -32,14 +32,14 @@ enum class Growth : std::uint8_t { linear, n_log_n, unclear };
 struct Fits {
     Fit linear;
     Fit n_log_n;
-    double spread = 0;                ///< root mean square of the samples'
-    Growth growth = Growth::unclear;  ///< the smaller residual, unless they differ by less than the spread
+    double spread = 0;                ///< root mean square of the samples' spreads
+    Growth growth = Growth::unclear;  ///< fit with smaller residual; unclear if both differ by less than the spread
 };
 
-/// Of one sample or none the growth is unclear.
+/// Fits both curves. With fewer than two samples the growth is unclear.
 Fits fit(std::span<const Sample> samples);
 
-/// "a n", "a n log2 n", "cannot tell".
+/// Returns "a n", "a n log2 n" or "cannot tell".
 std::string_view growth_text(Growth growth);
 
 }  // namespace octopair::paper

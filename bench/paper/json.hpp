@@ -1,4 +1,4 @@
-// A study as JSON (docs/formats.md): every time that was measured, and what follows from them.
+// Study as JSON (docs/formats.md): every measured time, and derived quantities.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace octopair::paper {
 
-/// One object, ended by a newline.
+/// Returns one JSON object, ended by a newline.
 std::string study_json(const Study& study);
 
 }  // namespace octopair::paper

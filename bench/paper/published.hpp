@@ -1,4 +1,4 @@
-// The figures that the paper gives.
+// Times published in the paper.
 //
 // Source: Lucchesi, Egbert, Harris 2014, sections 5.2 (tables 1 and 2) and 5.3 (components).
 #pragma once
@@ -10,7 +10,7 @@
 namespace octopair::paper {
 
 struct PublishedTime {
-    unsigned processors;  ///< two on each machine, but for the first row
+    unsigned processors;  ///< two on each machine, except in the first row
     std::uint64_t microseconds;
 };
 
@@ -26,7 +26,7 @@ inline constexpr std::array<PublishedTable, 2> published_tables = {{
      {{{1, 59'706'876}, {2, 31'332'310}, {10, 7'215'860}, {20, 4'298'207}, {30, 3'331'193}, {40, 2'889'864}}}},
 }};
 
-/// The rows for so many objects; empty if the paper has none.
+/// Returns the rows for this number of objects; empty if the paper has no rows for this number.
 constexpr std::span<const PublishedTime> published_times(std::uint64_t objects) {
     for (const PublishedTable& table : published_tables) {
         if (table.objects == objects) return table.times;
@@ -34,8 +34,8 @@ constexpr std::span<const PublishedTime> published_times(std::uint64_t objects) 
     return {};
 }
 
-/// Microseconds. The paper does not say of how many objects; the sum is close to its time for 2,000,000. It gives none
-/// for the scan.
+/// Times of the components, in microseconds. The paper does not give the number of objects; the sum is close to its
+/// time for 2,000,000 objects. The paper gives no time for the scan.
 struct PublishedComponents {
     unsigned processors;
     std::uint64_t octal_codes;    ///< ResolveObject() on a slave

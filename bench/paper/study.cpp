@@ -37,7 +37,7 @@ public:
     Runner(const Runner&) = delete;
     Runner& operator=(const Runner&) = delete;
     virtual ~Runner() = default;
-    /// `level` is that of the paper's octree.
+    /// `level`: depth of the paper's octree.
     virtual Outcome run(std::span<const Box3f> boxes, unsigned level) = 0;
 };
 
@@ -59,7 +59,7 @@ private:
     PaperSettings settings_;
 };
 
-/// In octal order, into a list that is used again.
+/// Finds pairs in octal order, into a reused list.
 class OctopairRunner final : public Runner {
 public:
     OctopairRunner(unsigned threads, std::stop_token stop)

@@ -32,7 +32,7 @@ std::string figure_text(const Study& study) {
     return text + '\n';
 }
 
-/// A time, its speedup and its efficiency, in 36 columns; blanks where there is no time.
+/// Formats a time, its speedup and its efficiency in 36 columns; blanks without a time.
 std::string speedup_cells(const std::optional<TimedRun>& run, double serial_seconds) {
     if (!run) return fmt::format("{:>36}", "-");
     if (run->processors == 1) return fmt::format("{:>14}{:>10}{:>12}", microseconds(run->seconds), "-", "-");
@@ -41,7 +41,7 @@ std::string speedup_cells(const std::optional<TimedRun>& run, double serial_seco
                        speedup.efficiency * 100);
 }
 
-/// The times of one table by processors: the paper's figures, its algorithm here, octopair.
+/// Times of one table by processors: the paper's figures, its algorithm on this machine, and octopair.
 class SpeedupTable {
 public:
     SpeedupTable(const Study& study, std::uint64_t objects) : study_(study), objects_(objects) {}
@@ -61,7 +61,7 @@ public:
     }
 
 private:
-    /// Every number of processors, with the paper's; those of several machines by themselves.
+    /// Returns every number of processors, with the paper's numbers; setups of several machines have their own rows.
     std::vector<Setup> rows() const {
         std::vector<Setup> rows;
         rows.reserve(study_.series.size() + published_times(objects_).size());

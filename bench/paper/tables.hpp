@@ -1,4 +1,4 @@
-// A study as text: figure 5, tables 1 and 2, the components, the fits; the paper's own figures beside.
+// Study as text: figure 5, tables 1 and 2, the components and the fits, next to the paper's own figures.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace octopair::paper {
 
-/// 1234567 as "1,234,567".
+/// Formats 1234567 as "1,234,567".
 std::string grouped(std::uint64_t number);
 std::string microseconds(double seconds);
 
-/// How a parallel run compares with the serial one of the same algorithm (the paper's section 5.2).
+/// Comparison of a parallel run with the serial run of the same algorithm (the paper's section 5.2).
 struct Speedup {
     double speedup;     ///< serial time / parallel time
     double efficiency;  ///< speedup / processors
@@ -22,13 +22,14 @@ struct TimedRun {
     unsigned processors;
 };
 
-/// Both times are above 0.
+/// Requires: both times are above 0.
 Speedup speedup_of(const TimedRun& run, double serial_seconds);
 
-/// The numbers of objects that get a table of speedups: the paper's, as far as they were measured; else the largest.
+/// Returns the numbers of objects that have a table of speedups: the paper's numbers that were measured, else the
+/// largest.
 std::vector<std::uint64_t> table_objects(const Study& study);
 
-/// Several lines, each ended. Times of tables and components are in microseconds, as in the paper.
+/// Returns lines, each ended by a newline. Tables and components are in microseconds, like in the paper.
 std::string study_text(const Study& study);
 
 }  // namespace octopair::paper

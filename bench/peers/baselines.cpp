@@ -1,4 +1,4 @@
-// The project's own baselines (baselines/baselines.hpp).
+// Contenders for the project's own baselines (baselines/baselines.hpp).
 #include "baselines/baselines.hpp"
 
 #include "peers/contender.hpp"
@@ -16,7 +16,7 @@ private:
     unsigned threads_;
 };
 
-/// At its best fixed depth for the scene.
+/// Paper's algorithm at its best fixed depth for the scene.
 class Paper : public CollectingContender {
 public:
     explicit Paper(unsigned threads) { settings_.slaves_per_machine = threads; }

@@ -1,4 +1,4 @@
-// Boost.Geometry's R-tree, packed; each box asks for those after it.
+// Boost.Geometry's R-tree, packed. Each box queries the tree for later boxes.
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <iterator>

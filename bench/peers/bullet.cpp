@@ -15,7 +15,7 @@ std::uint32_t object(const btBroadphaseProxy* proxy) {
     return std::uint32_t(reinterpret_cast<std::uintptr_t>(proxy->m_clientObject));
 }
 
-/// A broadphase with its cache of pairs, and a proxy for each box.
+/// Broad phase with its pair cache, and a proxy for each box.
 class BulletWorld {
 public:
     BulletWorld(std::span<const Box3f> boxes, bool deferred) : broadphase_(&cache_), proxies_(boxes.size()) {
@@ -62,8 +62,8 @@ public:
     }
 };
 
-/// Its cache holds the pairs of boxes that were widened, and drops those that are over little by little; so each is judged
-/// by the proxies' own boxes on its way into the list.
+/// Bullet's cache holds pairs of enlarged boxes, and drops ended pairs only gradually. Each pair is therefore tested
+/// with the proxies' own boxes before it enters the list.
 template <bool deferred>
 class BulletTracker : public CollectingTracker {
 public:
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    /// Bullet's own 0.05 is meant for objects of about 1.
+    /// Returns a margin in proportion to the objects: Bullet's default of 0.05 is meant for objects of size about 1.
     static btScalar margin_for(std::span<const Box3f> boxes) {
         double sides = 0;
         for (const Box3f& box : boxes) sides += double(box.max[0]) - double(box.min[0]);

@@ -1,5 +1,5 @@
-// CGAL's box_self_intersection_d (Zomorodian and Edelsbrunner's hybrid algorithm), serial and parallel. GPL: here alone,
-// never in what is shipped.
+// CGAL's box_self_intersection_d (Zomorodian and Edelsbrunner's hybrid algorithm), serial and parallel. GPL: used only
+// here, never in installed code.
 #define CGAL_LINKED_WITH_TBB
 #include <CGAL/Box_intersection_d/Box_d.h>
 #include <CGAL/box_intersection_d.h>
@@ -12,7 +12,7 @@ namespace octopair::bench {
 
 namespace {
 
-/// A box that knows its object.
+/// Box with the number of its object.
 struct NumberedBox : CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::ID_EXPLICIT> {
     using Base = CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::ID_EXPLICIT>;
     NumberedBox(const float* min, const float* max, std::uint32_t number)

@@ -51,7 +51,7 @@ std::vector<Runner> make_runners(const Scene& scene, const ComparisonPlan& plan)
     return runners;
 }
 
-/// What it found is compared with `expected`, or becomes it.
+/// Runs a contender once. Compares its pairs with `expected`, or sets `expected`.
 void run_first(Runner& runner, std::span<const Box3f> boxes, std::optional<Found>& expected) {
     try {
         runner.contender->prepare(boxes);
@@ -67,7 +67,7 @@ void run_first(Runner& runner, std::span<const Box3f> boxes, std::optional<Found
     runner.row.agrees = found == *expected || (found.hash == 0 && found.pairs == expected->pairs);
 }
 
-/// Those that have had their share of time rest.
+/// Runs each contender that has not yet used its time.
 void run_round(std::vector<Runner>& runners, std::span<const Box3f> boxes, const ComparisonPlan& plan) {
     for (Runner& runner : runners) {
         const bool rests = runner.row.seconds.size() >= plan.least_rounds && runner.spent > plan.most_seconds;

@@ -1,6 +1,6 @@
-// One scene, all contenders: they take turns, round by round, so that what else the machine does meets them alike.
+// One scene, all contenders: they take turns, round by round, so that other load on the machine affects all equally.
 //
-// The first run of each is not counted. Slow contenders run less often: until they have had their share of time.
+// The first run of each contender is not counted. Slow contenders run less often, because each has a limit of time.
 #pragma once
 
 #include <functional>
@@ -15,17 +15,17 @@ namespace octopair::bench {
 
 struct ComparisonPlan {
     std::vector<std::string> only;  ///< contenders by name; empty: all
-    unsigned threads = 1;           ///< contenders that cannot use more than one are left out of more
+    unsigned threads = 1;           ///< above 1, contenders with one thread are left out
     unsigned rounds = 7;
     unsigned least_rounds = 3;
-    double most_seconds = 20;  ///< after which a contender rests, but not before `least_rounds`
-    bool first = false;        ///< nothing but the first run
+    double most_seconds = 20;  ///< time limit of a contender, after `least_rounds` at least
+    bool first = false;        ///< only the first run
 };
 
 enum class RowState : std::uint8_t {
     measured,
-    out_of_memory,  ///< some algorithms hold all candidates
-    left_out        ///< too many objects for it (ContenderKind::most_objects)
+    out_of_memory,  ///< for algorithms that hold all candidates
+    left_out        ///< too many objects (ContenderKind::most_objects)
 };
 
 struct Row {
@@ -36,15 +36,15 @@ struct Row {
     double first_seconds = 0;
     std::vector<double> seconds;  ///< in the order of the rounds
     Found found;
-    bool agrees = true;  ///< with the first contender; a limit finds nothing and agrees
+    bool agrees = true;  ///< equal to the first contender; true for a limit, which finds no pairs
 
     double median() const;
 };
 
-/// Is told what has just been done.
+/// Receives the step that has just finished.
 using ComparisonProgress = std::function<void(std::string_view)>;
 
-/// In the order of contender_kinds(); empty if no contender was asked for.
+/// Returns rows in the order of contender_kinds(); empty if no contender was selected.
 std::vector<Row> compare(const Scene& scene, const ComparisonPlan& plan, const ComparisonProgress& progress);
 
 }  // namespace octopair::bench

@@ -6,7 +6,7 @@ namespace octopair::bench {
 
 namespace {
 
-/// The finalizer of MurmurHash3: every bit of the key reaches every bit of the result.
+/// Finalizer of MurmurHash3: every bit of the key affects every bit of the result.
 std::uint64_t mixed(std::uint64_t key) {
     key = (key ^ key >> 33) * 0xFF51AFD7ED558CCDull;
     key = (key ^ key >> 33) * 0xC4CEB9FE1A85EC53ull;

@@ -1,8 +1,8 @@
-// Contender: one way to find all pairs of a set of boxes, as the comparisons run it.
+// Contender: one way to find all pairs of a set of boxes, for the comparisons.
 //
-// A contender takes the caller's boxes as they are, so that what it needs to make of them first (trees, copies, sorted
-// lists) is in its time, as it is in a user's. It keeps its memory from run to run. Each must find the same pairs: touching
-// counts, each once; found() tells, by a sum of hashes that does not depend on the order.
+// A contender takes the caller's boxes unchanged, so its time includes building trees, copies and sorted lists, like a
+// user's time. Each contender keeps its memory from run to run. All contenders must find equal pairs: touching counts,
+// and each pair counts once. found() verifies this by a sum of hashes that does not depend on the order.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Found {
     bool operator==(const Found&) const = default;
 };
 
-/// Adds pairs, in any order and either way round.
+/// Adds pairs, in any order, as (a, b) or (b, a).
 void add(Found& found, std::span<const Pair> pairs);
 
 class Contender {
@@ -32,11 +32,11 @@ public:
     Contender& operator=(const Contender&) = delete;
     virtual ~Contender() = default;
 
-    /// Chooses what suits the boxes best, before the first run with them; not timed.
+    /// Selects the best settings for the boxes before the first run. Not timed.
     virtual void prepare(std::span<const Box3f>) {}
-    /// What is timed: from boxes in memory to pairs in memory.
+    /// The timed part: from boxes in memory to pairs in memory.
     virtual void run(std::span<const Box3f> boxes) = 0;
-    /// What the last run found.
+    /// Returns the number and the hash of the pairs of the last run.
     virtual Found found() const = 0;
 };
 
@@ -53,13 +53,13 @@ inline constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::
 
 struct ContenderKind {
     std::string name;
-    bool threads;  ///< can use more than one
-    bool limit;    ///< what the hardware allows: finds nothing
+    bool threads;  ///< true: can use several threads
+    bool limit;    ///< true: measures a hardware limit, finds no pairs
     std::unique_ptr<Contender> (*make)(unsigned threads);
-    std::uint64_t most_objects = any_number;  ///< with more it takes minutes: run only where it is asked for by name
+    std::uint64_t most_objects = any_number;  ///< more take minutes, and run only if selected by name
 };
 
-/// Ours, the baselines, and every peer that this build has.
+/// Returns octopair, the baselines, and every peer in this build.
 std::vector<ContenderKind> contender_kinds();
 
 // A file each; empty where the library is not there.

@@ -1,4 +1,4 @@
-// Embree's rtcCollide on user geometry, with its fast (Morton) and its good (surface area heuristic) builder.
+// Embree's rtcCollide on user geometry, with the fast builder (Morton) and the good builder (surface area heuristic).
 #include <embree3/rtcore.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
@@ -49,7 +49,8 @@ private:
         to.upper_z = box.max[2];
     }
 
-    /// Its candidates come both ways round, and a leaf with itself: kept are those with a < b whose boxes overlap.
+    /// Embree reports candidates in both directions, and a leaf with itself. Keeps those with a < b whose boxes
+    /// overlap.
     static void collide(void* self, RTCCollision* collisions, unsigned count) {
         Embree& embree = *static_cast<Embree*>(self);
         std::vector<Pair>& found = embree.found_.local();

@@ -1,5 +1,5 @@
-// FCL's dynamic AABB trees (in an array, in Morton order; and of nodes) and its sweep and prune: all pairs at once, and
-// frame by frame.
+// FCL's dynamic AABB trees (array in Morton order, and tree of nodes) and its sweep and prune: all pairs of one scene,
+// and frame by frame.
 #include <fcl/broadphase/broadphase_SaP.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
@@ -13,7 +13,7 @@ namespace octopair::bench {
 
 namespace {
 
-/// A shape that is nothing but its bounds: a box of FCL's would be rounded to centre and sides.
+/// Shape that consists only of its bounds. FCL's own box would be rounded to centre and sides.
 class Bounds : public fcl::CollisionGeometryd {
 public:
     explicit Bounds(const Box3f& box) { set(box); }
@@ -35,7 +35,7 @@ bool keep(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* pairs) {
     return false;
 }
 
-/// A manager, and an object for each box.
+/// Manager with an object for each box.
 template <typename Manager>
 class FclWorld {
 public:
@@ -54,7 +54,7 @@ public:
         manager_.setup();
     }
 
-    /// Where all have moved the tree is fitted anew as a whole; else the objects are put to other places of it.
+    /// Moves the objects of a frame. If all moved, refits the whole tree; else moves single objects within the tree.
     void next(const Frame& frame) {
         moved_.clear();
         for (std::size_t i = 0; i < frame.moved.size(); ++i) {

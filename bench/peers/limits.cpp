@@ -1,4 +1,4 @@
-// What the hardware allows: a copy of the boxes, one radix sort of (30-bit key, index), and writing a pair an object.
+// Limits of the hardware: a copy of the boxes, one radix sort of (30-bit key, index), and one written pair per object.
 #include <array>
 #include <utility>
 

@@ -1,5 +1,5 @@
-// Ours: the timed call is find_pairs in octal order into a reused list; besides, ascending order and counting. Frame by
-// frame: scenes, and a full detection of every frame.
+// octopair as contender and tracker. The timed call is find_pairs in octal order into a reused list; variants sort in
+// ascending order or count. Frame by frame: scenes, and full detection of every frame.
 #include "octopair/octopair.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ private:
     PairList pairs_;
 };
 
-/// Finds the same number, and no pairs whose hash could be compared.
+/// Counts pairs without a list, so there is no hash to compare.
 class OursCounting : public Contender {
 public:
     explicit OursCounting(unsigned threads) : engine_(make_local_engine(threads)) {}
@@ -43,7 +43,7 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
-/// The same boxes in float64, converted on the first run.
+/// Uses equal boxes in float64, converted on the first run.
 class OursWide : public Ours {
 public:
     explicit OursWide(unsigned threads) : Ours(threads, Order::octal) {}
@@ -66,7 +66,8 @@ private:
     std::vector<Box3d> wide_;
 };
 
-/// move() and step(), which say what began and ended; the whole list is not asked for, so there is no hash to compare.
+/// Calls move() and step(), which report pairs that began and ended. Builds no full list, so there is no hash to
+/// compare.
 class SceneSteps : public Tracker {
 public:
     explicit SceneSteps(unsigned threads) : scene_({.threads = threads}) {}
@@ -91,7 +92,7 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
-/// And pairs(): the whole list.
+/// Also calls pairs(), which returns the whole list.
 class ScenePairs : public SceneSteps {
 public:
     using SceneSteps::SceneSteps;
@@ -113,7 +114,7 @@ private:
     const PairList* list_ = nullptr;
 };
 
-/// Every frame as if it were the first.
+/// Runs a full detection in every frame.
 class FullDetection : public Tracker {
 public:
     explicit FullDetection(unsigned threads) : ours_(threads, Order::ascending) {}

@@ -1,4 +1,4 @@
-// ODE's hash space, all pairs at once, and this and its sweep and prune space frame by frame.
+// ODE's hash space for all pairs of one scene; hash space and sweep and prune space frame by frame.
 #include <ode/ode.h>
 
 #include "peers/contender.hpp"
@@ -8,7 +8,7 @@ namespace octopair::bench {
 
 namespace {
 
-/// A class of geometry that is nothing but its bounds.
+/// Registers a class of geometry that consists only of its bounds.
 int bounds_class() {
     static const int number = [] {
         dGeomClass bounds{};
@@ -41,7 +41,7 @@ void keep(void* pairs, dGeomID a, dGeomID b) {
 dSpaceID make_hash_space() { return dHashSpaceCreate(nullptr); }
 dSpaceID make_sweep_and_prune_space() { return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ); }
 
-/// A space, and a geometry for each box; the boxes must stay where they are.
+/// ODE space with a geometry for each box. Requires: the boxes stay at their place in memory.
 class OdeWorld {
 public:
     OdeWorld(std::span<const Box3f> boxes, dSpaceID space) : space_(space), geometries_(boxes.size()) {
@@ -56,7 +56,7 @@ public:
     OdeWorld& operator=(const OdeWorld&) = delete;
     ~OdeWorld() { dSpaceDestroy(space_); }
 
-    /// A geometry that is given a position has its bounds asked for when the space collides next.
+    /// Sets positions of moved geometries. ODE queries their bounds at the next collision test of the space.
     void next(const Frame& frame) {
         for (std::size_t i = 0; i < frame.moved.size(); ++i) {
             const float* const at = frame.moved_boxes[i].min;

@@ -24,7 +24,7 @@ std::vector<Box3f> boxes_of(const io::LoadedScene& scene) {
     return boxes;
 }
 
-/// Scenes side by side along x, a tenth of the largest apart.
+/// Places scenes next to each other along x, with gaps of a tenth of the largest scene.
 Scene side_by_side(const std::vector<Scene>& scenes) {
     Scene all{"all inputs side by side", {}};
     std::size_t objects = 0;

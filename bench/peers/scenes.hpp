@@ -1,4 +1,4 @@
-// The scenes of a comparison: generated ones and files, as float32 boxes.
+// Scenes of a comparison, generated or read from files, as float32 boxes.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ struct Scene {
 };
 
 struct SceneRequest {
-    std::vector<std::string> kinds;      ///< of samples/scenes.hpp, seed 1
-    std::vector<std::uint64_t> objects;  ///< of each kind
-    std::vector<std::string> inputs;  ///< files of boxes, spheres or triangles; several also side by side as one scene
+    std::vector<std::string> kinds;      ///< kinds of samples/scenes.hpp, seed 1
+    std::vector<std::uint64_t> objects;  ///< numbers of objects for each kind
+    std::vector<std::string> inputs;  ///< files of boxes, spheres or triangles; several files also form a joint scene
 };
 
-/// Hands out one scene after the other; the generated ones are not kept. Throws what making and reading scenes throws.
+/// Calls `body` for one scene after the other, and does not keep generated scenes. Throws: errors of making and reading
+/// scenes.
 void for_each_scene(const SceneRequest& request, const std::function<void(const Scene&)>& body);
 
 }  // namespace octopair::bench

@@ -1,19 +1,19 @@
-// Tracker: one way to know all pairs of a set of boxes that move from frame to frame, as octopair_frames runs it.
+// Tracker: one way to maintain all pairs of a set of moving boxes from frame to frame, for octopair_frames.
 //
-// A tracker keeps what it has built between frames and is told what moved, as its users would tell it. After each frame the
-// whole list of pairs lies in memory, unless its name says otherwise. Each must find the same pairs as a full detection of
-// the frame's boxes.
+// A tracker keeps its data structures between frames and receives the moved objects of each frame. After each frame the
+// whole list of pairs is in memory, unless the tracker's name says otherwise. Each tracker must find the pairs that
+// full detection finds.
 #pragma once
 
 #include "peers/contender.hpp"
 
 namespace octopair::bench {
 
-/// Boxes of one moment; borrowed, at the same place in every frame of a motion.
+/// Boxes of one frame. Borrowed; the memory stays in place for all frames of a motion.
 struct Frame {
     std::span<const Box3f> boxes;          ///< of all objects
-    std::span<const std::uint32_t> moved;  ///< the objects that have moved since the frame before, ascending
-    std::span<const Box3f> moved_boxes;    ///< the new boxes of these, in this order
+    std::span<const std::uint32_t> moved;  ///< objects that moved since the frame before, ascending
+    std::span<const Box3f> moved_boxes;    ///< new boxes of `moved`, in the order of `moved`
 
     bool all_moved() const { return moved.size() == boxes.size(); }
 };
@@ -25,11 +25,11 @@ public:
     Tracker& operator=(const Tracker&) = delete;
     virtual ~Tracker() = default;
 
-    /// The first frame: takes all objects in, and finds their pairs. Called once.
+    /// Inserts all objects of the first frame and finds their pairs. Called once.
     virtual void begin(std::span<const Box3f> boxes) = 0;
-    /// A further frame: what is timed.
+    /// Processes a further frame. This call is timed.
     virtual void next(const Frame& frame) = 0;
-    /// What the last frame found; a hash of 0 from one that only counts.
+    /// Returns the number and the hash of the last frame's pairs; hash 0 from a tracker that only counts.
     virtual Found found() const = 0;
 };
 
@@ -44,11 +44,11 @@ protected:
 
 struct TrackerKind {
     std::string name;
-    bool threads;  ///< can use more than one
+    bool threads;  ///< true: can use several threads
     std::unique_ptr<Tracker> (*make)(unsigned threads);
 };
 
-/// Ours first, then every peer that this build has.
+/// Returns octopair's trackers, then every peer in this build.
 std::vector<TrackerKind> tracker_kinds();
 
 // A file each, that of the contenders.

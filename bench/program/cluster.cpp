@@ -1,4 +1,4 @@
-// octopair-bench cluster: what a call costs each of so many ranks (bench/cluster).
+// octopair-bench cluster: costs of a call on each MPI rank, for several numbers of ranks (bench/cluster).
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -63,7 +63,7 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
                     request->plan.arrangements.push_back(cluster::arrangement_of(name));
                 }
             },
-            "shared (default), or paper: a master deals out, merges and scans; or both")
+            "shared (default): ranks share all steps; paper: rank 0 distributes, merges and scans; or both")
         .type_name("WORD");
     command
         .add_option(
@@ -71,22 +71,23 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
             [request](const std::string& text) {
                 request->plan.ranks_per_machine = unsigned(parse_between("--ranks-per-machine", text));
             },
-            "in the paper's arrangement (default 2)")
+            "ranks per machine in the arrangement paper (default 2)")
         .type_name("N");
 }
 
 }  // namespace
 
 void add_cluster(Command& program, Action& action) {
-    Command command = program.add_subcommand("cluster", "what a call costs each of so many ranks, in processor time");
+    Command command =
+        program.add_subcommand("cluster", "measure the costs of a call on each MPI rank, in processor time");
     const auto request = std::make_shared<ClusterRequest>();
     add_scenes(command, request->plan.scenes);
-    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
-    add_numbers(command, "--ranks", request->plan.ranks, "on how many, several times (default 1 2 5 10 20 40 64)");
+    add_numbers(command, "--objects", request->plan.objects, "numbers of objects (default 1000000)");
+    add_numbers(command, "--ranks", request->plan.ranks, "numbers of ranks (default 1 2 5 10 20 40 64)");
     add_arrangement(command, request);
     add_rounds(command, request->plan.rounds);
     add_mpirun(command, request->plan.mpirun);
-    add_output_options(command, request->output, "write every rank's costs as JSON");
+    add_output_options(command, request->output, "write the costs of every rank as JSON");
     command.add_option("--on-ranks", request->on_ranks).hide();
     command.callback([request, &action] { action = [request] { return run_cluster(*request); }; });
 }

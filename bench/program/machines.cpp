@@ -35,7 +35,7 @@ void add_machines_options(cli::Command& command, MachinesRequest& request) {
             .add_option(
                 "--machines",
                 [&request](const std::vector<std::string>& texts) { request.machines = parse_machines(texts); },
-                "tables 1 and 2 on ranks, instead: so many machines of 2 processors, several times")
+                "measure only tables 1 and 2, on MPI ranks: numbers of machines with 2 processors")
             .type_name("N");
     command
         .add_option(
@@ -43,7 +43,7 @@ void add_machines_options(cli::Command& command, MachinesRequest& request) {
             [&request](const std::string& text) {
                 request.latency_seconds = cli::parse_length("--latency", text) / 1e6;
             },
-            "of the network's model, with --machines: microseconds a message (default 10)")
+            "network model of --machines: latency per message in microseconds (default 10)")
         .needs(machines)
         .type_name("US");
     command
@@ -53,7 +53,7 @@ void add_machines_options(cli::Command& command, MachinesRequest& request) {
                 request.bytes_per_second = cli::parse_length("--bandwidth", text) * 1e6 / 8;
                 if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
             },
-            "of the network's model, with --machines: Mbit/s of each machine (default 800)")
+            "network model of --machines: bandwidth per machine in Mbit/s (default 800)")
         .needs(machines)
         .type_name("MBIT");
     add_mpirun(command, request.mpirun).needs(machines);

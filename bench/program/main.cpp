@@ -1,4 +1,4 @@
-// The program octopair-bench: the paper's figure and tables measured here, and what a call costs by threads and ranks.
+// Program octopair-bench: measures the paper's figure and tables, and the costs of a call by threads and ranks.
 #include "cli/command/command.hpp"
 #include "cli/command/program_main.hpp"
 #include "octopair/version.hpp"

@@ -1,5 +1,5 @@
-// One study on MPI ranks: octopair-bench starts itself under mpirun with the hidden option --on-ranks FILE, and rank 0 writes
-// what was measured to that file.
+// Study on MPI ranks: octopair-bench starts a second instance under mpirun with the hidden option --on-ranks FILE.
+// Rank 0 of that instance writes the results to the file.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace octopair::bench {
 /// Makes the text of a file. Only rank 0 calls it.
 using MakeText = std::function<std::string()>;
 
-/// Collective. Runs `measure` on all ranks, and writes the text that rank 0 makes of the result to `path`. Returns the exit
-/// status. Throws: what fails on one rank alone.
+/// Collective. Runs `measure` on all ranks; rank 0 writes the text of the result to `path`. Returns the exit status.
+/// Throws: errors that occur on some ranks only.
 int run_on_ranks(const std::string& path, const std::function<MakeText(cli::Cluster&)>& measure);
 
 }  // namespace octopair::bench

@@ -1,4 +1,4 @@
-// Options that subcommands of octopair-bench share.
+// Options common to several subcommands of octopair-bench.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ inline void add_scenes(cli::Command& command, std::vector<std::string>& scenes) 
                 for (const std::string& kind : kinds) (void)samples::scene_description(kind);
                 scenes = kinds;
             },
-            "kinds of octopair generate (default uniform)")
+            "scene kinds of octopair generate (default uniform)")
         .type_name("KIND");
 }
 
@@ -61,13 +61,13 @@ inline void add_rounds(cli::Command& command, unsigned& rounds) {
     command
         .add_option(
             "--rounds", [&rounds](const std::string& text) { rounds = unsigned(parse_between("--rounds", text)); },
-            "calls of each, of which the median counts (default " + std::to_string(rounds) + ')')
+            "calls per measurement; the median counts (default " + std::to_string(rounds) + ')')
         .type_name("R");
 }
 
 /// Adds --mpirun.
 inline cli::Option add_mpirun(cli::Command& command, std::string& mpirun) {
-    return command.add_option("--mpirun", mpirun, "the command that starts ranks (default mpirun)")
+    return command.add_option("--mpirun", mpirun, "command that starts MPI ranks (default mpirun)")
         .type_name("COMMAND");
 }
 

@@ -1,4 +1,4 @@
-// octopair-bench paper: the figure and the tables of the paper's section 5 (bench/paper; on ranks: machines.cpp).
+// octopair-bench paper: measures the figure and the tables of the paper's section 5 (bench/paper; on ranks: machines.cpp).
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -77,15 +77,15 @@ void add_plan_options(Command& command, PaperRequest& request) {
         .add_option(
             "--objects",
             [&request](const std::vector<std::string>& texts) { request.plan.objects = parse_objects(texts); },
-            "how many, several times (default 100000 250000 500000 1000000 1500000 2000000)")
+            "numbers of objects (default 100000 250000 500000 1000000 1500000 2000000)")
         .type_name("N");
     command
         .add_option(
             "--threads",
             [&request](const std::string& text) {
-                request.plan.threads = unsigned(cli::parse_count("--threads", text, cli::most_threads));
+                request.plan.threads = unsigned(cli::parse_count("--threads", text, cli::max_threads));
             },
-            "on 1 to K processors (default 0: all cores)")
+            "measure on 1 to K processors (default 0: all cores)")
         .type_name("K");
     command
         .add_option(
@@ -93,14 +93,14 @@ void add_plan_options(Command& command, PaperRequest& request) {
             [&request](const std::string& text) {
                 request.plan.rounds = unsigned(parse_between("--rounds", text, {1, most_rounds}));
             },
-            "runs of each, of which the median counts (default 7)")
+            "runs per measurement; the median counts (default 7)")
         .type_name("R");
 }
 
 }  // namespace
 
 void add_paper(Command& program, Action& action) {
-    Command command = program.add_subcommand("paper", "the figure and the tables of the paper's section 5");
+    Command command = program.add_subcommand("paper", "measure the figure and the tables of the paper's section 5");
     const auto request = std::make_shared<PaperRequest>();
     command
         .add_option(
@@ -109,13 +109,13 @@ void add_paper(Command& program, Action& action) {
                 (void)samples::scene_description(kind);
                 request->plan.scene = kind;
             },
-            "a kind of octopair generate (default uniform)")
+            "scene kind of octopair generate (default uniform)")
         .type_name("KIND");
     add_plan_options(command, *request);
 #ifdef OCTOPAIR_WITH_MPI
     add_machines_options(command, request->machines);
 #endif
-    add_output_options(command, request->output, "write every time measured as JSON");
+    add_output_options(command, request->output, "write every measured time as JSON");
     command.callback([request, &action] { action = [request] { return run_paper(*request); }; });
 }
 

@@ -1,4 +1,4 @@
-// octopair-bench scaling: how long a call takes on so many threads, and on so many ranks (bench/scaling).
+// octopair-bench scaling: time of a call by number of threads and of MPI ranks (bench/scaling).
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -42,13 +42,13 @@ void complete(std::vector<unsigned>& numbers) {
 }
 
 int run_scaling(ScalingRequest request) {
-    using cli::most_threads;
+    using cli::max_threads;
     if (request.plan.cores.empty()) {
-        request.plan.cores = scaling::doubled(std::clamp(std::thread::hardware_concurrency(), 1u, most_threads));
+        request.plan.cores = scaling::doubled(std::clamp(std::thread::hardware_concurrency(), 1u, max_threads));
     }
-    if (const unsigned most = request.plan.cores.back(); most > most_threads) {
+    if (const unsigned most = request.plan.cores.back(); most > max_threads) {
         throw Error(ErrorCode::usage,
-                    "--cores: " + std::to_string(most) + " is more than " + std::to_string(most_threads));
+                    "--cores: " + std::to_string(most) + " is more than " + std::to_string(max_threads));
     }
     complete(request.plan.cores);
     complete(request.plan.threads_per_rank);
@@ -69,17 +69,17 @@ int run_scaling(ScalingRequest request) {
 
 void add_scaling(Command& program, Action& action) {
     Command command =
-        program.add_subcommand("scaling", "how long a call takes on so many threads, and on so many ranks");
+        program.add_subcommand("scaling", "measure the time of a call by number of threads and of MPI ranks");
     const auto request = std::make_shared<ScalingRequest>();
     add_scenes(command, request->plan.scenes);
-    add_numbers(command, "--objects", request->plan.objects, "how many, several times (default 1000000)");
-    command.add_flag("--weak", request->plan.weak, "so many objects for each core, not in all");
-    add_numbers(command, "--cores", request->plan.cores, "on how many, several times (default 1 2 4 ... all)");
+    add_numbers(command, "--objects", request->plan.objects, "numbers of objects (default 1000000)");
+    command.add_flag("--weak", request->plan.weak, "number of objects per core, not in total");
+    add_numbers(command, "--cores", request->plan.cores, "numbers of cores (default 1 2 4 ... all)");
     add_numbers(command, "--threads-per-rank", request->plan.threads_per_rank,
-                "also ranks of so many threads, several times (default 1)");
+                "numbers of threads per rank (default 1)");
     add_rounds(command, request->plan.rounds);
     add_mpirun(command, request->plan.mpirun);
-    add_output_options(command, request->output, "write every time measured as JSON");
+    add_output_options(command, request->output, "write every measured time as JSON");
     command.add_option("--on-ranks", request->on_ranks).hide();
     command.callback([request, &action] { action = [request] { return run_scaling(*request); }; });
 }

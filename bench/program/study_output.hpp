@@ -12,21 +12,21 @@
 
 namespace octopair::bench {
 
-/// The options of the output.
+/// Options of the output.
 struct OutputRequest {
-    std::string json;  ///< a file, or empty
+    std::string json;  ///< path of a file, or empty
     bool quiet = false;
 };
 
 /// Adds --json and --quiet. `what`: describes the JSON.
 inline void add_output_options(cli::Command& command, OutputRequest& request, const std::string& what) {
     command.add_option("--json", request.json, what).type_name("FILE");
-    command.add_flag("--quiet", request.quiet, "no progress on standard error");
+    command.add_flag("--quiet", request.quiet, "print no progress on standard error");
 }
 
 class StudyOutput {
 public:
-    /// Make it before the measurements, so that a file that cannot be written costs none. Throws: Error{io_failed}.
+    /// Opens the file. Construct before the measurements, so that an unwritable file fails early. Throws: Error{io_failed}.
     explicit StudyOutput(const OutputRequest& request) : progress_(!request.quiet) {
         if (!request.json.empty()) json_.emplace(request.json);
     }

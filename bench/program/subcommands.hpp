@@ -1,5 +1,5 @@
-// The subcommands of octopair-bench, one source file each. Each adds itself to the parser; its callback sets `action`, which
-// measures after parsing and returns the exit status. Both may throw Error.
+// Subcommands of octopair-bench, one source file each. Each function adds a subcommand, whose callback sets `action`.
+// `action` runs after parsing, measures, and returns the exit status. Both may throw Error.
 #pragma once
 
 #include "cli/command/command.hpp"

@@ -1,4 +1,4 @@
-// How long a call takes on so many threads, and on so many ranks, and what follows from it.
+// Times of a call by number of threads and of ranks, and derived quantities.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace octopair::scaling {
 
-/// Who finds the pairs: the local engine on threads, or ranks with so many threads each.
+/// Engine of a measurement: the local engine with threads, or ranks with threads each.
 struct Setup {
     unsigned ranks = 0;  ///< 0: the local engine
     unsigned threads = 1;
@@ -18,18 +18,18 @@ struct Setup {
     bool operator==(const Setup&) const = default;
 };
 
-/// "2 threads", "1 rank", "2 ranks x 4 threads".
+/// Returns text such as "2 threads", "1 rank" or "2 ranks x 4 threads".
 std::string setup_text(const Setup& setup);
 
 struct Entrant {
     Setup setup;
     std::uint64_t objects = 0, pairs = 0;
-    std::vector<double> seconds;  ///< wall clock of each call, from the first rank's begin to the last one's end
+    std::vector<double> seconds;  ///< wall clock of each call, from the first begin to the last end of a rank
 
     double median() const;
 };
 
-/// What the ranks are held to: the time of ranks over that of as many threads.
+/// Upper bound for the time of ranks over the time of as many threads.
 struct Aim {
     unsigned cores = 1;
     double most = 1;
@@ -38,28 +38,31 @@ inline constexpr Aim aims[] = {{1, 1.15}, {2, 1.3}};
 
 /// One scene: all setups take turns on it, round by round.
 struct Contest {
-    std::string scene = "uniform";  ///< a kind of samples/scenes.hpp, seed 1
+    std::string scene = "uniform";  ///< kind of samples/scenes.hpp, seed 1
     std::uint64_t objects = 0;
-    bool weak = false;  ///< so many objects a core, not in all
+    bool weak = false;  ///< true: `objects` counts per core, not in total
     std::vector<Entrant> entrants;
 
     std::uint64_t objects_of(const Setup& setup) const { return weak ? objects * setup.cores() : objects; }
-    /// Null where there is none.
+    /// Returns the entrant with this setup, or null.
     const Entrant* find(const Setup& setup) const;
-    /// Objects in the same time, against one thread of the local engine, which is among the entrants.
+    /// Returns the number of objects in equal time, relative to one thread of the local engine. Requires: an entrant
+    /// with one local thread.
     double speedup(const Entrant& entrant) const;
     double efficiency(const Entrant& entrant) const { return speedup(entrant) / entrant.setup.cores(); }
-    /// Of ranks: their time over that of the local engine with as many threads as they have cores; 0 where it has none.
+    /// Returns the time of ranks over the time of the local engine with as many threads; 0 if no entrant has as many
+    /// threads.
     double against_threads(const Entrant& entrant) const;
-    /// The same for an aim's ranks of one thread; 0 where they are none.
+    /// Returns against_threads() for the ranks of an aim, with one thread each; 0 if there are no such ranks.
     double reached(const Aim& aim) const;
 };
 
-/// The local engine with each number of threads; then, for each number of threads a rank, as many cores made of ranks where
-/// these divide. Threads and cores ascend, 1 among them.
+/// Returns the local engine with each number of threads, then ranks. For each number of threads per rank, ranks cover
+/// each number of cores that this number divides. Requires: threads and cores ascend and contain 1.
 std::vector<Setup> setups(const std::vector<unsigned>& cores, const std::vector<unsigned>& threads_per_rank);
 
-/// A table for people; JSON for programs, and back. Throws Error{engine_failed} for text that is none.
+/// Writes a table for people; writes and reads JSON for programs. Throws: Error{engine_failed} for text of another
+/// form.
 std::string contest_text(const Contest& contest);
 std::string contest_json(const Contest& contest);
 Contest contest_of(const std::string& json);

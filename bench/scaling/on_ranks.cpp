@@ -23,12 +23,13 @@ int rank_of(MPI_Comm comm) {
     return rank;
 }
 
-/// Parts of scenes that this rank gives; one that begins as another does, and is no longer, lies in that one's memory.
+/// Slices of scenes that this rank provides. A slice with equal begin and no greater length shares the memory of
+/// another slice.
 class Slices {
 public:
     explicit Slices(std::string scene) : scene_(std::move(scene)) {}
 
-    /// Objects [begin, end) of so many; valid as long as this is.
+    /// Returns objects [begin, end) of a scene with `objects` objects. Valid during the lifetime of this object.
     std::span<const Box3f> slice(std::uint64_t objects, std::uint64_t begin, std::uint64_t end) {
         const auto length = std::size_t(end - begin);
         auto found = std::ranges::find_if(made_, [&](const Made& made) {
@@ -61,7 +62,7 @@ private:
     std::list<Made> made_;  // of which none moves
 };
 
-/// All ranks wait for each other, without a core: MPI's own waits look about all the time.
+/// Waits for all ranks without using a core. MPI's own waits poll continuously.
 void rest(MPI_Comm comm) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Ibarrier(comm, &request);
@@ -69,7 +70,7 @@ void rest(MPI_Comm comm) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-/// One setup, on the ranks that take part in it and on those that do not.
+/// One setup, on ranks that take part and on ranks that do not.
 class Contender {
 public:
     Contender(MPI_Comm all, Entrant entrant) : entrant_(std::move(entrant)) {
@@ -90,13 +91,13 @@ public:
         const std::uint64_t rank = std::uint64_t(rank_of(comm_)), ranks = entrant_.setup.processes();
         own_ = slices.slice(entrant_.objects, entrant_.objects * rank / ranks, entrant_.objects * (rank + 1) / ranks);
     }
-    /// Collective among those that take part.
+    /// Collective over the ranks that take part.
     void make_engine() {
         if (comm_ == MPI_COMM_NULL) return;
         engine_ = entrant_.setup.local() ? make_local_engine(entrant_.setup.threads)
                                          : make_mpi_engine(comm_, {.threads = entrant_.setup.threads});
     }
-    /// Likewise.
+    /// Collective over the ranks that take part.
     void call(bool counts, const std::stop_token& stop) {
         if (comm_ == MPI_COMM_NULL) return;
         Options options;
@@ -117,7 +118,7 @@ private:
     PairList pairs_;
 };
 
-/// Ranks that have no part, or ended early, sleep until all are there.
+/// Runs `part` on this rank. Ranks without a part, or that ended early, sleep until all ranks are there.
 void in_turn(MPI_Comm comm, const std::function<void()>& part) {
     std::exception_ptr failure;
     try {

@@ -1,4 +1,4 @@
-// The side of the ranks: the calls that are measured.
+// Measurement of calls on the ranks.
 #pragma once
 
 #include <mpi.h>
@@ -10,7 +10,7 @@
 
 namespace octopair::scaling {
 
-/// Runs a part on all ranks; throws on all, the same Error, if it threw on any.
+/// Runs a part on all ranks. Throws: an equal Error on all ranks if the part threw on any rank.
 using Together = std::function<void(const std::function<void()>&)>;
 
 struct Turns {
@@ -18,11 +18,11 @@ struct Turns {
     unsigned rounds = 7;
 };
 
-/// Collective: all setups take turns for so many calls, after one of each that is not counted, with engines and lists kept.
-/// Those of the local engine run on the first rank, those of r ranks on the first r; ranks that have no part in a call sleep
-/// meanwhile. Pairs are listed in octal order, and stay on the ranks that found them. The first rank returns `contest` with
-/// all entrants. Throws Error{usage} if there are fewer ranks than a setup has, Error{engine_failed} if two setups find
-/// different numbers of pairs of as many objects.
+/// Collective. All setups take turns for the given number of rounds, after one uncounted call each, with engines and
+/// lists kept. The local engine runs on rank 0; a setup of r ranks runs on the first r. Ranks without a part in a call
+/// sleep. Pairs are listed in octal order, and stay on the ranks that found them. Rank 0 returns `contest` with all
+/// entrants. Throws: Error{usage} if there are fewer ranks than a setup has; Error{engine_failed} if two setups find
+/// different numbers of pairs among equal numbers of objects.
 Contest hold_on_ranks(MPI_Comm comm, Contest contest, const Turns& turns, const Together& together,
                       const std::stop_token& stop);
 

@@ -19,7 +19,7 @@ void add(std::vector<std::string>& command, const char* name, const std::vector<
     for (const unsigned number : numbers) command.push_back(std::to_string(number));
 }
 
-/// One scene and number of objects.
+/// One scene with one number of objects.
 struct Scene {
     std::string kind;
     std::uint64_t objects;

@@ -1,5 +1,5 @@
-// CGAL's Polygon_mesh_processing::self_intersections, with the kernel of exact predicates. GPL: here alone, never in what is
-// shipped.
+// CGAL's Polygon_mesh_processing::self_intersections, with the kernel of exact predicates. GPL: used only here, never
+// in installed code.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,12 @@ namespace octopair::bench {
 
 class CgalSelfIntersections {
 public:
-    /// Makes CGAL's own mesh, which is not in the time of a run.
+    /// Makes CGAL's own mesh. This time is not part of a run.
     explicit CgalSelfIntersections(const shape::Mesh& mesh);
     ~CgalSelfIntersections();
 
-    /// In CGAL's order, in which either number may be the lower. 1 thread: its sequential algorithm.
+    /// Returns pairs in CGAL's order; either number of a pair may be the lower. With 1 thread, runs CGAL's sequential
+    /// algorithm.
     std::vector<Pair> run(unsigned threads) const;
 
 private:

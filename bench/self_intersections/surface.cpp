@@ -15,7 +15,7 @@ Point3d of_length_one(const Point3d& v) {
     return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-/// What becomes of the sphere.
+/// Deformation of the sphere.
 class Form {
 public:
     explicit Form(std::uint32_t seed) {
@@ -48,7 +48,7 @@ private:
     std::array<Point3d, 8> waves_;
 };
 
-/// Places on a cube of `side` squares an edge; those of edges belong to several sides.
+/// Position on a cube of `side` squares per edge. Positions on edges belong to several sides.
 using CubePlace = std::array<std::uint32_t, 3>;
 
 class Builder {

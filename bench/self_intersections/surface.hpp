@@ -1,5 +1,5 @@
-// A closed mesh that passes through itself: a bumpy sphere with arms that are pushed inward, through each other and out on
-// the far side.
+// Closed mesh that intersects itself: a bumpy sphere with arms pushed inward, through each other and out on the far
+// side.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace octopair::bench {
 
-/// About so many triangles, of the six sides of a cube, in rows. A function of its arguments alone.
+/// Returns a mesh with about `triangles` triangles, in rows on the six sides of a cube. Depends only on the arguments.
 shape::Mesh make_surface(std::uint32_t triangles, std::uint32_t seed);
 
 }  // namespace octopair::bench

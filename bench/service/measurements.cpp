@@ -25,7 +25,7 @@ double seconds_of(Work&& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Boxes of a scene, some of which move by up to half their size a frame.
+/// Boxes of a scene, a part of which moves by up to half their size per frame.
 class Crawl {
 public:
     explicit Crawl(std::uint64_t objects) : boxes_(samples::make_scene("uniform", objects, 1)), ids_(boxes_.size()) {}
@@ -51,7 +51,7 @@ public:
         }
     }
 
-    /// The seconds of a frame.
+    /// Returns the seconds of a frame.
     template <typename AnyScene>
     double frame(AnyScene& scene, const StepResult*& result) const {
         return seconds_of([&] {

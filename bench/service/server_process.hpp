@@ -1,4 +1,4 @@
-// A server process of the program's own, on a Unix socket in a folder that goes with it.
+// Server process owned by this program, on a Unix socket in a temporary folder.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,8 @@ namespace octopair::bench {
 
 class ServerProcess {
 public:
-    /// `program`: octopair; `options`: of `octopair serve`, beside the address. Throws Error if it does not start.
+    /// `program`: octopair. `options`: options of `octopair serve` other than the address. Throws: Error if the start
+    /// fails.
     ServerProcess(const std::string& program, const std::vector<std::string>& options);
     ServerProcess(const ServerProcess&) = delete;
     ServerProcess& operator=(const ServerProcess&) = delete;

@@ -1,14 +1,13 @@
-// Arrangement: how the processes or ranks of an engine share a call.
+// Arrangement: how worker processes or MPI ranks divide the work of a call. The result does not depend on it.
 #pragma once
 
 #include <cstdint>
 
 namespace octopair {
 
-/// The result is the same.
 enum class Arrangement : std::uint8_t {
-    shared,  ///< every step
-    paper,   ///< they build sorted lists, which one merges and scans alone, as in the paper: there to be compared with
+    shared,  ///< workers or ranks share the work of every step
+    paper,   ///< for comparison: one process merges and scans the sorted lists of all others, as in the paper
 };
 
 }  // namespace octopair

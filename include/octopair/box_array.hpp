@@ -1,4 +1,4 @@
-// BoxArray: boxes in memory that an engine allocated, where it can read them without copying.
+// BoxArray: an array of boxes in memory that an engine allocated. The engine reads these boxes without copying them.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace octopair {
 
-/// Made by Engine::allocate_boxes, aligned to 64 bytes; the boxes hold anything until they are written. Owned, and may
-/// outlive the engine. Empty when default-constructed or moved from. Not thread-safe.
+/// Owns boxes, aligned to 64 bytes and uninitialised. Engine::allocate_boxes makes them. The array may outlive the engine.
+/// Empty after default construction or a move from it. Thread safety: none.
 template <typename Element>
 class BoxArray {
     static_assert(std::is_same_v<Element, Box3f> || std::is_same_v<Element, Box3d>);

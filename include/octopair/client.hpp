@@ -1,12 +1,12 @@
-// The remote engine: pairs are found by a server (`octopair serve`), the application only sends boxes and receives pairs.
+// The remote engine: a server (`octopair serve`) finds the pairs. The application only sends boxes and receives pairs.
 //
-// Result    the same bytes as from every engine.
-// Jobs      submit() returns at once: the boxes go to the server on a thread of the engine's own.
-// Faults    a server that goes away in the middle of a call is waited for and asked again, as long as
-//           ClientOptions::patience; a sink receives each pair once nevertheless. Then, or where the server refuses, the call
-//           throws: Error{resource_limit} that names the server's limit, Error{engine_failed}, or what the engine of the
-//           server would throw.
-// Memory    the pairs, and a few MiB.
+// Result    The same bytes as from every engine.
+// Jobs      submit() returns at once. A thread of the engine sends the boxes to the server.
+// Faults    If the server becomes unreachable during a call, the engine repeats its requests until it answers or
+//           ClientOptions::patience has passed. A sink receives each pair once nevertheless.
+// Errors    After that time, or if the server refuses the call: Error{resource_limit}, which names the server's limit;
+//           Error{engine_failed}; or the Error that the server's engine throws.
+// Memory    The pairs, and a few MiB.
 // Protocol  gRPC (docs/protocol.md). CMake: link octopair::client.
 #pragma once
 
@@ -20,22 +20,23 @@
 namespace octopair {
 
 struct ClientOptions {
-    std::chrono::milliseconds connect_timeout = std::chrono::seconds(5);  ///< for the first connection
-    std::chrono::milliseconds patience = std::chrono::seconds(30);        ///< how long the server may be away later
-    /// One of the server's tokens; empty: none. It is sent over connections that are encrypted or stay on this machine.
+    std::chrono::milliseconds connect_timeout = std::chrono::seconds(5);  ///< longest wait for the first connection
+    std::chrono::milliseconds patience = std::chrono::seconds(30);        ///< longest later outage of the server
+    /// One of the server's tokens; empty: none. Sent only over connections that are encrypted or stay on this machine.
     std::string token = {};
-    /// Encrypt, and trust servers with a certificate of this authority (a PEM file); empty: do not, unless `certificate`
-    /// or `tls` says so.
+    /// PEM file of a certificate authority. If set, the connection is encrypted and the server's certificate must be of this
+    /// authority. If empty, the connection is encrypted only if `certificate` or `tls` is set.
     std::string authority = {};
-    /// Of this client, PEM files; empty: none.
+    /// PEM files of this client's certificate and private key; empty: none.
     std::string certificate = {}, key = {};
-    /// Encrypt, with the authorities that the system trusts unless `authority` is given.
+    /// True: the connection is encrypted. The system's trusted authorities count, unless `authority` is set.
     bool tls = false;
 };
 
-/// `address`: unix:PATH or HOST:PORT. Throws Error{usage} for what is none, or options that do not fit together;
-/// Error{io_failed} for a file that cannot be read, Error{bad_input} for one that holds no certificate or not its key,
-/// Error{engine_failed} if the server cannot be reached.
+/// Connects to the server at `address`, unix:PATH or HOST:PORT, and returns an engine that uses it.
+/// Throws: Error{usage} for a malformed address or options that contradict each other; Error{io_failed} for a file that cannot
+/// be read; Error{bad_input} for a file without a certificate, or a key of another certificate; Error{engine_failed} if the
+/// server cannot be reached.
 std::unique_ptr<Engine> connect(std::string_view address, const ClientOptions& options = {});
 
 }  // namespace octopair

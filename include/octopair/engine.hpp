@@ -1,13 +1,13 @@
-// Engines: places where octopair looks for the pairs of overlapping boxes.
+// Engine: finds all pairs of overlapping boxes.
 //
-// Result    every pair of objects that counts (objects.hpp), once; the same bytes from every engine, for any number of
-//           threads, on any instruction set.
-// Errors    octopair::Error (error.hpp); the input is never modified; a failed call leaves the engine usable and the
-//           PairList empty.
-// Threads   an engine may be used from any thread; its calls run one after another, as they came; different engines are
+// Result    Every pair of objects that counts (objects.hpp), exactly once. Every engine returns the same bytes, for any number
+//           of threads and any instruction set.
+// Errors    Calls throw octopair::Error (error.hpp). They never modify their input. A failed call leaves the engine usable
+//           and the PairList empty.
+// Threads   Any thread may call an engine; its calls run one after another, in the order of arrival. Different engines are
 //           independent.
-// Cost      O((n log n + pairs) / k) time, at most 56 bytes an object beside input and output in
-//           the local engine (docs/engines.md has the others).
+// Cost      O((n log n + pairs) / k) time on k threads. The local engine needs at most 56 bytes per object besides input and
+//           output; docs/engines.md has the numbers of the others.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ struct Output;
 struct Request;
 }  // namespace detail
 
-/// Receives batches in order, on the calling thread; a span is valid during the call only. What it throws ends the
-/// search and reaches the caller.
+/// Receives pairs in batches, in order, on the calling thread. The span is valid only during the call. An exception ends the
+/// search and propagates to the caller.
 using PairSink = std::function<void(std::span<const Pair>)>;
 
 class Engine {
@@ -46,27 +46,28 @@ public:
     Engine& operator=(const Engine&) = delete;
     virtual ~Engine() = default;
 
-    /// Finds the pairs of one set (`Objects{boxes}`), or of two (`Join{first, second}`), and writes them to `pairs`.
-    /// Throws: Error{bad_input} with the object's index for a box that is not one; Error{cancelled} within 200 ms of a stop
-    /// request; Error{resource_limit}, Error{engine_failed}; Error{usage} where the kind of engine cannot make this call (its
-    /// header says why).
+    /// Finds the pairs of one set (`Objects{boxes}`), or of two (`Join{first, second}`), and stores them in `pairs`.
+    /// Throws: Error{bad_input} with the index of the first invalid box; Error{cancelled} within 200 ms after a stop request;
+    /// Error{resource_limit}; Error{engine_failed}; Error{usage} if this kind of engine does not support the call (its header
+    /// says why).
     Summary find_pairs(const Input& input, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
-    /// Hands the pairs to `sink` in order, and holds at most `Options::buffer_bytes` of them at a time. With an empty `sink`
-    /// the pairs are only counted. Throws: as find_pairs().
+    /// Finds all pairs and passes them to `sink` in order, using at most `Options::buffer_bytes` for pairs. With an empty
+    /// `sink` the pairs are only counted. Throws: as find_pairs().
     Summary stream_pairs(const Input& input, const PairSink& sink, const Options& options = {},
                          std::stop_token stop = {});
-    /// Returns the number of pairs, at most `Options::limit`, and stores none of them. Throws: as find_pairs().
+    /// Returns the number of pairs, at most `Options::limit`. Stores none of them. Throws: as find_pairs().
     std::uint64_t count_pairs(const Input& input, const Options& options = {}, std::stop_token stop = {});
 
-    /// Starts a job (job.hpp): find_pairs(), or stream_pairs() for `sink`, on a thread of the engine, which also calls `sink`.
-    /// Returns at once. The end of the engine cancels its jobs. A box or a padding that is wrong fails the job.
-    /// Throws: Error{bad_input} for wrong options or sizes; Error{resource_limit} for more than 2^32 - 1 objects, or without
-    /// memory or threads for a job; Error{usage} as find_pairs().
+    /// Returns at once the handle of a job (job.hpp) that runs find_pairs() on a thread of the engine. An invalid box or
+    /// padding fails the job. Destroying the engine cancels its jobs.
+    /// Throws: Error{bad_input} for invalid options or sizes that differ; Error{resource_limit} for more than 2^32 - 1 objects,
+    /// or if memory or threads run out; Error{usage} as find_pairs().
     Job submit(JobInput input, Options options = {});
+    /// Like submit(), but the job runs stream_pairs(). The thread of the engine calls `sink`. Throws: as submit().
     Job submit_stream(JobInput input, PairSink sink, Options options = {});
 
-    /// Room for boxes (Box3f or Box3d) where this engine reads them without copying; waits for no call. Throws
-    /// Error{resource_limit} for more than there is room for, or than 2^32 - 1.
+    /// Returns an array for `count` boxes (Box3f or Box3d) that this engine reads without copying. Does not wait for calls.
+    /// Throws: Error{resource_limit} if memory runs out, or for more than 2^32 - 1 boxes.
     template <typename Element = Box3f>
     BoxArray<Element> allocate_boxes(std::uint64_t count) {
         return BoxArray<Element>(allocate_array(count, sizeof(Element)), count);
@@ -78,22 +79,23 @@ private:
     Job submit_work(Work work);
     std::shared_ptr<void> allocate_array(std::uint64_t count, std::size_t element_bytes);
 
-    /// Before run(), of options and sizes. Throws Error.
+    /// Checks options and sizes before run(). Throws: Error.
     virtual void check(const detail::Request& request) const;
     virtual Summary run(const detail::Request& request, const detail::Output& output,
                         const detail::Control& control) = 0;
-    /// Every engine has one, as its last member: it ends the jobs before what they use goes.
+    /// Returns the engine's job queue. Every engine has its queue as last member, so that jobs end before the members that they
+    /// use are destroyed.
     virtual detail::JobQueue& jobs() = 0;
-    /// Aligned to 64 bytes; freed by the last who holds it, which may be after the engine. May throw std::bad_alloc.
+    /// Returns uninitialised memory, aligned to 64 bytes, which may outlive the engine. Throws: std::bad_alloc.
     virtual std::shared_ptr<void> allocate(std::size_t bytes);
-    /// Threads of this process that check a result (Options::verify); 0: one per core.
+    /// Returns the number of threads of this process that check a result (Options::verify); 0: one per core.
     virtual unsigned verification_threads() const;
 };
 
-/// Threads of this process. 0: one per core.
+/// Returns an engine that uses `threads` threads of this process; 0: one per core.
 std::unique_ptr<Engine> make_local_engine(unsigned threads = 0);
 
-/// The short form: one call on an engine of its own. Keep an Engine where calls repeat: it keeps its memory.
+/// Returns the pairs of `boxes`, found by a temporary local engine. For repeated calls keep an Engine: it reuses its memory.
 std::vector<Pair> find_pairs(std::span<const Box3f> boxes, const Options& options = {});
 std::vector<Pair> find_pairs(std::span<const Box3d> boxes, const Options& options = {});
 

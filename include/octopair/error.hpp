@@ -1,8 +1,8 @@
-// Errors: the one exception type that octopair throws.
+// Error: the one exception type that octopair throws.
 //
-// Every failure of a public call is an `Error` whose code says what kind it is and whose message says, in one line,
-// what was wrong and where (file, object, value). std::bad_alloc becomes Error{resource_limit} at the edge of the
-// library.
+// - Every failure of a public call throws an `Error`.
+// - Its code is the kind of failure. Its message, one line, says what is wrong and where (file, object, value).
+// - Public calls turn std::bad_alloc into Error{resource_limit}, unless their header says otherwise.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 namespace octopair {
 
 enum class ErrorCode : std::uint8_t {
-    usage,           ///< the caller's options make no sense together
-    bad_input,       ///< a box, file or option value is not what it must be
+    usage,           ///< options contradict each other, or the call is not supported here
+    bad_input,       ///< a box, file or option value is invalid
     io_failed,       ///< the operating system failed to read or write
     resource_limit,  ///< memory or another bounded resource ran out
-    engine_failed,   ///< an engine could not do its work
-    cancelled,       ///< the caller asked to stop
+    engine_failed,   ///< an engine failed, or its result is wrong
+    cancelled,       ///< the caller requested a stop
 };
 
 class Error : public std::runtime_error {

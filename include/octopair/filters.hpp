@@ -1,7 +1,9 @@
-// The filters that come with octopair, for a Pipeline (pipeline.hpp).
+// The filters that octopair provides for a Pipeline (pipeline.hpp).
 //
-// In a join, the second set's numbers and objects go in `second`; where it is left out, both objects of a pair are of one
-// set. Spans are borrowed: they must outlive the filter. Factories throw Error{bad_input} where sizes do not agree.
+// Joins     The arguments `first` and `second` describe the first and the second set of a join. Without `second`, both
+//           objects of a pair are in one set.
+// Ownership Spans are borrowed: the arrays must outlive the filter.
+// Errors    The functions throw Error{bad_input} if sizes differ.
 #pragma once
 
 #include <cstdint>
@@ -17,77 +19,84 @@
 
 namespace octopair {
 
-/// One set's arrays: of each object, the groups that it is in, and those that it collides with.
+/// Group bits of one set of objects. Both arrays have one element per object.
 struct GroupMasks {
-    std::span<const std::uint32_t> groups;
-    std::span<const std::uint32_t> masks;
+    std::span<const std::uint32_t> groups;  ///< groups that the object belongs to
+    std::span<const std::uint32_t> masks;   ///< groups that the object collides with
 };
-/// "groups": lets through what wants each other: a's groups are in b's mask and b's in a's.
+/// Returns the filter "groups". Keeps pairs where b's mask has a bit of a's groups, and a's mask has a bit of b's groups.
 std::unique_ptr<Filter> make_group_filter(const GroupMasks& first, const std::optional<GroupMasks>& second = {});
 
-/// "ignored pairs": lets through all but these, in any order; of one set, (a, b) is (b, a) as well.
+/// Returns the filter "ignored pairs", which drops the pairs in `ignored`. Their order does not matter. Without a join,
+/// (a, b) also drops (b, a).
 std::unique_ptr<Filter> make_ignored_pairs_filter(std::vector<Pair> ignored, bool join = false);
 
-/// Two patterns: a pair is left out if one name fits one and the other name the other. `*` stands for any characters,
-/// `?` for one; an empty name is none, and fits nothing.
+/// Two name patterns. The rule drops a pair if one object's name matches `a` and the other object's name matches `b`.
+/// `*` matches any characters, `?` matches one character. An empty name means no name and matches no pattern.
 struct NameRule {
     std::string a, b;
 };
-/// "name rules": lets through all that no rule leaves out.
+/// Returns the filter "name rules", which drops each pair that at least one rule drops.
 std::unique_ptr<Filter> make_name_filter(std::span<const std::string> names, std::vector<NameRule> rules,
                                          std::optional<std::span<const std::string>> second = {});
 
-/// "same parent": lets through pairs of objects whose numbers (of a parent, a body, a layer) differ.
+/// Returns the filter "same parent", which keeps pairs of objects with different parent numbers. A parent is any number that
+/// the caller assigns, such as a body or a layer.
 std::unique_ptr<Filter> make_parent_filter(std::span<const std::uint32_t> parents,
                                            std::optional<std::span<const std::uint32_t>> second = {});
 
-/// Of the exact stages.
+/// Options of the exact filters.
 struct ExactOptions {
-    double margin = 0;  ///< objects count up to this distance (Euclidean), and their paddings; finite, >= 0
-    /// Contacts given of each pair, the deepest first; 0: none.
-    std::uint32_t max_contacts = 16;
+    double margin = 0;  ///< largest Euclidean distance, besides paddings, at which a pair is kept; finite, >= 0
+    std::uint32_t max_contacts = 16;  ///< contacts stored per pair, the deepest first; 0: none
 };
 
-/// "bounding spheres", "oriented boxes": leave out what these cheap hulls tell apart by more than margin and paddings.
+/// Returns the filter "bounding spheres". Drops pairs whose bounding spheres are further apart than margin and paddings.
 std::unique_ptr<Filter> make_sphere_filter(const ShapedObjects& first, double margin = 0,
                                            const ShapedObjects* second = nullptr);
+/// Returns the filter "oriented boxes". Drops pairs whose oriented boxes are further apart than margin and paddings.
 std::unique_ptr<Filter> make_oriented_box_filter(const ShapedObjects& first, double margin = 0,
                                                  const ShapedObjects* second = nullptr);
 
-/// "exact object": lets through objects that meet, or are no further apart than margin and paddings allow. Learns the class
-/// (`collision`, `contained`, `clearance`), distance and nearest points; of moving objects, the time.
+/// Returns the filter "exact object". Keeps objects that meet, or whose distance is at most margin and paddings. Computes the
+/// class (`collision`, `contained`, `clearance`), the distance and the nearest points; for moving objects, the time of impact.
 std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, const ExactOptions& options = {},
                                                  const ShapedObjects* second = nullptr);
 
-/// "exact feature", behind "exact object": learns the class, the depth and the contacts.
+/// Returns the filter "exact feature", which computes the class, the depth and the contacts of a pair.
+/// Requires: "exact object" is before it in the pipeline.
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options = {},
                                                   const ShapedObjects* second = nullptr);
 
-/// Triangles as objects. `owners`: empty (one mesh), or of each triangle the mesh that it is of.
+/// Triangles as objects.
 struct TriangleSet {
     std::span<const Triangle3d> triangles;
-    std::span<const std::uint32_t> owners = {};
+    std::span<const std::uint32_t> owners = {};  ///< mesh number of each triangle; empty: all are of one mesh
 };
 
-/// Triangles of one mesh that share corners, by position. `beyond_shared`: count if they meet beyond what they share;
-/// `exclude`: do not count; `include`: count.
-enum class AdjacentTriangles : std::uint8_t { beyond_shared, exclude, include };
+/// Treatment of adjacent triangles: triangles of one mesh that share corners (equal positions).
+enum class AdjacentTriangles : std::uint8_t {
+    beyond_shared,  ///< keeps the pair if the triangles also meet outside of the shared corners and edges
+    exclude,        ///< drops the pair
+    include         ///< keeps the pair
+};
 
 struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
-    double margin = 0;      ///< triangles that are not adjacent count up to this distance; finite, >= 0
-    bool features = false;  ///< learn contact and depth, and whether insides pass through each other or only touch
-    unsigned threads = 0;   ///< that check triangles when the filter is made; 0: one per core
+    double margin = 0;      ///< largest distance at which triangles that are not adjacent are kept; finite, >= 0
+    bool features = false;  ///< true: computes contact and depth, and distinguishes penetrating from touching
+    unsigned threads = 0;   ///< threads that check the triangles when the filter is made; 0: one per core
 };
 
-/// "exact triangle": lets through triangles that meet (closed, no epsilon), or are no further apart than the margin. In a
-/// join no two are adjacent.
+/// Returns the filter "exact triangle". Keeps triangles that meet (closed sets, no epsilon), or whose distance is at most the
+/// margin. In a join no triangles are adjacent.
 std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const TriangleOptions& options = {},
                                              const TriangleSet* second = nullptr);
 
-/// Each triangle's box: float32, rounded outward. On so many threads; 0: one per core.
+/// Returns the box of each triangle in float32, rounded outward. Uses `threads` threads; 0: one per core.
 std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned threads = 0);
-/// Into the room of as many boxes, such as Engine::allocate_boxes makes.
+/// Writes the boxes to `boxes`, for example memory from Engine::allocate_boxes.
+/// Requires: `boxes` has as many elements as `triangles`.
 void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads = 0);
 
 }  // namespace octopair

@@ -1,7 +1,7 @@
 // Input: the objects of a call: one set, or two.
 //
-// Result    With one set, a call finds the pairs within the set. With two sets, it finds the pairs of one object of each.
-// Ownership An input owns what its sets own: Objects are borrowed (objects.hpp), JobObjects owned or borrowed (job.hpp).
+// Result    With one set, a call finds the pairs within the set. With two sets, each pair has one object of each set.
+// Ownership An input owns what its sets own. Objects are borrowed (objects.hpp); JobObjects are owned or borrowed (job.hpp).
 #pragma once
 
 #include <concepts>
@@ -20,10 +20,10 @@ struct JoinOf {
     Set second;
 };
 
-/// One set, or the two sets of a join. Made implicitly from either.
+/// One set, or the two sets of a join. Both convert implicitly.
 template <typename Set>
 struct InputOf {
-    // NOLINTBEGIN(google-explicit-constructor): a set is an input, and so is a join.
+    // NOLINTBEGIN(google-explicit-constructor): a set converts to an input, and so does a join.
     template <typename Source>
         requires std::convertible_to<Source, Set>
     InputOf(Source set) : first(std::move(set)) {}

@@ -1,14 +1,14 @@
-// Jobs: work that is submitted to an engine, done on a thread of its own, and collected later.
+// Job: work that is submitted to an engine, runs on the engine's job thread, and is collected later.
 //
-// Result    what the direct call gives (engine.hpp): the same pairs, the same bytes.
-// Order     an engine runs its jobs one after another, as they were submitted; direct calls take turns with them.
-// Ownership a job keeps OwnedObjects until it has ended. BorrowedObjects, and what a sink or a progress refers to, the
-//           caller keeps alive and unchanged until then.
-// Errors    a job fails by the Error that the direct call would throw; what else a sink or a progress throws becomes
-//           Error{engine_failed} with its words. Neither may call the job's engine or wait for a job of it (submit and
-//           cancel they may).
-// Threads   the members of one Job may be called from several threads at once, but for assigning, moving, destroying.
-// Cost      submitting moves the objects and takes a lock; the first job of an engine starts its thread.
+// Result    The same pairs and the same bytes as from the direct call (engine.hpp).
+// Order     An engine runs its jobs one after another, in the order of submission. Direct calls take turns with them.
+// Ownership A job owns its OwnedObjects until it has ended. BorrowedObjects, and all that a sink or progress function refers
+//           to, must stay alive and unchanged until then.
+// Errors    A job fails with the Error that the direct call would throw. Any other exception of a sink or progress function
+//           becomes Error{engine_failed} with the same message. Neither function may call the job's engine or wait for one
+//           of its jobs; submitting and cancelling is allowed.
+// Threads   Several threads may call members of one Job at once, except assignment, move and destruction.
+// Cost      submit() moves the objects and takes a lock. The first job of an engine starts its thread.
 #pragma once
 
 #include <chrono>
@@ -36,21 +36,21 @@ Job make_job(std::shared_ptr<JobTask> task) noexcept;
 
 /// `done`, `failed` and `cancelled` are terminal states.
 enum class JobState : std::uint8_t {
-    queued,     ///< others are before it
-    running,    ///< its turn, unless a direct call is still under way
-    done,       ///< summary and pairs are there
-    failed,     ///< its Error is
-    cancelled,  ///< by the handle, by the engine's end, or by an Error{cancelled} of its sink or progress
+    queued,     ///< waits for earlier jobs
+    running,    ///< runs, or waits until the engine has finished a direct call
+    done,       ///< summary and pairs are available
+    failed,     ///< summary() throws the job's Error
+    cancelled,  ///< by its handle, the engine's end, or an Error{cancelled} of its sink or progress function
 };
 
 using OwnedBoxes = std::variant<std::vector<Box3f>, std::vector<Box3d>, BoxArray<Box3f>, BoxArray<Box3d>>;
 
-/// Objects (objects.hpp) that a job keeps. Boxes alone convert: submit(boxes) copies a vector, submit(std::move(boxes))
-/// hands it over, as it does a BoxArray.
+/// Objects (objects.hpp) that a job owns. Boxes convert implicitly: submit(boxes) copies a vector, submit(std::move(boxes))
+/// moves a vector or a BoxArray.
 struct OwnedObjects {
     template <typename Source>
         requires(std::constructible_from<OwnedBoxes, Source>)
-    // NOLINTNEXTLINE(google-explicit-constructor): boxes are objects.
+    // NOLINTNEXTLINE(google-explicit-constructor): boxes convert to objects.
     OwnedObjects(Source source, std::vector<double> paddings = {})
         : boxes(std::move(source)), padding(std::move(paddings)) {}
 
@@ -58,7 +58,7 @@ struct OwnedObjects {
     std::vector<double> padding;  ///< empty, or one clearance per object
 };
 
-/// Objects that stay the caller's, who keeps the arrays alive and unchanged until the job has ended.
+/// Objects that the caller owns. The arrays must stay alive and unchanged until the job has ended.
 class BorrowedObjects {
 public:
     const Objects& objects() const noexcept { return objects_; }
@@ -69,6 +69,7 @@ private:
 
     Objects objects_;
 };
+/// Marks `objects` as borrowed: the job does not copy them.
 inline BorrowedObjects borrowed(const Objects& objects) { return BorrowedObjects(objects); }
 
 using JobObjects = std::variant<OwnedObjects, BorrowedObjects>;
@@ -77,12 +78,13 @@ using JobJoin = JoinOf<JobObjects>;
 /// The objects of a job: JobObjects, or JobJoin{first, second}.
 using JobInput = InputOf<JobObjects>;
 
-/// The handle of a job. Destroying it or assigning over it cancels the job and waits until the engine has let go of its
-/// input, sink and progress; only within these themselves it does not wait. May outlive the engine, whose end cancels
-/// its jobs.
+/// The handle of a job. It may outlive the engine, whose destruction cancels its jobs.
 ///
-/// One that was default-constructed or moved from has no job: it says `cancelled`, no progress, and ended; summary()
-/// and take_pairs() throw Error{usage}.
+/// Destruction and assignment cancel the job and wait until the engine has released the job's input, sink and progress
+/// function. Inside of this sink or progress function they do not wait.
+///
+/// A handle that was default-constructed or moved from has no job. Its state is `cancelled`, its progress is 0, and waiting
+/// returns at once; summary() and take_pairs() throw Error{usage}.
 class Job {
 public:
     Job() noexcept = default;
@@ -90,26 +92,29 @@ public:
     Job& operator=(Job&& other) noexcept;
     ~Job();
 
-    bool valid() const noexcept { return task_ != nullptr; }  ///< has a job
+    bool valid() const noexcept { return task_ != nullptr; }  ///< true if this handle has a job
     JobState state() const noexcept;
-    double progress() const noexcept;  ///< 0 to 1, never falling; 1 when done
+    double progress() const noexcept;  ///< fraction of the work that is done, 0 to 1; never decreases
 
-    /// Until the job has ended. Throws Error{usage} where that would be for ever: in a sink or a progress of its
-    /// engine's jobs.
+    /// Waits until the job has ended. Throws: Error{usage} in a sink or progress function of a job of the same engine, where
+    /// the wait could not end.
     void wait() const;
-    /// As long at the most, and no longer than a year; whether the job has ended.
+    /// Waits until the job has ended, but at most for `time` and at most a year. Returns true if the job has ended.
     template <typename Rep, typename Period>
     bool wait_for(std::chrono::duration<Rep, Period> time) const;
+    /// Waits until the job has ended, but not beyond `time`. Returns true if the job has ended.
     template <typename Clock, typename Duration>
     bool wait_until(std::chrono::time_point<Clock, Duration> time) const;
 
-    /// Ends the job: at once if it is queued, else within 200 ms (or when its sink or progress returns), by `done` if
-    /// that was nearer. Does not wait for it. Does nothing if the job has ended or was cancelled before.
+    /// Requests that the job ends, and returns at once. A queued job ends immediately; a running one within 200 ms, or when its
+    /// sink or progress function returns. A job that is almost finished may still become `done`. No effect on an ended job.
     void cancel() noexcept;
 
-    /// Waits. Throws the job's own Error if it failed, Error{cancelled} if it was cancelled.
+    /// Waits until the job has ended, and returns its summary.
+    /// Throws: the job's Error if it failed; Error{cancelled} if it was cancelled; Error{usage} as wait().
     Summary summary() const;
-    /// Waits, throws as summary(); and Error{usage} the second time, or if the pairs went to a sink.
+    /// Waits until the job has ended, and returns its pairs.
+    /// Throws: as summary(); Error{usage} if the pairs were taken before or went to a sink.
     PairList take_pairs();
 
 private:

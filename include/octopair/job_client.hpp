@@ -1,16 +1,18 @@
-// JobClient: detached jobs of a server (`octopair serve --state DIR`): submitted now, collected later, from anywhere.
+// JobClient: submits detached jobs to a server (`octopair serve --state DIR`) and collects their results later, from any
+// machine.
 //
-// Result    the same bytes as from every engine (engine.hpp).
-// Jobs      a job that was submitted is on the server's disk: it is done whatever becomes of client and server. It is its
-//           owner's alone: of who has the same token or certificate, or, where the server wants neither, of all. Its
-//           result waits there until it is released, or has waited as long as the server keeps results.
-// Faults    a server that goes away in the middle of a call is waited for and asked again, as long as
-//           ClientOptions::patience: a job is submitted once, and a sink receives each pair once nevertheless. One
-//           that was never there is waited for as long as ClientOptions::connect_timeout.
-// Errors    octopair::Error: as connect (client.hpp); Error{bad_input} if there is no such job, Error{usage} if the server
-//           takes no detached jobs, Error{resource_limit} that names the server's limit; where a result is asked for, what the
-//           job failed with, Error{cancelled} for a job that was cancelled, and on a stop.
-// Threads   a client may be used from several threads at once.
+// Result    The same bytes as from every engine (engine.hpp). The server keeps a result until it is released, or until the
+//           server's retention time has passed.
+// Jobs      A submitted job is on the server's disk: it completes even if the client ends or the server restarts. Only its
+//           owner sees it. All clients with the same token or certificate are one owner; so are all clients of a server that
+//           requires neither.
+// Faults    If the server becomes unreachable, a call repeats its request until the server answers or
+//           ClientOptions::patience has passed; before the first contact, ClientOptions::connect_timeout. Nevertheless a job
+//           is submitted once, and a sink receives each pair once.
+// Errors    octopair::Error, as from connect() (client.hpp). Error{bad_input} for an unknown job; Error{usage} if the server
+//           takes no detached jobs; Error{resource_limit} that names the server's limit; Error{cancelled} after a stop
+//           request. result() throws the job's Error, and Error{cancelled} for a cancelled job.
+// Threads   Several threads may use a client at once.
 #pragma once
 
 #include <chrono>
@@ -30,52 +32,55 @@
 
 namespace octopair {
 
-/// How a job stands on the server.
+/// State of a job on the server.
 struct JobStatus {
     std::string id;
     JobState state = JobState::queued;
-    bool detached = false;            ///< else the job of a call that waits for it
-    bool count_only = false;          ///< its pairs are counted alone: the summary is its result
-    double progress = 0;              ///< of the work, 0 to 1
-    std::uint64_t queued_before = 0;  ///< others that run before it
-    std::uint64_t objects = 0;
-    Summary summary = {};             ///< of a job that is done
-    std::optional<Error> error = {};  ///< of one that failed
+    bool detached = false;            ///< false: a job of a direct call, whose client waits for the result
+    bool count_only = false;          ///< true: pairs are only counted; the result is the summary
+    double progress = 0;              ///< fraction of the work that is done, 0 to 1
+    std::uint64_t queued_before = 0;  ///< number of jobs that run before this one
+    std::uint64_t objects = 0;        ///< number of objects
+    Summary summary = {};             ///< valid if the job is done
+    std::optional<Error> error = {};  ///< set if the job failed
 
     bool ended() const { return state != JobState::queued && state != JobState::running; }
 };
 
-/// Of a job that is submitted.
+/// Settings of a job, besides Options.
 struct JobTerms {
-    std::string id = {};      ///< a UUID in small letters; empty: a random one
-    bool count_only = false;  ///< the number of pairs alone
+    std::string id = {};      ///< lower-case UUID; empty: a random one
+    bool count_only = false;  ///< true: counts the pairs and stores none
 };
 
 class JobClient {
 public:
-    /// As connect, but does not connect yet.
+    /// Takes the arguments of connect() (client.hpp). Does not connect yet. Throws: as connect(), except for an unreachable
+    /// server.
     explicit JobClient(std::string_view address, const ClientOptions& options = {});
     JobClient(const JobClient&) = delete;
     JobClient& operator=(const JobClient&) = delete;
     ~JobClient();
 
-    /// Returns the job's id when it is on the server's disk. A job that was submitted under this id before is the same one;
-    /// Error{bad_input} if its input or options are others. `Options::progress` is of the upload;
-    /// Error{usage} for `Options::verify`: who collects the result need not have the objects.
+    /// Stores a job on the server's disk and returns its id. If a job with this id exists, no second job is made.
+    /// `Options::progress` receives the progress of the upload.
+    /// Throws: Error{bad_input} if a job with this id has other input or options; Error{usage} for `Options::verify`, because
+    /// the client that collects the result may not have the objects.
     std::string submit(const Input& input, const Options& options = {}, const JobTerms& terms = {},
                        std::stop_token stop = {});
 
     JobStatus status(const std::string& id, std::stop_token stop = {});
-    /// Returns when the job has ended, or after the given time.
+    /// Waits until the job has ended, but at most for `most`. Returns its status.
     JobStatus wait(const std::string& id, std::chrono::duration<double> most, std::stop_token stop = {});
-    /// Returns when the job has ended, or after 10 s.
+    /// Cancels the job, waits at most 10 s until it has ended, and returns its status.
     JobStatus cancel(const std::string& id, std::stop_token stop = {});
-    /// Forgets a job that has ended, and its result.
+    /// Deletes a job that has ended, and its result.
     void release(const std::string& id, std::stop_token stop = {});
-    /// The caller's own jobs, ascending by id; those of calls too.
+    /// Returns the status of all jobs of this owner, ascending by id. Includes jobs of direct calls.
     std::vector<JobStatus> list(std::stop_token stop = {});
 
-    /// Waits for the pairs as they are found; the result stays on the server. Those of a job that counts are none.
+    /// Receives the pairs while the server finds them, and returns the summary when the job is done. The result stays on the
+    /// server. A count-only job delivers no pairs.
     Summary result(const std::string& id, PairList& pairs, const ProgressSink& progress = {},
                    std::stop_token stop = {});
     Summary result(const std::string& id, const PairSink& sink, const ProgressSink& progress = {},

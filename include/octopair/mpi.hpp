@@ -1,20 +1,20 @@
-// The MPI engine: pairs are found by the ranks of an MPI program, each with a part of the objects.
+// The MPI engine: the ranks of an MPI program find the pairs; each rank has a part of the objects.
 //
-// Calls     every call is collective: all ranks of the communicator make the same calls in the same order, with the same
-//           options. Each gives its own slice of the objects (of each set, in a join); the slices in the order of the ranks
-//           are the objects of the call, numbered on from rank to rank; at most 2^32 - 1 in all, but for find_pairs64. A
-//           slice may be empty.
-// Result    each rank receives a piece of the pairs, or streams it; the pieces in the order of the ranks are the same bytes
-//           as from every engine. A Summary counts the pairs of all ranks; PairList::size() those of the piece.
-// Errors    what is wrong on one rank ends the call on all, with the same Error; a stop request on one, too. A rank that
-//           dies ends the program, as MPI has it.
-// Threads   MPI must have been started with MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread,
-//           MPI_THREAD_SERIALIZED from others, MPI_THREAD_MULTIPLE for jobs. Jobs run in the order in which they were
-//           submitted, which must be the same on all ranks, and before calls that come after them.
-// Memory    about 130 bytes an object of a rank's float32 boxes, beside input and output. Lists in ascending order are held
-//           twice for a while. Options::buffer_bytes bounds what each rank holds while streaming, or the pairs of a 2^14th of
+// Calls     Every call is collective: all ranks of the communicator make the same calls in the same order with the same
+//           options.
+// Input     Each rank passes its own slice of the objects (of each set, in a join). A slice may be empty. The objects of the
+//           call are all slices in rank order, numbered consecutively; at most 2^32 - 1, except for find_pairs64().
+// Result    Each rank receives or streams a piece of the pairs. All pieces in rank order are the same bytes as from every
+//           engine. A Summary counts the pairs of all ranks; PairList::size() those of the piece.
+// Errors    An error or a stop request on one rank ends the call on all ranks, with the same Error. A rank that dies ends the
+//           program, as usual in MPI.
+// Threads   Requires MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread, MPI_THREAD_SERIALIZED for calls from
+//           other threads, MPI_THREAD_MULTIPLE for jobs.
+// Jobs      Jobs run in the order of submission, which must be the same on all ranks. A later direct call waits for them.
+// Memory    About 130 bytes per object of a rank's float32 boxes, besides input and output. Lists in ascending order are
+//           held twice for a while. A streaming rank holds at most Options::buffer_bytes of pairs, or the pairs of 1/2^14 of
 //           the objects if these are more.
-// CMake     link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
+// CMake     Link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
 #pragma once
 
 #include <mpi.h>
@@ -33,33 +33,36 @@
 namespace octopair {
 
 struct MpiOptions {
-    unsigned threads = 1;  ///< of each rank; 0: one per core
-    /// The same on all ranks. paper: the first rank, the master, gets all objects and deals them out in equal runs; each rank
-    /// builds a sorted list; the first rank of each machine merges those of its machine; the master merges what they have,
-    /// scans, on all of its threads, and has all pairs in its piece. It needs more memory than the local engine.
+    unsigned threads = 1;  ///< threads of each rank; 0: one per core
+    /// Must be the same on all ranks. `paper` runs the paper's algorithm:
+    ///   1. the first rank, the master, receives all objects and distributes them in equal runs;
+    ///   2. each rank builds a sorted list, and the first rank of each machine merges the lists of its machine;
+    ///   3. the master merges these lists and scans with all of its threads. Its piece has all pairs.
+    /// The master then needs more memory than the local engine.
     Arrangement arrangement = Arrangement::shared;
-    unsigned ranks_per_machine = 2;  ///< of Arrangement::paper, which takes so many in a row for a machine; from 1 on
+    unsigned ranks_per_machine = 2;  ///< with Arrangement::paper: consecutive ranks that count as one machine; >= 1
 };
 
-/// Collective. The engine works on a duplicate of `comm` and must be destroyed on all ranks before MPI_Finalize. Throws Error{usage}
-/// outside MPI_Init_thread and MPI_Finalize, and where the ranks' arrangements differ or machines have no ranks,
-/// Error{engine_failed} if MPI fails.
+/// Returns an engine that uses a duplicate of `comm`. Collective.
+/// Requires: all ranks destroy the engine before MPI_Finalize.
+/// Throws: Error{usage} before MPI_Init_thread or after MPI_Finalize, if the ranks' arrangements differ, or if
+/// `ranks_per_machine` is 0; Error{engine_failed} if MPI fails.
 std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options = {});
 
-/// Collective: `pairs` of rank 0 becomes the pieces of all ranks, one after another; those of the others become empty.
-/// Throws Error{usage} unless make_mpi_engine made the engine.
+/// Moves the pieces of all ranks, in rank order, to `pairs` of rank 0. The lists of the other ranks become empty. Collective.
+/// Throws: Error{usage} if `engine` is not an MPI engine.
 void gather_pairs(Engine& engine, PairList& pairs);
 
-/// Two objects by their indices; a < b (in a join: a of the first set, b of the second).
+/// Indices of two objects; a < b (in a join: a is in the first set, b in the second).
 struct Pair64 {
     std::uint64_t a, b;
     auto operator<=>(const Pair64&) const = default;
 };
 
-/// A rank's part of a set, borrowed. The set is in the order of `indices`, however it lies on the ranks.
+/// A rank's part of a set, borrowed. `indices` alone defines the order of the set, not the rank that has an object.
 struct IndexedObjects {
     Objects objects;
-    /// One for each object, each but once in the set; on all ranks empty: 0, 1, ... from rank to rank.
+    /// Index of each object, unique in the set. If empty on all ranks: 0, 1, ... in rank order.
     std::span<const std::uint64_t> indices = {};
 };
 
@@ -67,31 +70,33 @@ using IndexedJoin = JoinOf<IndexedObjects>;
 /// The objects of find_pairs64(): IndexedObjects, or IndexedJoin{first, second}.
 using IndexedInput = InputOf<IndexedObjects>;
 
-/// Collective: this rank's piece of the pairs, as find_pairs would give it for all objects in the order of their indices. For
-/// indices of the caller's own, and for more objects than 2^32 - 1, of which a rank may have no more, with those that it
-/// shares. Pairs beyond Options::limit are found and dropped. Throws as Engine::find_pairs; Error{bad_input} for an index that
-/// is given twice; Error{usage} unless make_mpi_engine made the engine, not in the paper's arrangement.
+/// Stores this rank's piece of the pairs in `pairs`: the piece that find_pairs() would return for all objects in the order of
+/// their indices. Use this function for indices of your own, or for more than 2^32 - 1 objects. Collective.
+/// Throws: as Engine::find_pairs(); Error{resource_limit} if a rank has or receives more than 2^32 - 1 objects;
+/// Error{bad_input} for an index that occurs twice; Error{usage} if `engine` is not an MPI engine or has the paper's
+/// arrangement.
+/// Complexity: finds all pairs and then drops those beyond Options::limit.
 Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair64>& pairs, const Options& options = {},
                      std::stop_token stop = {});
 
-/// What the last call cost this rank. Seconds are processor time of the calling thread, without what it spent within MPI; so
-/// they leave out waiting, and the other threads of a rank that has several.
+/// Costs of the last call on this rank. Seconds are CPU time of the calling thread outside of MPI. They include neither waiting
+/// nor the work of a rank's other threads.
 struct RankCosts {
-    double join = 0;   ///< to learn what all ranks ask for
-    double plan = 0;  ///< the octants
-    double route = 0;  ///< to find where objects go
-    double pack = 0;   ///< what is sent
-    double build = 0;  ///< the linear octree of what was received; in the paper's arrangement a sorted list
-    double merge = 0;  ///< lists, in the paper's arrangement
-    double scan = 0;   ///< pairs
-    double order = 0;  ///< their ascending order
-    double mpi = 0;    ///< within MPI, waiting included where it looks about
+    double join = 0;   ///< exchanges the requests of all ranks
+    double plan = 0;   ///< plans the octants
+    double route = 0;  ///< finds the ranks that receive each object
+    double pack = 0;   ///< packs the objects to send
+    double build = 0;  ///< builds the octree of the received objects; a sorted list in the paper's arrangement
+    double merge = 0;  ///< merges lists, in the paper's arrangement
+    double scan = 0;   ///< finds the pairs
+    double order = 0;  ///< sorts the pairs into ascending order
+    double mpi = 0;    ///< CPU time inside of MPI calls, including time that MPI spends polling
     std::uint64_t bytes_sent = 0, messages_sent = 0;
-    std::uint64_t objects = 0;         ///< that this rank gave
-    std::uint64_t shared_objects = 0;  ///< of these, how many went to several ranks
+    std::uint64_t objects = 0;         ///< number of objects in this rank's slices
+    std::uint64_t shared_objects = 0;  ///< number of these that went to several ranks
     std::uint64_t objects_received = 0;
 };
-/// Throws Error{usage} unless make_mpi_engine made the engine.
+/// Returns the costs of the last call. Throws: Error{usage} if `engine` is not an MPI engine.
 RankCosts last_costs(const Engine& engine);
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// octopair: every colliding pair among millions of moving 3D objects. This header brings the whole library.
+// octopair: finds every colliding pair among millions of moving 3D objects. Includes all headers of octopair::octopair.
 #pragma once
 
 #include "octopair/box_array.hpp"

@@ -1,4 +1,4 @@
-// Options: the settings of a call, the same for all engines.
+// Options: the settings of a call. All engines take the same ones.
 #pragma once
 
 #include <cstdint>
@@ -7,25 +7,27 @@
 
 namespace octopair {
 
-/// `octal`: the order of the linear octree, the cheapest. `ascending`: by a, then b. Both are deterministic.
+/// Order of the result. `ascending` sorts by a, then b. `octal` is the order of the linear octree, and is the cheapest. Both
+/// are deterministic.
 enum class Order : std::uint8_t { ascending, octal };
 
-/// Receives how much of a call is done, 0 to 1, never falling; from one thread at a time, which may not be the
-/// caller's.
+/// Receives the fraction of a call's work that is done, 0 to 1, which never decreases.
+/// Thread safety: called by one thread at a time, not always the calling thread.
 using ProgressSink = std::function<void(double)>;
 
 struct Options {
     Order order = Order::ascending;
-    double margin = 0;                        ///< gap up to which a pair counts, on every axis; finite, >= 0
-    std::optional<std::uint64_t> limit = {};  ///< the first so many pairs of the order
-    std::uint64_t buffer_bytes = 1ull << 30;  ///< bound on pairs held while streaming; at least 1 MiB is used
-    ProgressSink progress = {};               ///< may be empty; what it throws ends the call and reaches the caller
-    /// Checks the result by a second algorithm that shares no code with the octree (docs/design.md, "Certificates").
-    /// A difference throws Error{engine_failed} that names a pair; of a list that failed, no pair is left. A stream fails
-    /// before a pair that does not belong is handed out, and for want of a pair at its end at the latest.
-    /// Time: some microseconds an object, shared by the threads; often ten times the call. Memory, in this process: 33
-    /// bytes an object (64 for float64), 12 more in octal order; the number of pairs does not matter.
-    /// Throws Error{usage} on an engine of MPI ranks, none of which has all objects.
+    double margin = 0;                        ///< largest gap, per axis, at which a pair counts; finite, >= 0
+    std::optional<std::uint64_t> limit = {};  ///< maximum number of pairs; the first ones in `order` are returned
+    std::uint64_t buffer_bytes = 1ull << 30;  ///< maximum memory for pairs while streaming; 1 MiB at least is used
+    ProgressSink progress = {};               ///< may be empty; an exception ends the call and propagates to the caller
+    /// True: a second algorithm that shares no code with the octree checks the result (docs/design.md, "Certificates").
+    /// A list that fails the check is emptied. A stream fails before a wrong pair reaches the sink; a missing pair fails it at
+    /// its end at the latest.
+    /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} on an MPI engine, because no rank has all
+    /// objects.
+    /// Complexity: some microseconds per object, divided among the threads; often ten times the call. 33 bytes per object (64
+    /// for float64) in this process, and 12 more in octal order, for any number of pairs.
     bool verify = false;
 };
 

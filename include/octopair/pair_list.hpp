@@ -17,8 +17,8 @@ struct PairStorage;
 PairStorage& storage_of(PairList& list);
 }  // namespace detail
 
-/// Pairs in order, owned, in one or more chunks. Reuse it from call to call: it keeps its memory.
-/// Not thread-safe; chunks() is valid until the list is next written to or destroyed.
+/// Owns pairs, in order, in one or more chunks. Reuse the list for later calls: it keeps its memory. chunks() is valid until
+/// the list is next written or destroyed. Thread safety: none.
 class PairList {
 public:
     PairList();
@@ -28,7 +28,7 @@ public:
 
     std::uint64_t size() const;
     std::span<const std::span<const Pair>> chunks() const;
-    std::vector<Pair> to_vector() const;  ///< a copy
+    std::vector<Pair> to_vector() const;  ///< copies all pairs
 
 private:
     friend detail::PairStorage& detail::storage_of(PairList& list);

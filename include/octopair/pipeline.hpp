@@ -1,16 +1,16 @@
-// The pipeline: filters in a row behind any engine. Pairs go in, collisions come out.
+// Pipeline: runs filters on the pairs of any engine. Pairs go in, collisions come out.
 //
 //     pairs -> [masks, exclusions] -> [exact object] -> [exact feature] -> collisions with contacts
 //
-// Order     that of the engine's pairs (Options::order); the same bytes for any number of threads and from every engine.
-// Memory    bounded by the batch: at most Options::buffer_bytes of pairs are held, and what filters learned of a part of
-//           them.
-// Errors    octopair::Error; what a filter or the sink throws ends the call and reaches the caller.
-// Ranks     behind the MPI engine run() is collective, and each rank has what comes out of its own piece: with no limit,
-//           which none can heed alone, and what a filter throws may be thrown on its rank alone. filter(), of a piece that
-//           was found before, asks no other rank.
-// Threads   filters run in the caller's process, on several threads at once, each with its own batch; one pipeline makes
-//           one call at a time. CMake: link octopair::pipeline.
+// Order     The order of the engine's pairs (Options::order). The same bytes from every engine and for any number of threads.
+// Memory    At most Options::buffer_bytes of pairs, and the findings of a part of them.
+// Errors    octopair::Error. An exception of a filter or the sink ends the call and propagates to the caller.
+// Ranks     With the MPI engine run() is collective, and each rank filters its own piece of the pairs. Options::limit must not
+//           be set: a rank does not know how many collisions other ranks found. An exception of a filter may be thrown on its
+//           rank only. filter() of a piece is not collective.
+// Threads   Filters run in the caller's process, on several threads at once, each with its own batch. A pipeline makes one
+//           call at a time.
+// CMake     Link octopair::pipeline.
 #pragma once
 
 #include <cstdint>
@@ -32,21 +32,21 @@ namespace detail {  // not for users
 struct BatchAccess;
 }
 
-/// Some pairs on their way through the filters, in order.
+/// A batch of pairs that passes through the filters, in order, with the findings of the filters.
 class Batch {
 public:
     std::span<const Pair> pairs() const { return pairs_; }
-    /// What is known of each pair: as many as there are pairs, or none if no filter has learned anything.
+    /// Returns one finding per pair; empty if no filter has stored a finding.
     std::span<const Finding> findings() const { return findings_; }
 
-    /// What is known of a pair, to be added to. Finding places are made for all pairs at the first call.
+    /// Returns the finding of pair i, to be completed. The first call allocates findings for all pairs.
     Finding& finding(std::size_t i) {
         if (findings_.empty()) findings_.resize(pairs_.size());
         return findings_[i];
     }
 
-    /// Lets pairs through for which keep(i) is true, with what is known of them. Called in order of i, which counts in
-    /// the batch as it was before; `keep` may call finding(i). Throws Error{cancelled} after a stop request.
+    /// Keeps the pairs for which keep(i) is true, and their findings; drops the others. Calls `keep` in ascending order of i,
+    /// the index before the call. `keep` may call finding(i). Throws: Error{cancelled} after a stop request.
     template <typename Keep>
     void keep_if(Keep keep) {
         std::size_t kept = 0;
@@ -63,7 +63,8 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
-    /// Lets through the pairs of these numbers, which ascend, with what is known of them.
+    /// Keeps the pairs with these indices, and their findings; drops the others. Requires: `numbers` is strictly ascending.
+    /// Throws: Error{cancelled} after a stop request.
     void keep_these(std::span<const std::uint32_t> numbers) {
         if (stop_.stop_requested()) cancel();
         std::size_t kept = 0;
@@ -76,7 +77,7 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
-    /// For filters that take long over one pair.
+    /// Returns the stop token of the call. A filter that spends long on one pair should check it.
     const std::stop_token& stop() const { return stop_; }
 
 private:
@@ -88,7 +89,7 @@ private:
     std::stop_token stop_;
 };
 
-/// One stage of the pipeline. A user's own: a class with a name, and an apply() that calls batch.keep_if().
+/// One stage of the pipeline. To write your own filter, derive a class whose apply() calls batch.keep_if().
 class Filter {
 public:
     Filter() = default;
@@ -96,52 +97,53 @@ public:
     Filter& operator=(const Filter&) = delete;
     virtual ~Filter() = default;
 
-    /// For the summary: "exact object".
+    /// Returns the name for the summary, for example "exact object".
     virtual std::string_view name() const = 0;
-    /// Called by several threads at once, with different batches. What it does to a pair must depend on that pair alone.
+    /// Filters a batch. Requires: the effect on a pair depends only on that pair.
+    /// Thread safety: several threads call this at once, with different batches.
     virtual void apply(Batch& batch) const = 0;
 };
 
-/// A filter made of a condition that a pair has to meet.
+/// Returns a filter that keeps the pairs for which `keep` returns true.
 std::unique_ptr<Filter> make_filter(std::string name, std::function<bool(Pair)> keep);
 
 struct FilterCounts {
     std::string name;
-    std::uint64_t in = 0, out = 0;
-    double seconds = 0;  ///< of all threads together
+    std::uint64_t in = 0, out = 0;  ///< number of pairs before and after the filter
+    double seconds = 0;             ///< sum over all threads
 };
 
 struct PipelineSummary {
-    std::uint64_t collisions = 0;  ///< what came out
-    bool truncated = false;        ///< `limit` was reached and at least one more collision exists
-    double seconds = 0;            ///< wall clock
-    /// Of the all-pairs stage, without what the calling thread did for filters and in the sink meanwhile. Where the limit
-    /// ended it early, its pairs and seconds alone are known.
+    std::uint64_t collisions = 0;  ///< number of pairs that passed all filters
+    bool truncated = false;        ///< true if `limit` was reached and at least one more collision exists
+    double seconds = 0;            ///< wall-clock time
+    /// Summary of the all-pairs stage. Its seconds exclude the calling thread's work for filters and the sink. If the limit
+    /// ended the search early, only pairs and seconds are valid.
     Summary search;
-    std::vector<FilterCounts> filters;
+    std::vector<FilterCounts> filters;  ///< one element per filter, in pipeline order
 };
 
-/// Receives batches in order, on the calling thread; a batch is valid during the call only, and not empty. What it throws
-/// ends the call and reaches the caller.
+/// Receives batches in order, on the calling thread. A batch is not empty and is valid only during the call. An exception ends
+/// the search and propagates to the caller.
 using CollisionSink = std::function<void(const Batch&)>;
 
 class Pipeline {
 public:
-    /// `threads`: for the filters; 0: one per core.
+    /// Makes an empty pipeline that runs filters on `threads` threads; 0: one per core.
     explicit Pipeline(unsigned threads = 0);
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;
     ~Pipeline();
 
-    /// Behind those that are there.
+    /// Appends a filter. Throws: Error{usage} if `filter` is null.
     void add(std::unique_ptr<Filter> filter);
 
-    /// Finds pairs with the engine and filters them; `limit` counts what comes out. An empty sink has it counted only.
-    /// `verify` checks the engine's pairs, not the filters; where `limit` ends the search early, no more than those that
-    /// were found.
+    /// Finds pairs with the engine, filters them and passes the collisions to `sink`; an empty sink: only counts them.
+    /// `Options::limit` is the maximum number of collisions. `Options::verify` checks the engine's pairs, not the filters; if
+    /// the limit ends the search early, only the pairs found so far. Throws: as Engine::stream_pairs().
     PipelineSummary run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options = {},
                         std::stop_token stop = {});
-    /// Pairs that are there already, in their order; of the options it heeds limit, buffer_bytes and progress.
+    /// Filters the given pairs in their order. Uses only `limit`, `buffer_bytes` and `progress` of the options.
     PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options = {},
                            std::stop_token stop = {});
 

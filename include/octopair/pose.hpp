@@ -1,4 +1,4 @@
-// Points, triangles and poses: the plain data of places in space, in float64.
+// Points, triangles and poses in float64: plain values.
 //
 // Units     Lengths are in the caller's unit. A Point3d is x, y, z.
 // Ownership All types are plain values.
@@ -10,12 +10,12 @@ namespace octopair {
 
 using Point3d = std::array<double, 3>;
 
-/// A triangle in the world: its three corners.
+/// The three corners of a triangle, in world coordinates.
 using Triangle3d = std::array<Point3d, 3>;
 
-/// Maps x to (the first three columns) * x + (the last column). All numbers are finite. Meshes and convex hulls accept any such
-/// map: scaled, sheared, mirrored. Other shapes accept a rotation and a translation: columns of length 1, perpendicular to
-/// 1e-6, not mirrored.
+/// An affine map: x becomes (the first three columns) * x + (the last column). All numbers are finite.
+/// Meshes and convex hulls accept any such map: also scaling, shear and reflection. Other shapes accept only a rotation and a
+/// translation: columns of length 1, perpendicular within 1e-6, no reflection.
 struct Pose {
     std::array<std::array<double, 4>, 3> rows = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 };

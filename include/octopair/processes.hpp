@@ -1,14 +1,14 @@
-// The process engine: pairs are found by worker processes of the library's own, which share memory with the application.
+// The process engine: worker processes, which share memory with the application, find the pairs.
 //
-// Result    the same bytes as from every engine.
-// Faults    a worker that dies or is stopped, at any moment, is noticed within a second and replaced, and its share of the
-//           work is done again. Work that ends three workers fails its call alone, with Error{engine_failed}. Memory that
-//           is exhausted is Error{resource_limit}, never a signal. Workers end with the engine, and within two seconds with
-//           the application, however that ends.
-// Copies    boxes are copied to shared memory, unless the engine allocated them (Engine::allocate_boxes). Pairs, if they are
-//           many, are not: a PairList keeps the memory that workers wrote to.
-// Memory    about 60 bytes an object beside input and output, and the copy of the boxes; kept until the engine goes.
-// Fork      an engine belongs to the process that made it; in one forked from that, its calls throw Error{usage}.
+// Result    The same bytes as from every engine.
+// Faults    If a worker dies or is stopped (SIGSTOP), at any moment, the engine notices within a second, replaces the worker
+//           and repeats its share of the work. A share that ends three workers fails only its call, with
+//           Error{engine_failed}. Exhausted memory is Error{resource_limit}, never a signal.
+// Lifetime  Workers end with the engine, and within two seconds after the application ends for any reason.
+// Copies    Boxes are copied to shared memory, unless Engine::allocate_boxes allocated them. Large results are not copied: a
+//           PairList keeps the memory that workers wrote.
+// Memory    About 60 bytes per object besides input and output, and the copy of the boxes. Kept until the engine is destroyed.
+// Fork      An engine belongs to the process that made it. In a forked process its calls throw Error{usage}.
 // System    Linux 5.4 or later. CMake: link octopair::processes.
 #pragma once
 
@@ -20,8 +20,8 @@
 #include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
 
-/// Where the package that a program is built with has octopair-worker: what links octopair::processes of an installed
-/// octopair is compiled with it.
+/// Path of octopair-worker in the installed octopair package. CMake defines it for targets that link octopair::processes of an
+/// installed octopair.
 #ifndef OCTOPAIR_WORKER_PROGRAM
 #define OCTOPAIR_WORKER_PROGRAM ""
 #endif
@@ -29,38 +29,39 @@
 namespace octopair {
 
 struct ProcessOptions {
-    unsigned workers = 0;                           ///< 0: one per core; at most 256
-    Arrangement arrangement = Arrangement::shared;  ///< paper: the application merges and scans
-    /// The program of the workers, octopair-worker of the same version. Empty: what the environment variable
-    /// OCTOPAIR_WORKER names; or else octopair-worker beside the application's program, in ../libexec/octopair from
-    /// there, in the package, as configured, or as built.
+    unsigned workers = 0;                           ///< number of workers, at most 256; 0: one per core
+    Arrangement arrangement = Arrangement::shared;  ///< with `paper` the application merges and scans
+    /// Path of octopair-worker, of the same version. If empty, the path in the environment variable OCTOPAIR_WORKER. If that is
+    /// not set either, the first octopair-worker found in: the folder of the application's program; ../libexec/octopair from
+    /// there; the package; the configured installation; the build tree.
     std::string worker_program = {};
 };
 
 namespace detail {  // not for users
-/// The worker program of the package that the calling program is built with.
+/// The worker program of the package that the calling program was built with.
 struct PackagedWorker {
-    const char* path;
+    const char* path;  ///< empty: none
 };
 }  // namespace detail
 
-/// Starts the workers. Leave `package` to its default.
-/// Throws: Error{engine_failed} if they cannot be started; Error{resource_limit} if the system has no processes, descriptors
-/// or memory to give.
+/// Starts the workers and returns their engine. Callers leave `package` at its default.
+/// Throws: Error{engine_failed} if the workers cannot be started; Error{resource_limit} if the system runs out of processes,
+/// descriptors or memory.
 std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options,
                                             detail::PackagedWorker package = {OCTOPAIR_WORKER_PROGRAM});
 std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,
                                             detail::PackagedWorker package = {OCTOPAIR_WORKER_PROGRAM});
 
-/// What has happened to the workers of an engine since it was made.
+/// Counts of worker faults since the engine was made.
 struct WorkerFaults {
-    std::uint64_t ended = 0;    ///< workers that died
-    std::uint64_t stopped = 0;  ///< workers that were stopped, and killed for it
-    /// Of these: how many had a share under way, by step: prepare, encode, merge, sort, scan, order.
+    std::uint64_t ended = 0;    ///< number of workers that died
+    std::uint64_t stopped = 0;  ///< number of workers that were stopped (SIGSTOP) and therefore killed
+    /// Number of these workers that were running a share, by its step: prepare, encode, count, scatter, scan, order.
     std::array<std::uint64_t, 6> in_share = {};
 };
 
-/// Thread-safe. Throws Error{usage} unless make_process_engine made the engine.
+/// Returns the faults of the engine's workers so far.
+/// Throws: Error{usage} if `engine` is not a process engine. Thread safety: any thread, at any time.
 WorkerFaults worker_faults(const Engine& engine);
 
 }  // namespace octopair

@@ -1,19 +1,19 @@
-// RemoteScene: a scene that lives on a server (`octopair serve`): calls and results are those of a Scene, and what goes over
-// the network in a frame follows what moved.
+// RemoteScene: a scene on a server (`octopair serve`). Calls and results are those of a Scene; the network traffic of a frame
+// depends on what moved.
 //
-// Result    the same ids, pairs and errors as of a Scene, byte for byte.
-// Network   step() alone uses it: calls before it are checked and kept here, and go to the server with the step, which
-//           returns what began and ended. A frame in which m objects moved sends about 32 m bytes (56 m in float64), and
-//           receives 8 bytes a pair that began or ended.
-// Faults    a server that goes away is waited for, as long as ClientOptions::patience, and given the whole scene again; ids
-//           stay as they are. Then, or where the server refuses, step() throws: Error{resource_limit} that names the
-//           server's limit, or Error{engine_failed}. Whatever it throws, the scene is as before the step, which may be
-//           repeated: it then gives the server the whole scene again.
-// Errors    otherwise as of a Scene; a scene that was moved from may only be destroyed or assigned to.
-// Threads   one at a time.
-// Memory    objects and pairs are also here: about 35 bytes an object (60 in float64), 16 a pair, and what is sent.
-// Queries   are not offered: an overlap or a ray would wait for the network. A Scene that is given the same calls answers
-//           them.
+// Result    The same ids, pairs and errors as from a Scene, byte for byte.
+// Network   Only step() uses the network. Other calls are checked and buffered here; step() sends them and receives the pairs
+//           that began and ended. A frame with m moved objects sends about 32 m bytes (56 m in float64) and receives 8 bytes
+//           per pair that began or ended.
+// Faults    If the server becomes unreachable, step() waits for it, at most ClientOptions::patience, and then sends the whole
+//           scene again. Ids do not change.
+// Errors    If the server stays unreachable or refuses, step() throws Error{resource_limit} that names the server's limit, or
+//           Error{engine_failed}. A step() that throws leaves the scene as it was and may be repeated; it then sends the whole
+//           scene again. Other errors are those of a Scene. A scene that was moved from may only be destroyed or assigned to.
+// Threads   One thread at a time.
+// Memory    Objects and pairs are also stored here: about 35 bytes per object (60 in float64), 16 per pair, and the buffered
+//           calls.
+// Queries   Not offered: each query would wait for the network. A local Scene that receives the same calls can answer them.
 // Protocol  gRPC (docs/protocol.md). CMake: link octopair::client.
 #pragma once
 
@@ -28,7 +28,7 @@
 
 namespace octopair {
 
-/// As in SceneOptions.
+/// A part of SceneOptions (scene.hpp), with the same meaning.
 struct RemoteSceneOptions {
     Precision precision = Precision::float32;
     double margin = 0;
@@ -38,21 +38,21 @@ class RemoteScene {
 public:
     RemoteScene(RemoteScene&&) noexcept;
     RemoteScene& operator=(RemoteScene&&) noexcept;
-    /// The server forgets the scene.
+    /// Deletes the scene on the server.
     ~RemoteScene();
 
-    /// As of Scene; in all calls here arrays are copied.
+    /// These calls are those of Scene. All of them copy the arrays.
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits = {});
     void move(std::span<const ObjectId> ids, const Boxes& boxes);
     void sweep(std::span<const ObjectId> ids, const Boxes& boxes);
     void remove(std::span<const ObjectId> ids);
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
 
-    /// As of Scene; `seconds` includes the way to the server and back. Throws what is said above, and Error{cancelled} within
-    /// 200 ms of a stop request.
+    /// Runs Scene::step() on the server. `StepResult::seconds` includes the network round trip.
+    /// Throws: the errors above; Error{cancelled} within 200 ms after a stop request.
     const StepResult& step(std::stop_token stop = {});
 
-    /// As of Scene.
+    /// The remaining calls are those of Scene.
     const PairList& pairs();
     const PairList& persisting();
 
@@ -69,7 +69,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// A new scene. Throws as connect(), and Error{bad_input} for a margin that is not finite or below 0.
+/// Makes a new scene on the server at `address` and returns it.
+/// Throws: as connect() (client.hpp); Error{bad_input} for a margin that is not finite or below 0.
 RemoteScene connect_scene(std::string_view address, const RemoteSceneOptions& options = {},
                           const ClientOptions& client = {});
 

@@ -1,21 +1,20 @@
 // Scene: objects that persist and move, and the pairs that begin and end from step to step.
 //
-// Result    after every step() pairs() is what a full detection of the same boxes, paddings, margin and traits finds,
-//           ascending; `began` and `ended` are ascending as well. The same for any number of threads, and for any way in
-//           which the scene came to be what it is.
-// Objects   have an index, which pairs and queries name, and a generation: an id is of one object for ever. The index of a
-//           removed object is given to another one after the next step() at the earliest, so within a step an index
-//           means one object.
-// Errors    octopair::Error{bad_input} for an id that is not (or no longer) of the scene, or a box that is not one, with its
-//           position in the call; {resource_limit} where a step runs out of memory, std::bad_alloc elsewhere. A call that
-//           fails changes nothing; a step() that fails or is cancelled leaves pairs() as they were, and may be repeated.
+// Result    After every step() pairs() equals a full detection with the same boxes, paddings, margin and traits, in ascending
+//           order. `began` and `ended` are ascending, too. The result depends neither on the number of threads nor on how the
+//           scene got its objects.
+// Objects   An object has an index, which pairs and queries use, and a generation. An id never denotes two objects. The index
+//           of a removed object is reused after the next step() at the earliest, so it denotes one object within a step.
+// Errors    octopair::Error{bad_input}, with the position in the call, for an invalid box or an id that is not in the scene;
+//           {resource_limit} if a step runs out of memory; other calls then throw std::bad_alloc. A call that fails changes
+//           nothing. A step() that fails or is cancelled leaves pairs() unchanged and may be repeated.
 //           {engine_failed}, with the pair, if a search was wrong, which only an error in octopair causes: a step finds a
-//           pair twice, or a pair begins that was there, or ends that was not. A step(), pairs() or persisting() may be
-//           the call to see that. The step() after it searches all objects; pairs() may throw until then.
+//           pair twice, a pair begins that existed, or a pair ends that did not exist. step(), pairs() or persisting() may
+//           detect this. The next step() then searches all objects; pairs() may throw until then.
 //           A scene that was moved from may only be destroyed or assigned to.
-// Threads   one at a time, also for queries.
-// Cost      a step's follows what moved; where most objects did, it is that of a full detection. About 120 bytes an object
-//           and 16 a pair at the most; docs/results.md has what was measured.
+// Threads   One thread at a time, also for queries.
+// Cost      A step's time depends on what moved; if most objects moved, it is that of a full detection. At most about 120
+//           bytes per object and 16 per pair. docs/results.md has measurements.
 #pragma once
 
 #include <compare>
@@ -34,102 +33,109 @@
 
 namespace octopair {
 
-/// An object of a scene.
+/// Identifies an object of a scene.
 struct ObjectId {
     std::uint32_t index = ~std::uint32_t(0);
     std::uint32_t generation = 0;
     auto operator<=>(const ObjectId&) const = default;
 };
 
-/// What an object pairs with: two objects do if each one's `mask` has a bit of the other's `groups`, and not both are
-/// `fixed`.
+/// Decides which objects can form a pair: each object's `mask` must have a bit of the other's `groups`, and at least one of the
+/// objects must not be `fixed`.
 struct Traits {
     std::uint32_t groups = 1;
     std::uint32_t mask = ~std::uint32_t(0);
-    bool fixed = false;  ///< it may be moved nevertheless
+    bool fixed = false;  ///< two fixed objects never form a pair; a fixed object may still be moved
 
     bool operator==(const Traits&) const = default;
 };
 
-/// Of the boxes of a scene.
+/// Precision of the boxes of a scene.
 enum class Precision : std::uint8_t { float32, float64 };
 
 struct SceneOptions {
     unsigned threads = 0;  ///< 0: one per core
     Precision precision = Precision::float32;
     double margin = 0;  ///< as in Options
-    /// Path of a file that all calls are written to, for `octopair replay` (docs/formats.md); empty: none. One that is there is
-    /// emptied. Written before and after each step, never synced; a call that cannot be written throws Error{io_failed}.
+    /// Path of a file that records all calls, for `octopair replay` (docs/formats.md); empty: none. An existing file is
+    /// overwritten. Written before and after each step, never synced. A call that cannot be written throws Error{io_failed}.
     std::string recording = {};
-    /// Asked before memory is taken for pairs, with its bytes, by any thread, one at a time. What it throws is thrown by the
-    /// call that needed the memory, as if there were none. None: only the machine's memory is a limit.
+    /// Called with the number of bytes before memory for pairs is allocated. To refuse the memory, it throws; the call that
+    /// needed the memory then throws this exception. Empty: no limit but the machine's memory.
+    /// Thread safety: called by any thread, one at a time.
     std::function<void(std::uint64_t bytes)> room_for_pairs = {};
 };
 
-/// What a step found. The spans are valid until the scene's next call that is not const.
+/// Result of a step. The spans are valid until the scene's next call that is not const.
 struct StepResult {
-    std::span<const Pair> began;   ///< a < b, by their indices
-    std::span<const Pair> ended;   ///< also those of removed objects
-    std::uint64_t persisting = 0;  ///< pairs that were there before and still are
-    bool full = false;             ///< all objects were searched, not just those that changed
-    double seconds = 0;            ///< wall clock
+    std::span<const Pair> began;   ///< pairs that began, by indices; a < b
+    std::span<const Pair> ended;   ///< pairs that ended, those of removed objects included
+    std::uint64_t persisting = 0;  ///< number of pairs that existed before and still exist
+    bool full = false;             ///< true if all objects were searched, not only the changed ones
+    double seconds = 0;            ///< wall-clock time
 
+    /// Returns the number of all pairs after the step.
     std::uint64_t pairs() const { return persisting + began.size(); }
 };
 
 class Scene {
 public:
-    /// Throws Error{bad_input} for a margin that is not finite or below 0, Error{io_failed} if the recording cannot be made.
+    /// Makes an empty scene.
+    /// Throws: Error{bad_input} for a margin that is not finite or below 0; Error{io_failed} if the recording cannot be
+    /// created.
     explicit Scene(const SceneOptions& options = {});
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;
     ~Scene();
 
-    /// Adds objects, whose ids go to `ids` (as many as objects). `traits`: none for the defaults, one for all, or one for
-    /// each. Boxes of the other precision than the scene's are an error; in all calls here arrays are copied.
+    /// Adds objects and writes their ids to `ids`, which has one element per object. `traits` is empty (defaults), one element
+    /// for all, or one element per object. Boxes must have the scene's precision. This and the calls below copy their arrays.
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits = {});
-    /// Gives objects new boxes; of an object that is named twice, the last counts.
+    /// Gives objects new boxes. If `ids` has an object twice, its last box counts.
     void move(std::span<const ObjectId> ids, const Boxes& boxes);
-    /// The same, but for the next step an object's box is that of its whole way, from where it was: a fast one is not
-    /// missed between frames. From the step after that on it is the given box.
+    /// Like move(), but in the next step an object's box is the union of its old and its new box. So a fast object misses no
+    /// collision between frames. After that step its box is the new one.
     void sweep(std::span<const ObjectId> ids, const Boxes& boxes);
     void remove(std::span<const ObjectId> ids);
-    /// One for all, or one for each.
+    /// Changes the traits of objects. `traits` has one element for all, or one element per object.
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
 
-    /// Finds what changed since the last step. Throws Error{cancelled} within 200 ms of a stop request, unless it is done
-    /// before.
+    /// Finds the pairs that began and ended since the last step.
+    /// Throws: Error{cancelled} within 200 ms after a stop request, unless the step is done before.
     const StepResult& step(std::stop_token stop = {});
 
-    /// All pairs of the last step. Valid until the next step.
+    /// Returns all pairs of the last step. Valid until the next step.
     const PairList& pairs();
-    /// Those of them that were there before that step. Valid as long.
+    /// Returns the pairs of the last step that existed before it. Valid until the next step.
     const PairList& persisting();
 
     static constexpr std::uint32_t all_groups = ~std::uint32_t(0);
 
-    /// Queries (queries.hpp): on the objects as they are now (until the next step, one that is swept is its whole way), of
-    /// those that have a bit of `groups` in theirs. Cheapest right after a step(). Throw Error{bad_input} for a query that is none, with its position.
+    /// Queries (queries.hpp). They use the current boxes; a swept object has its union box until the next step. They consider
+    /// only objects whose traits have a bit of `groups`. `answers` gets the answers of each query.
+    /// Throws: Error{bad_input} with the position of the first invalid query.
+    /// Complexity: cheapest directly after a step().
     void overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
     void overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups = all_groups);
-    /// One hit of each ray, or none.
+    /// Finds the first hit of each ray, if there is one.
     void first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups = all_groups);
+    /// Finds all hits of each ray.
     void all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups = all_groups);
-    /// The `count` objects nearest to each place (or all, if there are no more); a point is a box of no extent.
+    /// Finds the `count` objects nearest to each place, or all if there are fewer. A point is a box of extent 0.
     void nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                  std::uint32_t groups = all_groups);
 
-    /// The same of one query.
+    /// The same queries for a single box, sphere, ray or place. They return the answers.
     std::vector<std::uint32_t> overlaps(const Box3d& box, std::uint32_t groups = all_groups);
     std::vector<std::uint32_t> overlaps(const Sphere& sphere, std::uint32_t groups = all_groups);
     std::optional<RayHit> first_hit(const Ray& ray, std::uint32_t groups = all_groups);
     std::vector<RayHit> all_hits(const Ray& ray, std::uint32_t groups = all_groups);
     std::vector<Neighbor> nearest(const Box3d& place, std::size_t count, std::uint32_t groups = all_groups);
 
-    std::uint64_t size() const;     ///< objects
-    std::uint64_t indices() const;  ///< above every index
+    std::uint64_t size() const;     ///< number of objects
+    std::uint64_t indices() const;  ///< upper bound of the indices: every index is smaller
     bool contains(ObjectId id) const;
-    /// Of the object at an index; Error{bad_input} if there is none.
+    /// Returns the id of the object at `index`. Throws: Error{bad_input} if there is none.
     ObjectId id(std::uint32_t index) const;
 
 private:

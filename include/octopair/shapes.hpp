@@ -1,13 +1,13 @@
-// Shapes and poses: what objects are beside their boxes, for the exact stages of the pipeline (pipeline.hpp).
+// Shapes: the exact geometry of objects, for the exact stages of the pipeline (pipeline.hpp).
 //
-// Units     lengths are the caller's own; shapes lie at the origin of their own space, those with an axis along z.
-// Closed    a shape is a closed set of points: all but planes and meshes are solid; a mesh that is closed (every edge in
-//           an even number of triangles, by position) has an inside as well.
-// World     a vertex v of a mesh is in the world where float64 arithmetic puts it, each operation rounded once:
-//           ((r0 * v.x + r1 * v.y) + r2 * v.z) + r3 for each row r of the pose. These places are what exact tests judge.
-// Ownership a Geometry owns its shape and is shared, cheap to copy and never changes; ShapedObjects borrows.
-// Errors    Error{bad_input}, which names the number that is not what it must be, and the object.
-// Threads   all of this may be used by many threads at once. CMake: link octopair::pipeline.
+// Units     Lengths are in the caller's unit. A shape is centred at the origin of its local space; an axis is the z axis.
+// Closed    A shape is a closed set of points. All shapes but planes and meshes are solid. A closed mesh (every edge in an even
+//           number of triangles, by position) also has an interior.
+// World     Each row r of the pose gives a world coordinate of a mesh vertex v: ((r0 * v.x + r1 * v.y) + r2 * v.z) + r3, each
+//           operation rounded once in float64. The exact tests use these positions.
+// Ownership A Geometry owns its shape, never changes, and is cheap to copy: copies share the shape. ShapedObjects borrows.
+// Errors    Error{bad_input}, which names the invalid number and the object.
+// Threads   Any number of threads may use all of this at once. CMake: link octopair::pipeline.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ namespace octopair {
 namespace shape {
 
 struct Sphere {
-    double radius;  ///< > 0, as all radii
+    double radius;  ///< > 0, like all radii
 };
 struct Box {
     Point3d half_extents;  ///< > 0
@@ -34,27 +34,28 @@ struct Box {
 struct Capsule {
     double radius, length;  ///< length >= 0
 };
-/// From z = -length / 2 to length / 2, as the cone, whose tip is above.
+/// Extends from z = -length / 2 to length / 2.
 struct Cylinder {
     double radius, length;  ///< > 0
 };
+/// Extends from z = -length / 2, its base, to z = length / 2, its tip.
 struct Cone {
     double radius, length;  ///< > 0
 };
 struct Ellipsoid {
     Point3d radii;
 };
-/// The points x with normal * x = offset: a surface without an inside. Planes do not collide with each other.
+/// The points x with normal * x = offset: a surface without an interior. Planes do not collide with each other.
 struct Plane {
-    Point3d normal;  ///< of any length but 0
+    Point3d normal;  ///< any length but 0
     double offset;
 };
 /// The convex hull of at least one point.
 struct ConvexHull {
     std::vector<Point3d> points;
 };
-/// Triangles of any kind, degenerate ones too; without any it collides with nothing. Indices are below the number of
-/// vertices; those of closed meshes should see them counterclockwise from outside, for contacts' normals.
+/// A triangle mesh; triangles may be degenerate. A mesh without triangles collides with nothing. Each index is below the number
+/// of vertices. Triangles of a closed mesh should be counterclockwise seen from outside, so that contact normals are right.
 struct Mesh {
     std::vector<Point3d> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -71,9 +72,10 @@ struct PreparedShape;
 const PreparedShape& prepared(const Geometry& geometry);
 }  // namespace detail
 
-/// A shape, made ready to be tested: a mesh with its bounding hierarchy. Objects that look alike share one.
+/// A shape that is prepared for tests; a mesh with its bounding volume hierarchy. Objects of equal shape should share one.
 class Geometry {
 public:
+    /// Checks and prepares `shape`. Throws: Error{bad_input} if it is invalid.
     explicit Geometry(shape::Any shape);
 
     const shape::Any& shape() const;
@@ -83,24 +85,24 @@ private:
     std::shared_ptr<const detail::PreparedShape> prepared_;
 };
 
-/// Objects with shapes, borrowed: object i has the geometry geometries[geometry[i]], posed by poses[i].
+/// Objects with shapes, borrowed. Object i has the geometry geometries[geometry[i]] and the pose poses[i].
 struct ShapedObjects {
     std::span<const Geometry> geometries;
     std::span<const std::uint32_t> geometry;
     std::span<const Pose> poses;
-    /// Empty, or where each object is at time 1: until then it moves straight, and turns evenly about its own origin, the
-    /// short way. Planes do not turn.
+    /// Pose of each object at time 1; empty: no object moves. From time 0 to 1 the origin of an object moves in a straight
+    /// line. The object turns about its origin at constant speed, by the smaller angle. Planes do not turn.
     std::span<const Pose> end_poses = {};
-    std::span<const double> padding = {};  ///< empty, or one clearance per object; finite, >= 0
+    std::span<const double> padding = {};  ///< clearance of each object, finite and >= 0; empty: none
 
     std::uint64_t size() const noexcept { return poses.size(); }
 };
 
-/// Throws Error unless sizes agree, indices are in range and poses fit their shapes.
+/// Checks that sizes are equal, indices are in range and poses suit their shapes. Throws: Error{bad_input} if not.
 void check(const ShapedObjects& objects);
 
-/// For the all-pairs stage: each object's box, without padding, rounded outward; of what it sweeps, if it moves. A plane
-/// is cut off where no other object can be: just beyond the boxes of all others, of both sets of a join.
+/// Returns the box of each object for the all-pairs stage: without padding, rounded outward. The box of a moving object
+/// contains its whole motion. A plane's box ends just beyond the boxes of all other objects, in a join of both sets.
 std::vector<Box3d> boxes_of(const ShapedObjects& objects);
 struct JoinBoxes {
     std::vector<Box3d> first, second;

@@ -6,30 +6,30 @@
 
 namespace octopair {
 
-/// Wall-clock seconds of each step of a call. A step that ran more than once is summed.
+/// Wall-clock seconds of each step of a call, summed over repetitions of the step.
 struct StepSeconds {
     double encode = 0;   ///< finds the octants of each box; the paper's encode
-    double count = 0;    ///< counts each octant's entries, to know where they go; half of the paper's sort
+    double count = 0;    ///< counts entries per octant, to compute their places; half of the paper's sort
     double scatter = 0;  ///< writes the entries to their places; the other half
     double scan = 0;     ///< finds the pairs; the paper's scan
-    double merge = 0;    ///< merges sorted lists; 0 but in the paper's arrangement
+    double merge = 0;    ///< merges sorted lists; 0 except in the paper's arrangement
 };
 
 /// Outcome of Options::verify.
 struct Verification {
-    bool done = false;   ///< the result was checked, and no difference was found
-    double seconds = 0;  ///< wall clock; not part of the seconds of the call
-    /// Static text for users that names the properties which were not checked; empty if all were. Examples: the order of the
-    /// pairs in octal order, which pairs are the first under a limit, which pairs were counted.
+    bool done = false;   ///< true if the result was checked and no difference was found
+    double seconds = 0;  ///< wall-clock time of the check; not part of Summary::seconds
+    /// Names the properties that were not checked, for users; empty if all were. Examples: the order of the pairs in octal
+    /// order, which pairs are the first under a limit, which pairs were counted. Static text.
     std::string_view not_checked = {};
 };
 
 /// Counts and times of a call.
 struct Summary {
     std::uint64_t pairs = 0;
-    bool truncated = false;     ///< `limit` was reached and at least one more pair exists
-    double seconds = 0;         ///< wall clock
-    std::uint64_t entries = 0;  ///< of the linear octree; at most 8 an object
+    bool truncated = false;     ///< true if `limit` was reached and at least one more pair exists
+    double seconds = 0;         ///< wall-clock time of the call
+    std::uint64_t entries = 0;  ///< number of entries in the linear octree; at most 8 per object
     StepSeconds steps = {};
     Verification verification = {};
 };

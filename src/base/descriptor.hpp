@@ -1,4 +1,4 @@
-// An open file descriptor, closed when its owner goes.
+// Descriptor: owns an open file descriptor and closes it.
 #pragma once
 
 #include <unistd.h>
@@ -22,9 +22,9 @@ public:
 
     int number() const { return number_; }
     bool open() const { return number_ >= 0; }
-    /// Gives it up: closing it is the caller's.
+    /// Returns the number and gives up ownership: the caller must close it.
     int release() { return std::exchange(number_, -1); }
-    /// Closes now, and returns what close() returned: some file systems report a failed write only then.
+    /// Closes the file now. Returns the result of close(): some file systems report a failed write only there.
     int close() { return ::close(std::exchange(number_, -1)); }
 
 private:

@@ -1,5 +1,5 @@
-// The one table that says what an ErrorCode becomes outside C++: a name, the exit status of the program, and the status
-// of a call to a server.
+// The table that maps each ErrorCode to its representations outside C++: a name, the exit status of the program, and the gRPC
+// status of a call to a server.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct ErrorCodeRow {
     int grpc_status;  ///< https://grpc.io/docs/guides/status-codes/
 };
 
-/// In the order of the enumeration.
+/// Rows are in the order of the enumeration.
 inline constexpr std::array<ErrorCodeRow, 6> error_code_table = {{
     {ErrorCode::usage, "usage", 2, 3},
     {ErrorCode::bad_input, "bad input", 3, 3},

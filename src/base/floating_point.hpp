@@ -1,10 +1,14 @@
-// FloatingPointScope: the floating-point state that results are defined for: rounding to nearest, subnormal numbers kept,
+// FloatingPointScope: sets the floating-point state that results are defined for: rounding to nearest, subnormal numbers kept,
 // no exception traps.
 //
-// A caller may have another state: libraries that were linked with -ffast-math set one for the thread that loads them, and
-// threads inherit it. Every public call that computes has a scope, and so has every body that another thread runs.
+// A caller may have another state: libraries linked with -ffast-math set one for the thread that loads them, and new threads
+// inherit it.
 //
-// Cost: a few nanoseconds. On x86-64 only the state of SSE is set; nothing here computes in long double.
+// - Every public call that computes has a scope.
+// - Every body that another thread runs has a scope.
+// - On x86-64 only the SSE state is set: nothing in the library computes in long double.
+//
+// Cost: a few nanoseconds.
 #pragma once
 
 #include <atomic>
@@ -19,12 +23,12 @@
 
 namespace octopair {
 
-/// Sets the default state for this thread; the end of the scope restores what was there before, flags included.
+/// Sets the default state for this thread. The destructor restores the previous state, flags included.
 class FloatingPointScope {
 public:
     FloatingPointScope() noexcept {
         set_default();
-        // Keeps the compiler from moving reads of the input to before this.
+        // Keeps the compiler from moving reads of the input before this point.
         std::atomic_signal_fence(std::memory_order_seq_cst);
     }
     ~FloatingPointScope() {
@@ -36,7 +40,7 @@ public:
 
 private:
 #if defined(__x86_64__) || defined(_M_X64)
-    static constexpr unsigned default_control = 0x1F80;  // all exceptions masked, all else 0
+    static constexpr unsigned default_control = 0x1F80;  // all exceptions masked, all other bits 0
 
     void set_default() noexcept { _mm_setcsr(default_control); }
     void restore() const noexcept { _mm_setcsr(before_); }

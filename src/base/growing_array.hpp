@@ -1,5 +1,6 @@
-// GrowingArray: a vector of plain data in a Buffer, so that a large one lies on huge pages: where single elements of tens
-// of megabytes are read, looking up small pages costs as much as the memory.
+// GrowingArray: a vector of plain data in a Buffer, so that a large array lies on huge pages.
+//
+// With small pages, random access to tens of megabytes costs as much for address translation as for the memory itself.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace octopair {
 template <typename T>
 class GrowingArray {
 public:
-    /// Grows by half at least, so that what is added one by one is not copied each time. Throws std::bad_alloc.
+    /// Makes room for `size` elements. Grows by at least half, so that repeated push_back() copies each element O(1) times.
+    /// Throws: std::bad_alloc.
     void reserve(std::size_t size) {
         if (size <= memory_.size()) return;
         Buffer<T> larger(std::max(size, memory_.size() + memory_.size() / 2));
@@ -27,12 +29,12 @@ public:
         std::fill(memory_.data() + std::min(size, size_), memory_.data() + size, fresh);
         size_ = size;
     }
-    /// One more, within what was reserved, and not initialised.
+    /// Appends an uninitialised element. Requires: it fits into the reserved memory.
     void grow() { ++size_; }
-    /// Keeps its memory.
+    /// Removes all elements and keeps the memory.
     void clear() { size_ = 0; }
     void push_back(const T& element) {
-        const T copy = element;  // which may be one of this
+        const T copy = element;  // `element` may be in this array
         reserve(size_ + 1);
         memory_[size_++] = copy;
     }

@@ -1,12 +1,12 @@
-// How the system's refusal to read or write becomes an Error: one line that begins with the file.
+// Turns a failed system call for input or output into an Error.
 #pragma once
 
 #include <string_view>
 
 namespace octopair {
 
-/// Throws Error{io_failed} "FILE: ACTION: the system's words for `error_number`"; an errno for want of memory becomes
-/// Error{resource_limit}.
+/// Throws: Error{io_failed} "FILE: ACTION: REASON", where REASON is the system's text for `error_number`;
+/// Error{resource_limit} if `error_number` means that memory or descriptors ran out.
 [[noreturn]] void fail_io(std::string_view file, std::string_view action, int error_number);
 
 }  // namespace octopair

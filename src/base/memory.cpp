@@ -11,8 +11,8 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t mapped_from = std::size_t(1) << 20;  // bytes
-constexpr std::size_t huge_page = std::size_t(2) << 20;
+constexpr std::size_t min_mapped_bytes = std::size_t(1) << 20;
+constexpr std::size_t huge_page_bytes = std::size_t(2) << 20;
 
 std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
     if (bytes > std::size_t(-1) - unit) throw std::bad_alloc();
@@ -21,32 +21,33 @@ std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
 
 #ifdef __linux__
 
-constexpr std::size_t page = 4096;
+constexpr std::size_t page_bytes = 4096;
 
-/// Maps a huge page more than is asked, and gives back what does not lie on them.
+/// Maps memory that begins at a multiple of huge_page_bytes if it is large: maps one huge page more, and unmaps the rest.
 void* map_pages(std::size_t bytes) {
-    const std::size_t size = rounded_up(bytes, page);
-    const std::size_t spare = size < huge_page ? 0 : huge_page;
+    const std::size_t size = rounded_up(bytes, page_bytes);
+    const std::size_t spare = size < huge_page_bytes ? 0 : huge_page_bytes;
     void* const mapped = ::mmap(nullptr, size + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapped == MAP_FAILED) throw std::bad_alloc();
     if (spare == 0) return mapped;
     char* const begin = static_cast<char*>(mapped);
-    const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
+    const std::size_t before =
+        (huge_page_bytes - reinterpret_cast<std::uintptr_t>(begin) % huge_page_bytes) % huge_page_bytes;
     if (before > 0) ::munmap(begin, before);
     if (before < spare) ::munmap(begin + before + size, spare - before);
     return begin + before;
 }
 
-/// Not the last, broken one: all of it would be there as soon as a byte of it is.
+/// Requests huge pages, but not for a partial last one: the first access to it would allocate a whole huge page.
 void use_huge_pages(void* memory, std::size_t bytes) {
-    if (bytes >= huge_page) (void)::madvise(memory, bytes / huge_page * huge_page, MADV_HUGEPAGE);
+    if (bytes >= huge_page_bytes) (void)::madvise(memory, bytes / huge_page_bytes * huge_page_bytes, MADV_HUGEPAGE);
 }
 
 #endif
 
 void* reserve_pages(std::size_t bytes) {
 #ifdef __linux__
-    if (bytes >= mapped_from) return map_pages(bytes);
+    if (bytes >= min_mapped_bytes) return map_pages(bytes);
 #endif
     constexpr std::size_t alignment = 64;
     void* const memory = std::aligned_alloc(alignment, rounded_up(bytes == 0 ? 1 : bytes, alignment));
@@ -72,8 +73,8 @@ void* allocate_pages(std::size_t bytes) {
 
 void free_pages(void* memory, std::size_t bytes) noexcept {
 #ifdef __linux__
-    if (bytes >= mapped_from) {
-        ::munmap(memory, (bytes + page - 1) / page * page);
+    if (bytes >= min_mapped_bytes) {
+        ::munmap(memory, (bytes + page_bytes - 1) / page_bytes * page_bytes);
         return;
     }
 #endif

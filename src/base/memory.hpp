@@ -1,7 +1,7 @@
-// Buffers: arrays of plain data that are not initialised, and keep their memory when they are made smaller.
+// Buffer: an array of plain data that is not initialised and keeps its memory when it shrinks.
 //
-// Large ones are mapped on their own, so that their memory is the system's again as soon as they go (an allocator would
-// keep it in pieces between others), and are asked to lie on huge pages, which gave 4 to 24% in measurements of the sort.
+// Large buffers are mapped separately. So their memory returns to the system when they are freed; an allocator would keep it in
+// fragments. They also request huge pages, which saved 4 to 24% of the time of the sort.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,26 @@
 
 namespace octopair {
 
-/// `bytes` of memory aligned to 64 bytes (2 MiB for large ones). Throws std::bad_alloc.
+/// Returns `bytes` of uninitialised memory, aligned to 64 bytes (2 MiB if it is large). Throws: std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
-/// `bytes` as when it was allocated.
+/// Frees memory of allocate_pages(). Requires: `bytes` is the number that was allocated.
 void free_pages(void* memory, std::size_t bytes) noexcept;
 
-/// Where buffers get their pages. Thread-safe.
+/// Source of the pages of buffers. Thread safety: any thread may call it.
 class PageSource {
 public:
     virtual ~PageSource() = default;
-    /// As allocate_pages, but only pages that commit() was called for may be touched. Throws.
+    /// Returns address space for `bytes`, aligned like allocate_pages(). Only committed pages may be accessed.
+    /// Throws: std::bad_alloc or Error.
     virtual void* reserve(std::size_t bytes) = 0;
-    /// Makes reserved memory fit for use, wherever it lies in what was reserved; no harm if it was before. Throws.
+    /// Makes a part of reserved memory accessible. No effect on parts that are committed already.
+    /// Throws: std::bad_alloc or Error.
     virtual void commit(void* memory, std::size_t bytes) = 0;
     virtual void free(void* memory, std::size_t bytes) noexcept = 0;
 };
 
-/// Memory of this process. What is committed a few pages at a time takes no more than these: no huge pages.
+/// Returns the source of this process's memory. Memory that is committed in pieces below 2 MiB uses no huge pages, so that it
+/// takes no more than these pieces.
 PageSource& own_pages();
 
 template <typename T>
@@ -37,17 +40,17 @@ class Buffer {
 public:
     Buffer() = default;
     explicit Buffer(std::size_t size) { resize_discard(size); }
-    /// Empty; its pages come from `source`, which must outlive it.
+    /// Makes an empty buffer with pages from `source`. Requires: `source` outlives the buffer.
     explicit Buffer(PageSource& source) : source_(&source) {}
 
-    /// Makes the size `size`; what it held is lost where it grows beyond its capacity.
+    /// Sets the size. The contents are lost if the buffer grows beyond its capacity.
     void resize_discard(std::size_t size) {
         const bool grows = size > capacity();
         reserve_discard(size);
         if (grows) commit(0, size);
     }
 
-    /// The same without any use of memory: before a part is touched it must be committed.
+    /// Like resize_discard(), but only reserves address space: commit() a part before accessing it.
     void reserve_discard(std::size_t size) {
         if (size > capacity()) {
             clear();
@@ -57,7 +60,7 @@ public:
     }
     void commit(std::size_t begin, std::size_t count) { source_->commit(data() + begin, count * sizeof(T)); }
 
-    /// Empty, with its memory given back.
+    /// Makes the buffer empty and frees its memory.
     void clear() noexcept {
         memory_.reset();
         size_ = 0;

@@ -1,4 +1,4 @@
-// RadixSort: integers in order, by their lowest bits.
+// RadixSort: sorts integers by a range of their bits.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,18 @@
 
 namespace octopair {
 
-/// Keeps its memory from call to call.
+/// Keeps its memory for later calls.
 template <typename Key>
 class RadixSort {
 public:
+    /// Returns an array of `size` keys, to be filled by the caller.
     std::span<Key> take(std::size_t size) {
         keys_.resize_discard(size);
         return keys_.span();
     }
 
-    /// What take() gave, in order, where keys agree in the bits from `end_bit` on and are in order of those below
-    /// `first_bit`.
+    /// Sorts the array of the last take() and returns it.
+    /// Requires: all keys have the same bits from `end_bit` on, and are already in the order of the bits below `first_bit`.
     std::span<const Key> sort(unsigned first_bit, unsigned end_bit) {
         if (keys_.size() < tuning().output.radix_from) {
             std::sort(keys_.span().begin(), keys_.span().end());

@@ -1,4 +1,4 @@
-// Room in a vector before something is changed that must not fail half-way.
+// reserve_more(): makes room in a vector before a change that must not fail half-way.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace octopair {
 
-/// Room for so many more, by doubling: a few at a time do not copy all each time.
+/// Makes room for `more` additional elements. Doubles the capacity at least, so that repeated small calls do not copy each
+/// time.
 template <typename T>
 void reserve_more(std::vector<T>& list, std::size_t more) {
     const std::size_t all = list.size() + more;

@@ -1,4 +1,4 @@
-// Stopping: what every step does when the caller asks to stop.
+// throw_if_stopped(): ends a step after a stop request of the caller.
 #pragma once
 
 #include <stop_token>
@@ -7,7 +7,7 @@
 
 namespace octopair {
 
-/// Throws Error{cancelled} if a stop was requested. Called every few milliseconds of work.
+/// Throws: Error{cancelled} if a stop was requested. Steps call this every few milliseconds.
 inline void throw_if_stopped(const std::stop_token& stop) {
     if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
 }

@@ -20,7 +20,8 @@ namespace {
     throw std::system_error(errno, std::generic_category(), std::string("cannot use test hooks in ") + path);
 }
 
-/// Makes the file unless it has the right size. Requires: one process makes it before others look for it.
+/// Returns the state in the file at `path`. Creates the file unless it has the right size.
+/// Requires: one process has created the file before others open it.
 TestHooks* hooks_in_file(const char* path) {
     const int file = ::open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (file < 0) throw_failed(path);

@@ -1,8 +1,9 @@
-// Test hooks: how tests see which paths a call takes, make every path short, and plant faults.
+// Test hooks: let tests count the paths that a call takes, make all limits small, and plant faults.
 //
-// Only a build with OCTOPAIR_TEST_HOOKS has them; elsewhere count_path() and planted() are empty constants that the
-// compiler removes. The state, one TestHooks, lies in a file that processes share if OCTOPAIR_TEST_HOOKS_FILE names one:
-// then worker processes of a test use its tuning and its fault, and their paths are counted with its own.
+// - Only a build with OCTOPAIR_TEST_HOOKS has them. Without it, count_path() and planted() are empty constants that the
+//   compiler removes.
+// - The state is one TestHooks. If OCTOPAIR_TEST_HOOKS_FILE names a file, the state is in that file, which processes share. So
+//   the worker processes of a test use its tuning and fault, and count their paths together with the test.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace octopair {
 
-/// The choices between paths, by the file that makes them. A test of tiny scenes takes each of them.
+/// All paths, grouped by the file that chooses them. A test of tiny scenes takes each path.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
     /* octree/build/split_rule.cpp, octree/directory.cpp */ \
@@ -66,7 +67,7 @@ inline constexpr auto path_names = std::to_array<std::string_view>({
 #undef OCTOPAIR_PATH
 });
 
-/// Errors that a test can have the code make, to see that a check finds them.
+/// Errors that a test can plant in the code, to verify that a check finds them.
 enum class Fault : unsigned {
     none,
     begins_bit_cleared,      ///< a ghost loses the class bits that it brought into a nested octree
@@ -74,9 +75,9 @@ enum class Fault : unsigned {
     window_end_open,         ///< a column that begins where the rows of a block end is not tested
     tile_end_open,           ///< a tile that begins where a tile of rows ends is not swept
     handed_to_wrong_child,   ///< an entry is handed down to an octant that it does not touch
-    nested_space_moved,      ///< class bits of handed down entries come from a space that is a cell off
-    stream_windows_overlap,  ///< a window begins with the last object of the one before
-    sweep_repeats_block,     ///< a resumed sweep begins its block of rows again
+    nested_space_moved,      ///< class bits of handed down entries are computed in a space that is shifted by one cell
+    stream_windows_overlap,  ///< a window begins with the last object of the previous window
+    sweep_repeats_block,     ///< a resumed sweep repeats its block of rows
     part_joined_twice,       ///< two parts of a crowd are joined in both directions
     rank_takes_neighbour,    ///< a rank's run of octants includes the first one of the next rank
 };
@@ -86,7 +87,7 @@ inline constexpr unsigned fault_count = 11;
 struct TestHooks {
     Tuning tuning;
     Fault fault = Fault::none;
-    std::array<std::atomic<std::uint64_t>, path_names.size()> paths = {};  ///< how often each was taken
+    std::array<std::atomic<std::uint64_t>, path_names.size()> paths = {};  ///< number of times that each path was taken
 };
 
 #ifdef OCTOPAIR_TEST_HOOKS
@@ -94,9 +95,9 @@ inline constexpr bool has_test_hooks = true;
 /// Returns the state of this process and of those that share its file. Throws: std::system_error if that file fails.
 /// Thread safety: counters may be read at any time; change tuning and fault only between calls.
 TestHooks& test_hooks();
-/// Counts that a path was taken. Thread-safe.
+/// Counts that a path was taken. Thread safety: any thread may call it.
 void count_path(Path path);
-/// Whether the fault is to be made.
+/// Returns true if a test has planted this fault.
 bool planted(Fault fault);
 #else
 inline constexpr bool has_test_hooks = false;

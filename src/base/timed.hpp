@@ -1,4 +1,4 @@
-// Adds the time of a block to a sum, however the block is left.
+// Timed: adds the time from its construction to its destruction to a sum.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// A box is six numbers, read as two registers that overlap; compiled for each instruction set by Highway.
+// SIMD versions of the functions of box_kernel.hpp. Highway compiles them for each instruction set. The six numbers of a box
+// are read into two registers that overlap.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/box_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -38,7 +39,7 @@ bool are_boxes_simd(std::span<const Box3f> boxes) {
 
 #else
 
-/// `out`: as many entries, where boxes are copied; otherwise nothing.
+/// Returns true if all are valid boxes. `out`: one entry for each box if `copied`, otherwise empty.
 template <bool copied>
 bool check_boxes_of(std::span<const Box3f> boxes, std::span<Entry> out) {
     const hn::FixedTag<float, 4> floats;
@@ -64,14 +65,14 @@ bool are_boxes_simd(std::span<const Box3f> boxes) { return check_boxes_of<false>
 
 #endif
 
-/// The specification, a box at a time.
+/// Specification of round_boxes(), for one box.
 template <typename Real>
 bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Entry& out) {
     out = rounding.entry(wide(box), padding);
     return is_box(box) && is_padding(padding);
 }
 
-/// The specification, a triangle at a time.
+/// Specification of bound_triangles(), for one triangle.
 bool bound_one(const Triangle3d& triangle, Box3f& box) {
     bool finite = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -85,14 +86,14 @@ bool bound_one(const Triangle3d& triangle, Box3f& box) {
 
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
 
-using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and the number beside it, of which nothing is kept
+using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and a fourth number whose results are discarded
 
 HWY_INLINE hn::Vec<Doubles> load_wide(const float* numbers) {
     return hn::PromoteTo(Doubles(), hn::LoadU(hn::FixedTag<float, 4>(), numbers));
 }
 HWY_INLINE hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
 
-/// finite_float_above() of the specification (geometry/rounding.hpp).
+/// SIMD version of finite_float_above() (geometry/rounding.hpp).
 HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
     const Doubles d;
     const hn::FixedTag<float, 4> f;
@@ -101,15 +102,16 @@ HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value)
     const auto clamped = hn::Min(hn::Max(value, hn::Neg(most)), most);
     const auto nearest = hn::DemoteTo(f, clamped);
     const auto below = hn::DemoteTo(f, hn::IfThenElseZero(hn::Lt(hn::PromoteTo(d, nearest), clamped), hn::Set(d, 1.0)));
-    const auto step = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(below, hn::Zero(f))));  // -1 where one up is asked
-    // The next float up is one more in the bits of a number >= 0 and one less of others; -0 counts as 0.
+    const auto step =
+        hn::BitCast(i, hn::VecFromMask(f, hn::Gt(below, hn::Zero(f))));  // -1 where the next float is needed
+    // The next float up has one more in its bits if the number is >= 0, one less if it is negative; -0 counts as 0.
     const auto bits = hn::BitCast(i, hn::Add(nearest, hn::Zero(f)));
     const auto negative = hn::BroadcastSignBit(bits);
     const auto up = hn::Sub(hn::Xor(step, negative), negative);
     return hn::BitCast(f, hn::Sub(bits, up));
 }
 
-/// `widened`: there is a margin or padding.
+/// `widened`: true if there is a margin or padding.
 template <bool widened, typename Real>
 bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                     std::span<Entry> out) {
@@ -123,7 +125,7 @@ bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> pa
     const auto everything = hn::Set(d, double(FLT_MAX));
     auto good = hn::MaskFromVec(hn::BitCast(d, hn::Set(hn::FixedTag<std::int64_t, 4>(), -1)));
     bool paddings_good = true;
-    const std::size_t last = boxes.size() - 1;  // not in the loop, which reads a number beyond each box
+    const std::size_t last = boxes.size() - 1;  // not in the loop, which reads one number beyond each box
     for (std::size_t k = 0; k < last; ++k) {
         const double own = padding.empty() ? 0 : padding[k];
         paddings_good &= is_padding(own);
@@ -139,7 +141,8 @@ bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> pa
             const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
             return round_up_simd(hn::IfThenElse(hn::Gt(widening, too_wide), everything, hn::Add(moved, extra)));
         };
-        // Each store reaches one number too far: the second covers the first's, the caller the second's.
+        // Each store writes one number too many: the first store into `max`, which the second store overwrites; the second
+        // store into `object`, which the caller sets.
         hn::StoreU(hn::Neg(outward(low, hn::Neg(hn::Sub(low, origin)))), f, out[k].min);
         hn::StoreU(outward(high, hn::Sub(high, origin)), f, out[k].max);
     }
@@ -159,8 +162,8 @@ bool bound_triangles_simd(std::span<const Triangle3d> triangles, std::span<Box3f
     const Doubles d;
     const hn::FixedTag<float, 4> f;
     const auto zero = hn::Zero(d);
-    auto zeros = zero;                              // times a number that is not finite, it is none
-    const std::size_t last = triangles.size() - 1;  // not in the loop, which reads and writes a number beyond each
+    auto zeros = zero;                              // becomes NaN at a number that is not finite: 0 * infinity is NaN
+    const std::size_t last = triangles.size() - 1;  // not in the loop, which reads and writes one number too many
     for (std::size_t i = 0; i < last; ++i) {
         const auto a = hn::LoadU(d, triangles[i][0].data());
         const auto b = hn::LoadU(d, triangles[i][1].data());

@@ -1,4 +1,4 @@
-// What is done to every box on its way in: it is checked, and copied or rounded outward.
+// Checks of input boxes, and functions that copy boxes or round them outward, many at once.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace octopair {
 
-/// min <= max on every axis, and all finite.
+/// True if min <= max on each axis and all numbers are finite.
 template <typename Real>
 bool is_box(const Box<Real>& box) {
     bool good = true;
     for (int axis = 0; axis < 3; ++axis) {
-        // Also false for NaN; |finite| <= max is false for the infinities.
+        // Also false for NaN. |value| <= max is false for infinities.
         good &= box.min[axis] <= box.max[axis];
         good &= std::abs(box.min[axis]) <= std::numeric_limits<Real>::max();
         good &= std::abs(box.max[axis]) <= std::numeric_limits<Real>::max();
@@ -35,19 +35,19 @@ Box3d wide(const Box<Real>& box) {
 
 inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
 
-/// Boxes are moved to an origin, widened, and rounded outward to float32.
+/// Moves boxes to an origin, widens them, and rounds them outward to float32.
 struct OutwardRounding {
-    /// Parts of the numbers that are added where boxes are widened. Without widening, subtraction and rounding are
-    /// monotone and lose no pair. With it, the rule's own roundings (objects.hpp) and those here must be covered: each
-    /// is below 2^-52 of a number no larger than the sum of these.
+    /// Relative error that is added to widened boxes: this part of the bound, of the origin and of the widening.
+    /// Without widening, subtraction and rounding are monotone and lose no pair. With widening, the roundings here and in the
+    /// pair rule (octopair/objects.hpp) must be covered. Each is below 2^-52 of a number that is at most the sum of the three.
     static constexpr double error_part = 0x1p-48;
-    /// Two widenings above this may overflow in the rule, which then holds for any gap.
+    /// The sum of two larger widenings may overflow in the pair rule, which then holds for any gap.
     static constexpr double most_widening = DBL_MAX / 4;
 
     std::array<double, 4> origin = {0, 0, 0, 0};
     double margin = 0;
 
-    /// The specification of round_boxes; only the bounds are set.
+    /// Specification of round_boxes(). Sets only the bounds.
     Entry entry(const Box3d& box, double padding) const {
         const double widening = margin / 2 + padding;
         Entry entry{};
@@ -61,28 +61,28 @@ struct OutwardRounding {
 private:
     float outward(double sign, double bound, unsigned axis, double widening) const {
         if (widening > most_widening) return FLT_MAX;
-        // Each part on its own: their sum may be beyond float64.
+        // Each part is multiplied separately: the sum may overflow float64.
         const double error = std::abs(bound) * error_part + std::abs(origin[axis]) * error_part + widening * error_part;
         const double extra = widening > 0 ? widening + error : 0;
         return rounding::finite_float_above(sign * (bound - origin[axis]) + extra);
     }
 };
 
-/// Whether is_box() is true of all.
+/// True if is_box() is true of all boxes.
 bool are_boxes(std::span<const Box3f> boxes);
 bool are_boxes(std::span<const Box3d> boxes);
 
-/// Copies the bounds of boxes as they are; false if is_box() is not true of all.
+/// Copies the bounds of boxes unchanged. Returns false if is_box() is false for any box.
 bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out);
 
-/// Rounds boxes outward, whose paddings are `padding` or, if that is empty, 0; false if is_box() or is_padding() is not
-/// true of all. Sets the bounds; what else is in the entries is lost.
+/// Rounds boxes outward and sets the bounds of `out`; `object` and `mask` are then unspecified. Returns false if is_box() or
+/// is_padding() is false for any box. `padding`: one number for each box, or empty for none.
 bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
 
-/// Boxes of as many triangles: the smallest of float32 that hold them. False if not all are finite.
+/// Sets boxes[i] to the smallest float32 box that holds triangles[i]. Returns false if any number is not finite.
 bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes);
 
 }  // namespace octopair

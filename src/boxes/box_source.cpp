@@ -89,9 +89,10 @@ bool BoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
 }
 
 RoundingSlack BoxSource::slack() const {
-    // A bound of an entry is off by at most 2^-23 of itself (rounding to float32) plus 2^-47 of the numbers it was made
-    // from (OutwardRounding::error_part); more than four times that separates real overlaps from made
-    // ones. The widening may exceed the entry's own coordinates, but then so does the box's extent: it is in them.
+    // The error of an entry's bound has two parts: 2^-23 of the bound (rounding to float32), and 2^-47 of the numbers from
+    // which the bound was computed (OutwardRounding::error_part). The slack is more than four times the error, which separates
+    // real overlaps from those made by rounding. The widening needs no term of its own: a widening larger than the entry's
+    // coordinates would make the box's extent as large.
     RoundingSlack slack;
     for (unsigned axis = 0; axis < 3; ++axis)
         slack.base[axis] = rounding::finite_float_above(std::abs(form_.rounding.origin[axis]) * 0x1p-44 + FLT_MIN);
@@ -149,7 +150,7 @@ std::optional<std::string> BoxSource::fault(std::size_t position, const SetBegin
     const Objects& set = in_first ? *first_ : *second_;
     const std::size_t index = in_first ? position : position - first_size_;
     const std::string which = in_first ? "object " + std::to_string(begins.first + index)
-                                       : "of the second set object " + std::to_string(begins.second + index);
+                                       : "second set: object " + std::to_string(begins.second + index);
     const Box3d box = wide_box(set, index);
     for (int axis = 0; axis < 3; ++axis) {
         const std::string name(1, axis_names[axis]);

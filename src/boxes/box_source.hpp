@@ -1,9 +1,10 @@
-// BoxSource: the caller's boxes as entries, checked and rounded outward; and the final word on a pair.
+// BoxSource: converts the caller's boxes to entries, checked and rounded outward, and decides close hits exactly.
 //
-// Float32 boxes without margin and padding pass through unchanged (`exact()`): overlap of entries is the answer. All
-// others are moved to an origin near the bulk, widened by margin / 2 + padding and rounded outward to float32. Each of
-// these operations is monotone, or bounded by an error that is added, so a pair that counts is never lost; a hit whose
-// boxes overlap by less than the rounding could make is settled by is_pair(), on the caller's own numbers.
+// Invariants
+//   Float32 boxes without margin and padding are copied unchanged (`exact()`): two objects are a pair if their entries overlap.
+//   All other boxes are moved to an origin near the bulk, widened by margin / 2 + padding, and rounded outward to float32.
+//   Each of these operations is monotone, or has a bounded error that is added. So no pair is lost.
+//   If boxes overlap by no more than rounding could cause, is_pair() decides with the caller's own numbers.
 #pragma once
 
 #include <array>
@@ -20,14 +21,14 @@
 
 namespace octopair {
 
-/// Where entries come from: the caller's boxes, or the entries of a crowded octant (scan.cpp).
+/// Source of the entries of an octree: the caller's boxes, or the entries of a crowded octant (octree/scan.cpp).
 class EntrySource {
 public:
     virtual ~EntrySource() = default;
     virtual std::size_t size() const = 0;
-    /// Writes entries [begin, begin + out.size()); false if one of them is not a valid box.
+    /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// The boxes [begin, begin + count), unchecked, if the entries have their bounds as they are; otherwise empty.
+    /// Returns the boxes [begin, begin + count), unchecked, if entries have the same bounds; otherwise an empty span.
     virtual std::span<const Box3f> plain(std::size_t begin, std::size_t count) const {
         (void)begin, (void)count;
         return {};
@@ -36,37 +37,38 @@ public:
     virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
 };
 
-/// How boxes become entries: chosen from all objects of a call, also where each process has some of them.
+/// Conversion of boxes to entries. It depends on all objects of a call, even if each process has only some of them.
 struct EntryForm {
-    bool exact = true;         ///< the bounds are taken as they are
-    OutwardRounding rounding;  ///< otherwise
+    bool exact = true;         ///< bounds are copied unchanged
+    OutwardRounding rounding;  ///< used if not `exact`
 };
 
-/// Whether boxes of this set can be taken as they are.
+/// True if the boxes of `set` are float32 without padding.
 bool is_plain(const Objects& set);
 
-/// The median of some objects' low corners is rounding's origin: near the bulk, whatever a few far objects do.
+/// Positions of the objects that give the origin of outward rounding: the median of their low corners. The median is near the
+/// bulk of the objects, even if a few objects are far away.
 struct OriginSample {
     using Corner = std::array<double, 3>;
     std::size_t objects;
 
     std::size_t size() const { return objects < most ? objects : most; }
     std::size_t operator[](std::size_t i) const { return i * objects / size(); }
-    /// Corners that are not numbers do not count.
+    /// Ignores coordinates that are not finite. Returns 0 on an axis without finite coordinates.
     static std::array<double, 4> median(std::span<const Corner> corners);
 
 private:
     static constexpr std::size_t most = 255;
 };
 
-/// The positions of a call's sets, of which a process may have a part: what a message adds to its own.
+/// Numbers of the first object of each set in this process, if the process has a part of the sets. Error messages add them.
 struct SetBegins {
     std::uint64_t first = 0, second = 0;
 };
 
 class BoxSource final : public EntrySource, public PairRule {
 public:
-    /// `second` may be null (pairs within `first`). Borrows both.
+    /// Borrows both sets. If `second` is null, pairs are those within `first`.
     BoxSource(const Objects& first, const Objects* second, double margin);
     BoxSource(const Objects& first, const Objects* second, const EntryForm& form);
 
@@ -79,14 +81,14 @@ public:
     std::uint32_t second_begin() const override { return join() ? std::uint32_t(first_size_) : 0; }
     bool exact() const override { return form_.exact; }
     RoundingSlack slack() const override;
-    /// The rule of objects.hpp, in float64.
+    /// Evaluates the pair rule of octopair/objects.hpp in float64.
     bool is_pair(std::uint32_t a, std::uint32_t b) const override;
 
-    /// How boxes become entries, unless exact().
+    /// Returns the conversion of boxes to entries, used unless exact().
     const OutwardRounding& rounding() const { return form_.rounding; }
     OriginSample::Corner low_corner(std::size_t position) const;
 
-    /// Throws Error{bad_input} that names the first object from `begin` on which is not a box, and its value.
+    /// Throws: Error{bad_input} with the first object from `begin` on that is not a valid box, and the wrong value.
     [[noreturn]] void refuse(std::size_t begin, const SetBegins& begins = {}) const;
 
 private:

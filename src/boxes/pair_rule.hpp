@@ -1,4 +1,4 @@
-// PairRule: which overlapping entries are pairs.
+// PairRule: decides which overlapping entries are pairs.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace octopair {
 
-/// The rule of objects.hpp; `reach` is margin + (padding_a + padding_b).
+/// The pair rule of octopair/objects.hpp. `reach`: margin + (padding_a + padding_b).
 inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(std::max(a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]) <= reach)) return false;
@@ -20,15 +20,15 @@ inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
 class PairRule {
 public:
     virtual ~PairRule() = default;
-    /// Whether pairs are those between two sets, which entries' masks tell apart.
+    /// True if only pairs between two sets count. The masks of entries separate the sets.
     virtual bool join() const = 0;
-    /// Objects of the second set of a join have indices from here on; otherwise 0.
+    /// Returns the index of the first object of the second set of a join; otherwise 0.
     virtual std::uint32_t second_begin() const = 0;
-    /// True if overlapping entries are a pair, without a further test.
+    /// True if any two overlapping entries are a pair, without a further test.
     virtual bool exact() const = 0;
-    /// A hit that is no deeper than this says counts only if is_pair() says so.
+    /// Returns the slack of entries: a hit that is no deeper needs the test is_pair().
     virtual RoundingSlack slack() const = 0;
-    /// On the caller's numbers.
+    /// True if the objects are a pair by the caller's own numbers.
     virtual bool is_pair(std::uint32_t a, std::uint32_t b) const = 0;
 };
 

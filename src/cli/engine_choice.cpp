@@ -17,7 +17,7 @@ namespace octopair::cli {
 
 namespace {
 
-constexpr unsigned most_workers = 256;  // octopair/processes.hpp
+constexpr unsigned max_workers = 256;  // the limit of octopair/processes.hpp
 
 #ifdef OCTOPAIR_WITH_PROCESSES
 constexpr bool with_processes = true;
@@ -38,8 +38,8 @@ constexpr bool with_mpi = false;
 #endif
 
 std::string engine_help() {
-    std::string help = "where to look for pairs: local (default, threads)";
-    if (with_processes) help += ", processes (workers)";
+    std::string help = "engine that finds the pairs: local (default; threads)";
+    if (with_processes) help += ", processes (worker processes)";
     if (with_mpi) help += ", mpi (ranks, under mpirun)";
     if (with_service) help += ", or the address of a server (unix:PATH or HOST:PORT)";
     return help;
@@ -48,9 +48,10 @@ std::string engine_help() {
 void parse_engine(const std::string& word, EngineChoice& choice) {
     if (word.find(':') != std::string::npos) {
         if (!with_service) {
-            throw Error(ErrorCode::usage, "--engine: '" + word +
-                                              "' would be a server; this octopair was built without servers, it has: " +
-                                              fmt::format("{}", fmt::join(engine_names(), ", ")));
+            throw Error(ErrorCode::usage,
+                        "--engine: '" + word +
+                            "' is the address of a server; this octopair was built without servers, it has: " +
+                            fmt::format("{}", fmt::join(engine_names(), ", ")));
         }
         choice.kind = EngineKind::server;
         choice.server.address = word;
@@ -64,12 +65,12 @@ void parse_engine(const std::string& word, EngineChoice& choice) {
     choice.kind = word == "processes" ? EngineKind::processes : word == "mpi" ? EngineKind::mpi : EngineKind::local;
 }
 
-unsigned one_a_core_unless(const std::optional<unsigned>& asked, unsigned most) {
+unsigned count_or_cores(const std::optional<unsigned>& asked, unsigned most) {
     if (asked.value_or(0) > 0) return *asked;
     return std::clamp(std::thread::hardware_concurrency(), 1u, most);
 }
 
-/// A whole number from 0 to `most`.
+/// An option whose value is a whole number from 0 to `most`.
 struct CountOption {
     const char* name;
     const char* description;
@@ -101,11 +102,12 @@ void add_engine_options(Command& command, EngineChoice& choice) {
         .add_option(
             "--engine", [&choice](const std::string& word) { parse_engine(word, choice); }, engine_help())
         .type_name("ENGINE");
-    add_count(
-        command,
-        {"--threads", "threads of the local engine (default 0: one a core), or of each rank (default 1)", most_threads},
-        choice.threads);
-    add_count(command, {"--workers", "worker processes, with --engine processes (default 0: one a core)", most_workers},
+    add_count(command,
+              {"--threads", "threads of the local engine (default 0: one per core), or of each rank (default 1)",
+               max_threads},
+              choice.threads);
+    add_count(command,
+              {"--workers", "worker processes, with --engine processes (default 0: one per core)", max_workers},
               choice.workers);
 }
 
@@ -115,22 +117,23 @@ void check_engine_choice(const EngineChoice& choice) {
 #endif
     if (choice.kind == EngineKind::server && (choice.threads || choice.workers)) {
         throw Error(ErrorCode::usage, std::string(choice.threads ? "--threads" : "--workers") +
-                                          ": the server says on how many it works (octopair serve)");
+                                          ": not with a server, which sets its own number (octopair serve)");
     }
     if (choice.kind == EngineKind::local && choice.workers) {
-        throw Error(ErrorCode::usage, "--workers: the local engine has threads; workers need --engine processes");
+        throw Error(ErrorCode::usage, "--workers: only with --engine processes; the local engine has --threads");
     }
     if (choice.kind == EngineKind::mpi && choice.workers) {
-        throw Error(ErrorCode::usage, "--workers: --engine mpi has ranks; mpirun -n says how many");
+        throw Error(ErrorCode::usage, "--workers: not with --engine mpi; mpirun -n sets the number of ranks");
     }
     if (choice.kind == EngineKind::processes && choice.threads) {
-        throw Error(ErrorCode::usage, "--threads: --engine processes has a thread a worker; --workers says how many");
+        throw Error(ErrorCode::usage,
+                    "--threads: not with --engine processes; --workers sets the number of worker processes");
     }
 }
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
     if (choice.kind == EngineKind::mpi)
-        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` and `octopair serve` work on ranks");
+        throw Error(ErrorCode::usage, "--engine mpi: only `octopair detect` and `octopair serve` can run on ranks");
 #ifdef OCTOPAIR_WITH_PROCESSES
     if (choice.kind == EngineKind::processes) return make_process_engine(choice.workers.value_or(0));
 #endif
@@ -149,13 +152,13 @@ EngineChoice EngineChoice::with_width(unsigned width) const {
 }
 
 EngineDescription describe_engine(const EngineChoice& choice) {
-    if (choice.kind == EngineKind::processes) return {"processes", 0, one_a_core_unless(choice.workers, most_workers)};
+    if (choice.kind == EngineKind::processes) return {"processes", 0, count_or_cores(choice.workers, max_workers)};
     if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};
-    if (choice.kind == EngineKind::mpi) return {"mpi", one_a_core_unless(choice.threads.value_or(1), ~0u), 0};
-    return {"local", one_a_core_unless(choice.threads, ~0u), 0};
+    if (choice.kind == EngineKind::mpi) return {"mpi", count_or_cores(choice.threads.value_or(1), ~0u), 0};
+    return {"local", count_or_cores(choice.threads, ~0u), 0};
 }
 
-unsigned threads_beside(const EngineChoice& choice) {
+unsigned local_threads(const EngineChoice& choice) {
     if (choice.kind == EngineKind::mpi) return describe_engine(choice).threads;
     return choice.threads ? *choice.threads : choice.workers.value_or(0);
 }

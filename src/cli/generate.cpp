@@ -1,4 +1,4 @@
-// octopair generate: seeded scenes as .npy files, written as they are made.
+// octopair generate: writes random scenes to .npy files. Boxes are streamed to the file.
 #include <fmt/format.h>
 
 #include <array>
@@ -23,7 +23,7 @@ namespace {
 
 struct GenerateRequest {
     samples::SceneSpec spec;
-    bool moving = false;  // --frames was given
+    bool moving = false;  // true if --frames is given
     std::string output;
     bool quiet = false;
 };
@@ -62,20 +62,18 @@ std::string kinds_text() {
 }
 
 void add_numbers(Command& command, GenerateRequest& request) {
-    constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
+    constexpr std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
     command
         .add_option(
             "--objects",
-            [&request](const std::string& text) {
-                request.spec.objects = parse_count("--objects", text, most_objects);
-            },
-            "how many")
+            [&request](const std::string& text) { request.spec.objects = parse_count("--objects", text, max_objects); },
+            "number of objects")
         .type_name("N")
         .required();
     command
         .add_option(
             "--seed", [&request](const std::string& text) { request.spec.seed = parse_count("--seed", text); },
-            "another seed, another scene (default 0)")
+            "seed of the scene; another seed gives another scene (default 0)")
         .type_name("S");
     command
         .add_option(
@@ -84,16 +82,17 @@ void add_numbers(Command& command, GenerateRequest& request) {
                 request.spec.frames = parse_count("--frames", text, 1'000'000);
                 request.moving = true;
             },
-            "a moving scene of F frames")
+            "make a moving scene with F frames")
         .type_name("F");
 }
 
 }  // namespace
 
 void add_generate(Command& program, Action& action) {
-    Command command = program.add_subcommand("generate", "make a seeded scene, the same bytes everywhere");
+    Command command = program.add_subcommand(
+        "generate", "make a scene from a seed; the same seed gives the same bytes on every machine");
     const auto request = std::make_shared<GenerateRequest>();
-    command.add_option("KIND", request->spec.kind, "what kind of scene, see below").required();
+    command.add_option("KIND", request->spec.kind, "kind of scene, see below").required();
     add_numbers(command, *request);
     command.add_option("--output", request->output, "the file to write").type_name("FILE.npy").required();
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");

@@ -1,4 +1,4 @@
-// octopair info: version, build, engines, instruction set.
+// octopair info: prints version, build, engines and instruction set.
 #include <fmt/format.h>
 
 #include <thread>
@@ -60,7 +60,7 @@ int run_info() {
 }  // namespace
 
 void add_info(Command& program, Action& action) {
-    program.add_subcommand("info", "version, build, engines, instruction set").callback([&action] {
+    program.add_subcommand("info", "print version, build, engines and instruction set").callback([&action] {
         action = run_info;
     });
 }

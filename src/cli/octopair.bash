@@ -1,16 +1,16 @@
-# Completion of octopair's command line for bash.
+# Bash completion for octopair.
 
-# The kinds of scenes, asked of the program.
+# Prints the kinds of scenes that the program can generate.
 _octopair_kinds() {
     "$1" generate --help 2>/dev/null | sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p'
 }
 
-# The engines that it was built with.
+# Prints the engines of this build; "unix:" stands for a server.
 _octopair_engines() {
     "$1" info 2>/dev/null | sed -n 's/^engines *//p' | sed 's/server (ADDRESS)/unix:/' | tr -d ,
 }
 
-# The caller's jobs on the server of OCTOPAIR_SERVER.
+# Prints the ids of the user's jobs on the server of OCTOPAIR_SERVER.
 _octopair_jobs() {
     [[ -n $OCTOPAIR_SERVER ]] && timeout 2 "$1" status 2>/dev/null | sed -n 's/^\([0-9a-f-]\{36\}\) .*/\1/p'
 }
@@ -41,7 +41,7 @@ _octopair() {
         --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
         --margin | --limit | --threads | --workers | --seed | --frames | --patience | --listen | --metrics) return ;;
         --grace | --stall | --rank-timeout | --max-* | --server | --id | --wait) return ;;
-        --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # of result it is no more than a word
+        --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # --keep of result has no value
         --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
         --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac

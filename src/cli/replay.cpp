@@ -1,4 +1,4 @@
-// octopair replay: the recorded calls of a scene, made again.
+// octopair replay: runs the recorded calls of a scene again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 struct ReplayRequest {
     std::string file;
-    unsigned threads = 0;  // 0: one a core
+    unsigned threads = 0;  // 0: one per core
     bool check = false;
     bool quiet = false;
 };
@@ -33,10 +33,10 @@ std::string times_text(std::vector<double> seconds) {
     return fmt::format("median {:.3f} ms, slowest {:.3f} ms", seconds[seconds.size() / 2] * 1e3, seconds.back() * 1e3);
 }
 
-/// What a user should know of how the recording ended, if anything.
+/// Returns a line about an incomplete end of the recording, or nothing.
 std::string ending_text(const ReplayReport& report) {
-    if (report.unfinished) return "ending      within a step, which was made here\n";
-    if (report.cut) return "ending      in the middle of a call, which was left out\n";
+    if (report.unfinished) return "ending      within a step; the replay completed this step\n";
+    if (report.cut) return "ending      within a call; the replay left this call out\n";
     return "";
 }
 
@@ -50,7 +50,7 @@ std::string summary_text(const ReplayReport& report, bool checked) {
     text += fmt::format("step time   {}\n", times_text(report.seconds));
     if (checked) {
         const std::uint64_t compared = report.steps - (report.unfinished ? 1 : 0);
-        text += fmt::format("check       {} found what was recorded\n", plural(compared, "step"));
+        text += fmt::format("check       {} compared, all equal to the recording\n", plural(compared, "step"));
     }
     return text + ending_text(report);
 }
@@ -74,18 +74,18 @@ int run_replay(const ReplayRequest& request) {
 }  // namespace
 
 void add_replay(Command& program, Action& action) {
-    Command command = program.add_subcommand("replay", "make the recorded calls of a scene again");
+    Command command = program.add_subcommand("replay", "run the recorded calls of a scene again");
     const auto request = std::make_shared<ReplayRequest>();
-    command.add_option("FILE", request->file, "a recording, from SceneOptions::recording").required();
+    command.add_option("FILE", request->file, "recording, made with SceneOptions::recording").required();
     command
         .add_option(
             "--threads",
             [request](const std::string& text) {
-                request->threads = unsigned(parse_count("--threads", text, most_threads));
+                request->threads = unsigned(parse_count("--threads", text, max_threads));
             },
-            "threads (default 0: one a core)")
+            "threads (default 0: one per core)")
         .type_name("N");
-    command.add_flag("--check", request->check, "every step must find what was recorded; else exit status 6");
+    command.add_flag("--check", request->check, "compare each step with the recording; exit status 6 if they differ");
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
     command.callback([request, &action] { action = [request] { return run_replay(*request); }; });
 }

@@ -1,5 +1,5 @@
-// The subcommands, one source file each. Each adds itself to the parser; its callback sets `action`, which does the
-// work after parsing and returns the exit status. Both may throw Error.
+// Subcommands of octopair. Each function adds one subcommand to the parser. Its callback sets `action`, which runs after
+// parsing and returns the exit status. Callbacks and actions may throw Error.
 #pragma once
 
 #include "cli/command/command.hpp"

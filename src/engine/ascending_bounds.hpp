@@ -1,4 +1,4 @@
-// What is asked of a pass that finds pairs in ascending order.
+// AscendingBounds: the parameters of a pass that finds pairs in ascending order.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ struct ObjectRange {
 };
 
 struct AscendingBounds {
-    ObjectRange rows;                            ///< the `a` that are wanted
-    std::uint64_t columns = 0;                   ///< above every `b`
-    std::uint64_t most = ~std::uint64_t(0) / 2;  ///< pairs for whom there may be pages
-    std::uint64_t expected = 0;                  ///< pairs, if that is known
+    ObjectRange rows;                                 ///< range of `a`; pairs with another `a` are skipped
+    std::uint64_t columns = 0;                        ///< upper bound on `b`: every b < columns
+    std::uint64_t max_pairs = ~std::uint64_t(0) / 2;  ///< capacity of all pages together, in pairs
+    std::uint64_t expected = 0;                       ///< expected number of pairs; 0: unknown
 };
 
-/// Thrown by a pass that needs more pages than `most` allows; no more than a quarter of them is not full.
+/// Thrown by a pass that needs more pages than `max_pairs` allows. At most a quarter of its pages are then partly filled.
 struct OverBudget {};
 
 }  // namespace octopair

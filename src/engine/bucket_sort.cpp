@@ -20,7 +20,7 @@ std::size_t size_of(const std::vector<PageString>& strings) {
 }  // namespace
 
 BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(bounds.rows, bounds.columns) {
-    const std::uint64_t spare_pages = bounds.most / page_pairs() / 4 / fillers;
+    const std::uint64_t spare_pages = bounds.max_pairs / page_pairs() / 4 / fillers;
     const unsigned row_bits = keys_.row_bits();
     const unsigned for_rows = row_bits - std::min(row_bits, tuning().output.bucket_row_bits);
     const unsigned for_pairs =
@@ -45,7 +45,7 @@ BucketSort::Runs BucketSort::sort(std::vector<PageString>&& strings, const std::
     return std::move(task.sorted);
 }
 
-/// The keys of the pairs differ in their lowest `bits` alone.
+/// Requires: the keys of all pairs differ only in their lowest `bits`.
 void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, Task& task) {
     const std::size_t size = size_of(strings);
     if (size == 0) return;
@@ -85,10 +85,10 @@ void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned b
                               Task& task) {
     constexpr unsigned key_bits = sizeof(Key) * 8;
     const std::span<Key> keys = radix.take(size_of(strings));
-    std::uint64_t above = 0;  // the bits that all have alike
+    std::uint64_t above = 0;  // the high bits, equal in all keys
     std::size_t at = 0;
     for (const PageString& string : strings) {
-        for (std::size_t i = string.pages().size(); i-- > 0;) {  // what is given back last is taken first
+        for (std::size_t i = string.pages().size(); i-- > 0;) {  // the page returned last is taken first
             for (const Pair& pair : string.page(i)) keys[at++] = Key(above = plan_.keys().key(pair));
             task.spend(string.pages()[i]);
         }

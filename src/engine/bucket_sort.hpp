@@ -1,7 +1,11 @@
-// Buckets of neighbouring `a`: how pairs come into ascending order.
+// BucketSort: sorts pairs into ascending order (by a, then b) with one bucket for each range of neighbouring `a`.
 //
-// Whoever finds pairs throws them into buckets, strings of pages; then each bucket, gathered from all who filled it, is
-// sorted on its own, so that order does not show who found what.
+// 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a string of pages.
+// 2. Each bucket is gathered from all threads or workers and sorted independently.
+//
+// Invariants
+//   Every key in bucket i is less than every key in bucket i + 1.
+//   The sorted result does not depend on which thread or worker found a pair.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +22,13 @@
 
 namespace octopair {
 
-/// Pairs as numbers in the same order, of as few bits as the rows and columns need.
+/// Maps pairs to integer keys in ascending order of pairs. Keys have only the bits that the rows and columns need.
 class PairKeys {
 public:
     PairKeys(ObjectRange rows, std::uint64_t columns)
         : first_(rows.begin), count_(rows.end - rows.begin), b_bits_(unsigned(std::bit_width(columns))) {}
 
+    /// Returns true if `pair.a` is in the range of rows.
     bool wanted(const Pair& pair) const { return pair.a - first_ < count_; }
     std::uint64_t key(const Pair& pair) const { return (pair.a - first_) << b_bits_ | pair.b; }
     Pair pair(std::uint64_t key) const {
@@ -37,20 +42,21 @@ private:
     unsigned b_bits_;
 };
 
-/// Which bucket a pair belongs to. A function of its arguments alone.
+/// Assigns pairs to buckets. The assignment depends only on the constructor's arguments.
 class BucketPlan {
 public:
-    /// `fillers`: how many fill buckets, each their own.
+    /// `fillers`: number of threads or workers, each of which fills its own buckets.
     BucketPlan(const AscendingBounds& bounds, unsigned fillers);
 
     static constexpr unsigned most_bits = default_tuning.output.bucket_bits;
     const PairKeys& keys() const { return keys_; }
     std::size_t buckets() const { return std::size_t(1) << bits_; }
     std::size_t bucket(const Pair& pair) const { return std::size_t(keys_.key(pair) >> key_bits()); }
-    /// Of the key, within a bucket.
+    /// Number of low key bits in which the pairs of one bucket differ.
     unsigned key_bits() const { return keys_.bits() - bits_; }
 
-    /// Throws the wanted ones of `pairs` into `strings`, one for each bucket.
+    /// Appends each wanted pair to the string of its bucket. `strings` has one string for each bucket.
+    /// Throws: OverBudget.
     void fill(std::span<const Pair> pairs, std::span<PageString> strings, Pages& pages) const {
         for (const Pair& pair : pairs) {
             if (keys_.wanted(pair)) strings[bucket(pair)].add(pair, pages);
@@ -62,14 +68,16 @@ private:
     unsigned bits_;
 };
 
-/// Puts the pairs of a bucket in order. One thread at a time; keeps its memory from bucket to bucket.
+/// Sorts the pairs of one bucket at a time. Keeps its memory for the next bucket.
+/// Thread safety: one thread at a time.
 class BucketSort {
 public:
     using Runs = std::vector<std::span<const Pair>>;
     BucketSort(const BucketPlan& plan, Pages& pages) : plan_(plan), pages_(pages) {}
 
-    /// Returns the sorted pairs, in pages. The strings' own pages are given back as soon as they have been read or, if
-    /// `spent` is given, are put there unchanged. Throws Error{cancelled}.
+    /// Returns the sorted pairs as runs in pages. Each input page returns to the pages' free list as soon as it is read. If
+    /// `spent` is not null, the input pages are appended to it unchanged instead.
+    /// Throws: Error{cancelled}, OverBudget.
     Runs sort(std::vector<PageString>&& strings, const std::stop_token& stop, std::vector<Pair*>* spent = nullptr);
 
 private:

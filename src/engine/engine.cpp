@@ -46,8 +46,8 @@ void Engine::check(const detail::Request& request) const { detail::check_request
 
 unsigned Engine::verification_threads() const { return 0; }
 
-/// Every public call: checked before, with running out of memory an Error like any other, and no half-filled list
-/// after. Sinks and progress are called in the default floating-point state, too.
+/// Runs one public call. Checks the request first and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty
+/// on failure. Sinks and progress callbacks also run in the default floating-point state.
 Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
     const FloatingPointScope scope;
     if (output.list != nullptr) detail::storage_of(*output.list).reset();

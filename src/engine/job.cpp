@@ -1,4 +1,4 @@
-// Job, the handle: every call goes to the JobTask that it shares with the queue.
+// Job: the handle. Each member function forwards to the JobTask that the handle and the queue share.
 #include "octopair/job.hpp"
 
 #include <utility>
@@ -23,7 +23,7 @@ Job::~Job() { let_go(); }
 void Job::let_go() noexcept {
     if (task_ == nullptr) return;
     task_->cancel();
-    task_->wait_elsewhere();
+    task_->wait_unless_holder();
 }
 
 JobState Job::state() const noexcept { return task_ != nullptr ? task_->state() : JobState::cancelled; }
@@ -37,7 +37,7 @@ void Job::wait() const {
 bool Job::wait_at_most(std::chrono::nanoseconds time) const { return task_ == nullptr || task_->wait_at_most(time); }
 
 void Job::cancel() noexcept {
-    // What the task lets go of may be this handle.
+    // The copy keeps the task alive: cancelling frees the job's input and sink, which may own this handle.
     if (const std::shared_ptr<detail::JobTask> task = task_) task->cancel();
 }
 

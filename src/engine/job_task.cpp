@@ -37,7 +37,7 @@ Input view(const JobInput& input) {
 }
 
 JobTask::JobTask(Work work) : work_(std::move(work)) {
-    told_ = std::exchange(work_->options.progress, [this](double done) { tell(done); });
+    caller_progress_ = std::exchange(work_->options.progress, [this](double done) { report_progress(done); });
     if (!work_->sink) pairs_.emplace();
 }
 
@@ -58,7 +58,7 @@ bool JobTask::run(Engine& engine) noexcept {
     return true;
 }
 
-/// Makes this thread the one that holds the task, unless there is one.
+/// Makes the calling thread the holder. Returns false if the task already has a holder.
 bool JobTask::hold(JobState state) {
     const std::lock_guard lock(mutex_);
     if (holder_ != std::thread::id()) return false;
@@ -74,12 +74,12 @@ Summary JobTask::call(Engine& engine) {
                   : engine.stream_pairs(input, *work_->sink, work_->options, stop);
 }
 
-void JobTask::tell(double done) {
+void JobTask::report_progress(double done) {
     progress_.store(done, std::memory_order_relaxed);
-    if (told_) told_(done);
+    if (caller_progress_) caller_progress_(done);
 }
 
-/// What the exception under way makes of a job.
+/// Converts the exception that is being handled to the job's end. Requires: called in a catch block.
 JobTask::Ending JobTask::failure() noexcept {
     try {
         try {
@@ -91,18 +91,20 @@ JobTask::Ending JobTask::failure() noexcept {
         } catch (const std::exception& error) {
             return {JobState::failed, {}, Error(ErrorCode::engine_failed, error.what())};
         } catch (...) {
-            return {JobState::failed, {}, Error(ErrorCode::engine_failed, "an exception that is no std::exception")};
+            return {JobState::failed,
+                    {},
+                    Error(ErrorCode::engine_failed, "the job threw an exception that is not a std::exception")};
         }
-    } catch (...) {  // no memory for the words
+    } catch (...) {  // no memory for the message
         return {JobState::failed};
     }
 }
 
-/// By the holder. The state changes last: whoever sees it finds the input let go of.
+/// Requires: the calling thread is the holder. Sets the state last, so the input is already freed when the state is visible.
 void JobTask::end(Ending ending) noexcept {
     if (ending.state != JobState::done) pairs_.reset();
     work_.reset();
-    told_ = nullptr;
+    caller_progress_ = nullptr;
     const std::lock_guard lock(mutex_);
     ending_ = std::move(ending);
     state_ = ending_.state;
@@ -131,7 +133,7 @@ void JobTask::wait() const {
     std::unique_lock lock(mutex_);
     const std::thread::id here = std::this_thread::get_id();
     if (!is_last() && (here == queue_thread_ || here == holder_)) {
-        throw Error(ErrorCode::usage, "a sink or a progress waits for a job of its own engine");
+        throw Error(ErrorCode::usage, "deadlock: a sink or progress callback waits for a job of its own engine");
     }
     ended_.wait(lock, [&] { return is_last(); });
 }
@@ -141,7 +143,7 @@ bool JobTask::wait_at_most(std::chrono::nanoseconds time) const {
     return ended_.wait_for(lock, time, [&] { return is_last(); });
 }
 
-void JobTask::wait_elsewhere() const {
+void JobTask::wait_unless_holder() const {
     std::unique_lock lock(mutex_);
     if (holder_ != std::this_thread::get_id()) ended_.wait(lock, [&] { return is_last(); });
 }

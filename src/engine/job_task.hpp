@@ -1,8 +1,10 @@
-// JobTask: what the handle of a job and the queue share: its input, its state, its result.
+// JobTask: the state that a job's handle and the queue share: input, job state and result.
 //
-// Exactly one thread *holds* a task: the queue's, to run it, or the one that cancelled it while it waited. The holder
-// alone touches input, sink and progress, frees them, and then, once, gives the task its last state. All others see
-// what the mutex guards.
+// Invariants
+//   At most one thread ever *holds* a task: the queue's thread, which runs it, or a thread that cancels it while queued.
+//   Only the holder accesses the input, the sink and the progress callback.
+//   The holder frees them, and then sets the terminal state exactly once.
+//   Other threads access only atomic members and members guarded by `mutex_`.
 #pragma once
 
 #include <atomic>
@@ -18,14 +20,14 @@
 
 namespace octopair::detail {
 
-/// Returns the input of the call that a job makes. Borrows the argument.
+/// Returns a view of a job's input for the direct call. Borrows the argument.
 Input view(const JobInput& input);
 
 class JobTask {
 public:
     struct Work {
         JobInput input;
-        std::optional<PairSink> sink;  ///< none: the pairs are collected
+        std::optional<PairSink> sink;  ///< absent: the pairs are collected in a PairList
         Options options;
     };
 
@@ -34,20 +36,21 @@ public:
     JobTask& operator=(const JobTask&) = delete;
     ~JobTask() = default;
 
-    /// For the queue: its thread, before that gets the task; and the task's turn, on that thread.
+    /// Stores the id of the queue's thread. Requires: called before that thread receives the task.
     void belong_to(std::thread::id thread);
-    /// False where it had ended before.
+    /// Runs the task on the calling thread. Returns false if the task had already ended.
+    /// Requires: called on the queue's thread.
     bool run(Engine& engine) noexcept;
 
-    /// For the handle; as Job's.
+    // The functions of Job (octopair/job.hpp).
     JobState state() const;
     bool ended() const;
     double progress() const { return progress_.load(std::memory_order_relaxed); }
     void cancel() noexcept;
     void wait() const;
     bool wait_at_most(std::chrono::nanoseconds time) const;
-    /// Waits, unless on the thread that holds the task.
-    void wait_elsewhere() const;
+    /// Waits until the task has ended. Returns at once on the thread that holds the task.
+    void wait_unless_holder() const;
     Summary summary() const;
     PairList take_pairs();
 
@@ -55,19 +58,19 @@ private:
     struct Ending {
         JobState state;
         Summary summary = {};
-        std::optional<Error> error = {};  // none: there was no memory for one
+        std::optional<Error> error = {};  // absent if the job did not fail, or was out of memory
     };
 
     bool hold(JobState state);
     Summary call(Engine& engine);
-    void tell(double done);
+    void report_progress(double done);
     static Ending failure() noexcept;
     void end(Ending ending) noexcept;
     void throw_unless_done() const;
     bool is_last() const { return state_ != JobState::queued && state_ != JobState::running; }
 
-    std::optional<Work> work_;  // until the end; the holder's
-    ProgressSink told_;         // the caller's progress; the holder's as well
+    std::optional<Work> work_;      // empty after the end; accessed only by the holder
+    ProgressSink caller_progress_;  // accessed only by the holder
     std::optional<PairList> pairs_;
     std::stop_source stop_;
     std::atomic<double> progress_ = 0;

@@ -38,7 +38,7 @@ std::span<Pair> detail::PairStorage::take_block(std::size_t pairs) {
     const auto free = blocks_.begin() + std::ptrdiff_t(taken_);
     auto found = std::find_if(free, blocks_.end(), [&](const auto& block) { return block.size() >= pairs; });
     if (found == blocks_.end()) {
-        // A large block that has become too small gives way, so that a list does not hoard all sizes it ever had.
+        // Free large blocks that are too small now. Otherwise a reused list would accumulate blocks of every past size.
         const auto hoarded = [&](const auto& block) { return block.size() > block_pairs; };
         blocks_.erase(std::remove_if(free, blocks_.end(), hoarded), blocks_.end());
         const std::size_t fresh = std::max(pairs, block_pairs);

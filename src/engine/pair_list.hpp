@@ -1,7 +1,9 @@
-// The memory behind a PairList: blocks that writers fill side by side, and the chunks that make up the list.
+// PairStorage: the memory of a PairList. Writers fill its blocks concurrently; chunks of the blocks form the list.
 //
-// A block belongs to one writer at a time; `chunks` are runs within blocks, in the order of the list. reset() forgets
-// the chunks and keeps the blocks, so that a reused list does not page-fault again.
+// Invariants
+//   A block belongs to one writer at a time.
+//   `chunks` are runs in the list's blocks or in kept memory, in the order of the list.
+//   reset() clears the chunks and keeps the blocks, so a reused list causes no new page faults.
 #pragma once
 
 #include <functional>
@@ -20,17 +22,17 @@ struct PairStorage {
     std::vector<std::span<const Pair>> chunks;
     std::uint64_t size = 0;
 
-    /// Asked before memory is taken for a block, with its bytes; what it throws is thrown on.
+    /// Sets a function that runs before each block is allocated, with the bytes of the block. Its exceptions propagate.
     void ask(std::function<void(std::uint64_t bytes)> room) { room_ = std::move(room); }
-    /// Empty, with all blocks free.
+    /// Makes the list empty and all its blocks free.
     void reset();
-    /// A free block of at least `pairs` pairs, until the next reset. Thread-safe.
+    /// Returns a free block of at least `pairs` pairs, valid until the next reset(). Thread safety: any thread.
     std::span<Pair> take_block(std::size_t pairs);
-    /// The same pairs in memory of the list's own.
+    /// Returns a copy of `pairs` in the list's blocks.
     std::span<const Pair> copy(std::span<const Pair> pairs);
-    /// Keeps memory that chunks lie in, until the next reset.
+    /// Keeps `memory`, which contains chunks of the list, until the next reset().
     void keep(std::shared_ptr<const void> memory) { kept_ = std::move(memory); }
-    /// Makes `pairs` the next chunk. Adjoining chunks grow together.
+    /// Appends `pairs` as the next chunk. Merges chunks that are adjacent in memory.
     void append(std::span<const Pair> pairs);
 
 private:
@@ -38,8 +40,8 @@ private:
     std::function<void(std::uint64_t)> room_;
     std::vector<Buffer<Pair>> blocks_;
     std::shared_ptr<const void> kept_;
-    std::span<Pair> free_;   // of the block that copies go to
-    std::size_t taken_ = 0;  // blocks_[0, taken_) are in writers' hands
+    std::span<Pair> free_;   // free part of the block that copy() fills
+    std::size_t taken_ = 0;  // blocks_[0, taken_) are in use by writers
 };
 
 }  // namespace octopair::detail

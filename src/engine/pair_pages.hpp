@@ -1,4 +1,4 @@
-// Pages of pairs: short pieces of memory that become a list, and strings of them that grow a pair at a time.
+// Pages: fixed-size arrays of pairs, which later form a list. PageString: an array of pairs that grows page by page.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace octopair {
 
-/// Pairs of a page.
+/// Returns the capacity of a page in pairs.
 inline std::size_t page_pairs() { return tuning().output.page; }
 
-/// The pages in one thread's hands: taken fresh, and given back to be taken again.
+/// Page allocator of one thread, with a free list.
 class Pages {
 public:
     virtual ~Pages() = default;
@@ -29,17 +29,17 @@ public:
     void give_back(Pair* page) { returned_.push_back(page); }
 
 private:
-    /// Throws OverBudget (ascending_bounds.hpp).
+    /// Returns a new page. Throws: OverBudget (ascending_bounds.hpp).
     virtual Pair* fresh() = 0;
 
     std::vector<Pair*> returned_;
 };
 
-/// Pairs in full pages and a last one.
+/// A growing array of pairs in pages. All pages but the last are full.
 class PageString {
 public:
     PageString() = default;
-    /// `size` pairs in pages that have room for them.
+    /// Requires: `pages` is exactly as long as `size` pairs need.
     PageString(std::vector<Pair*> pages, std::size_t size) : pages_(std::move(pages)) {
         if (pages_.empty()) return;
         end_ = pages_.back() + page_pairs();

@@ -1,4 +1,4 @@
-// Progress: one rising fraction out of steps that many threads take.
+// Progress: combines the work that many threads do in several stages into one fraction that never decreases.
 #pragma once
 
 #include <atomic>
@@ -11,24 +11,24 @@ namespace octopair {
 
 class Progress {
 public:
-    /// `sink` may be empty, and must outlive this.
+    /// Requires: `sink` outlives this object. `sink` may be empty.
     explicit Progress(const ProgressSink& sink) : sink_(sink) {}
 
-    /// From now on `work` steps lead from here to the fraction `end`.
+    /// Begins a stage of `work` units, during which the fraction grows linearly to `end`.
     void stage(double end, std::uint64_t work);
-    /// Counts steps as done. From any thread; tells the sink every hundredth or so.
+    /// Counts `work` units as done, and reports to the sink about every hundredth. Thread safety: any thread.
     void add(std::uint64_t work);
-    /// Tells the sink 1.
+    /// Reports 1 to the sink.
     void finish();
 
 private:
-    void tell(double fraction);
+    void report(double fraction);
 
     const ProgressSink& sink_;
     std::mutex mutex_;
     double begin_ = 0;
     double end_ = 0;
-    double told_ = -1;
+    double reported_ = -1;
     std::uint64_t work_ = 1;
     std::uint64_t done_ = 0;
 };

@@ -1,4 +1,4 @@
-// Receiver: pairs in their final order, on their way to the caller's list or sink, up to a limit.
+// Receiver: passes pairs, in their final order, to the caller's list or sink, up to a limit.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ public:
 
     struct LimitReached {};
 
-    /// Throws LimitReached at the first pair beyond the limit.
+    /// Throws: LimitReached after the pairs up to the limit, if `pairs` exceeds it; what the sink throws.
     void take(std::span<const Pair> pairs);
+    /// Passes the batched pairs to the sink.
     void flush();
 
     std::uint64_t pairs() const { return pairs_; }
@@ -34,7 +35,7 @@ private:
     std::uint64_t pairs_ = 0;
     bool truncated_ = false;
     double sink_seconds_ = 0;
-    std::vector<Pair> held_;
+    std::vector<Pair> held_;  // batch for the sink
 };
 
 }  // namespace octopair

@@ -1,7 +1,7 @@
-// What every public call becomes: one Request, one Output, one Control, handed to Engine::run.
+// Request, Output, Control: the internal form of every public call, passed to Engine::run.
 //
-// The public calls check the options and the sizes before run is called; the boxes and the padding values themselves
-// are checked by the engine on its first pass over them, so that a good input is read once less.
+// The public calls check the options and the sizes before run() is called. The engine checks the boxes and the padding
+// values in its first pass over them, which saves one read of a valid input.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ namespace octopair::detail {
 
 struct Request {
     const Objects& first;
-    const Objects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
+    const Objects* second = nullptr;  ///< second set of a join; null: pairs within `first`
     const Options& options;
 };
 
-/// Where pairs go: exactly one of the two is set; neither: they are counted only.
+/// Destination of pairs. At most one of the two is set; if neither is set, pairs are only counted.
 struct Output {
     PairList* list = nullptr;
     const PairSink* sink = nullptr;
@@ -28,7 +28,8 @@ inline Request request_of(const Input& input, const Options& options) {
     return {input.first, input.second ? &*input.second : nullptr, options};
 }
 
-/// Options and sizes. Throws Error.
+/// Checks options and sizes.
+/// Throws: Error{bad_input}, or Error{resource_limit} for too many objects.
 void check_request(const Request& request);
 
 struct Control {

@@ -14,9 +14,10 @@ namespace octopair {
 
 namespace {
 
-constexpr double built = 0.3;  // of the progress
-/// Of the progress of an ascending stream: what follows is the receiver's, who may take long over pairs.
-constexpr double collected = 0.6;
+/// Progress after the octree is built, as a fraction of the call.
+constexpr double progress_after_build = 0.3;
+/// Progress of an ascending stream after the pairs are collected. The rest is for the receiver, whose sink may be slow.
+constexpr double progress_after_collection = 0.6;
 
 }  // namespace
 
@@ -26,11 +27,11 @@ std::uint64_t Call::buffer_pairs() const {
 
 namespace {
 
-/// Lets go, at the end of a call, of what only the call needed.
-struct Ending {
+/// Frees the resources that only the call needs when the call ends.
+struct CallCleanup {
     Passes& passes;
     PairList& held;
-    ~Ending() {
+    ~CallCleanup() {
         detail::storage_of(held).reset();
         passes.end();
     }
@@ -43,7 +44,7 @@ Summary Search::run(const detail::Request& request, const detail::Output& output
     Progress progress(control.progress);
     Call call{request, output, source, {}, progress, {}};
     const std::stop_callback forward(control.stop, [&] { call.stop.request_stop(); });
-    const Ending ending{passes_, held_};
+    const CallCleanup cleanup{passes_, held_};
     find(call);
     progress.finish();
     return call.summary;
@@ -51,7 +52,7 @@ Summary Search::run(const detail::Request& request, const detail::Output& output
 
 void Search::find(Call& call) {
     const Timed timed(call.summary.seconds);
-    passes_.build(call, built);
+    passes_.build(call, progress_after_build);
     if (call.output.list == nullptr && call.output.sink == nullptr) {
         count(call);
     } else if (call.request.options.order == Order::octal) {
@@ -94,7 +95,8 @@ void Search::find_ascending(Call& call) {
     Receiver receiver(call.output, call.request.options.limit);
     detail::storage_of(held_).reset();
     try {
-        passes_.list_ascending(call, detail::storage_of(held_), {all, all.end, call.buffer_pairs()}, collected);
+        passes_.list_ascending(call, detail::storage_of(held_), {all, all.end, call.buffer_pairs()},
+                               progress_after_collection);
     } catch (const OverBudget&) {
         count_path(Path::buffer_over);
         return find_windows(call, receiver);
@@ -102,7 +104,7 @@ void Search::find_ascending(Call& call) {
     hand_out_held(call, receiver, 1);
 }
 
-/// To `held_`, with room for pairs that were counted.
+/// Collects the pairs of a window in `held_`. `bounds` has room for the number of pairs that was counted before.
 void Search::collect_counted(Call& call, const AscendingBounds& bounds, double progress) {
     detail::storage_of(held_).reset();
     try {
@@ -126,13 +128,13 @@ void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
     });
 }
 
-/// Where the pairs do not fit into the buffer: counts those of each object, then collects as many objects at a time
-/// as fit.
+/// Streams ascending pairs that do not fit into the buffer. Counts the pairs of each object, then collects them in windows
+/// of as many objects as fit.
 void Search::find_windows(Call& call, Receiver& receiver) {
     const std::uint64_t objects = call.source.size();
     std::vector<std::uint32_t> counts(objects, 0);
     passes_.count_by_object(call, counts, 0.5);
-    // A quarter of the buffer is for pages that are not full.
+    // A quarter of the buffer is reserved for partly filled pages.
     const std::uint64_t most = call.buffer_pairs() - call.buffer_pairs() / 4;
     ObjectRange window{0, 0};
     while (window.end < objects && !call.summary.truncated) {
@@ -144,7 +146,7 @@ void Search::find_windows(Call& call, Receiver& receiver) {
         }
         if (pairs == 0) break;
         count_path(pairs > most ? Path::window_of_one : Path::window);
-        // One object's pairs have to be held, however many; and each thread has a few pages that are not full.
+        // A window holds all pairs of at least one object, however many. Each thread also has a few partly filled pages.
         const std::uint64_t room = std::max(call.buffer_pairs(), 2 * pairs) + passes_.width() * 2 * page_pairs();
         const AscendingBounds bounds{window, objects, room, pairs};
         const auto done = [&](double of_window) {

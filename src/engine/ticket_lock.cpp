@@ -12,9 +12,9 @@ TicketLock::Guard::Guard(TicketLock& lock, std::stop_token stop) : lock_(lock) {
     auto& tickets = lock_.tickets_;
     const std::uint64_t ticket = lock_.next_ticket_++;
     tickets.push_back(ticket);
-    const auto has_come = [&] { return tickets.front() == ticket; };
-    if (has_come() || lock_.changed_.wait(mutex_lock, std::move(stop), has_come)) return;
-    // Others wait for the first only, which this is not.
+    const auto is_front = [&] { return tickets.front() == ticket; };
+    if (is_front() || lock_.changed_.wait(mutex_lock, std::move(stop), is_front)) return;
+    // No notification is needed: this ticket is not the front one, so its removal lets no other thread continue.
     tickets.erase(std::find(tickets.begin(), tickets.end(), ticket));
     throw Error(ErrorCode::cancelled, "cancelled");
 }

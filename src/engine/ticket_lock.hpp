@@ -1,5 +1,8 @@
-// TicketLock: the calls of an engine one after another, in the order in which they came. Unlike at a mutex, whoever waits
-// can be stopped, and nobody is passed over: direct calls and jobs alternate, however many jobs there are.
+// TicketLock: a fair lock that runs the calls of an engine one after another.
+//
+// Invariants
+//   Threads get the lock in the order of their tickets, so many queued jobs cannot starve direct calls.
+//   A waiting thread can be stopped, unlike a thread that waits for a mutex.
 #pragma once
 
 #include <condition_variable>
@@ -12,10 +15,11 @@ namespace octopair {
 
 class TicketLock {
 public:
-    /// Held by the one whose turn it is.
+    /// Holds the lock while it exists.
     class Guard {
     public:
-        /// Waits for all that came before. Throws Error{cancelled} if stopped meanwhile, std::bad_alloc.
+        /// Waits until all earlier guards are released.
+        /// Throws: Error{cancelled} if `stop` is requested while it waits; std::bad_alloc.
         Guard(TicketLock& lock, std::stop_token stop);
         Guard(const Guard&) = delete;
         Guard& operator=(const Guard&) = delete;
@@ -28,7 +32,7 @@ public:
 private:
     std::mutex mutex_;
     std::condition_variable_any changed_;
-    std::deque<std::uint64_t> tickets_;  // the first has its turn
+    std::deque<std::uint64_t> tickets_;  // the front ticket holds the lock
     std::uint64_t next_ticket_ = 0;
 };
 

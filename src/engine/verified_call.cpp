@@ -8,10 +8,10 @@ namespace octopair {
 
 namespace {
 
-/// The part of the progress that the engine gets. The check takes longer, but is the better judge of its own progress.
-constexpr double found = 0.3;
-/// The part of an ascending stream, of which most is checked before the last pair is there.
-constexpr double streamed = 0.9;
+/// Fraction of the progress for the engine's search. The check takes longer, and reports its own progress better.
+constexpr double search_progress = 0.3;
+/// Fraction for the search of an ascending stream: most of the stream is checked before its last pair is found.
+constexpr double stream_progress = 0.9;
 
 }  // namespace
 
@@ -20,12 +20,12 @@ ResultKind VerifiedCall::kind() const {
     return request_.options.order == Order::octal ? ResultKind::octal : ResultKind::ascending;
 }
 
-/// The caller's progress, of which a part of the work fills [begin, end].
+/// Returns a sink that maps the progress of a part of the work, 0 to 1, to [begin, end] of the caller's progress.
 ProgressSink VerifiedCall::part(double begin, double end) const {
     if (!control_.progress) return {};
-    return [&progress = control_.progress, begin, end, told = 0.0](double done) mutable {
-        told = std::max(told, done);  // where the check goes over the objects twice
-        progress(begin + (end - begin) * told);
+    return [&progress = control_.progress, begin, end, reported = 0.0](double done) mutable {
+        reported = std::max(reported, done);  // a check that passes over the objects twice starts again at 0
+        progress(begin + (end - begin) * reported);
     };
 }
 
@@ -37,7 +37,7 @@ Summary VerifiedCall::run(unsigned threads, const Run& run) {
         verifier.take(pairs);
         (*output_.sink)(pairs);
     };
-    const double half = is_stream() && kind() == ResultKind::ascending ? streamed : found;
+    const double half = is_stream() && kind() == ResultKind::ascending ? stream_progress : search_progress;
     const ProgressSink progress = part(0, half);
     detail::Output output = output_;
     if (is_stream()) output.sink = &checked;

@@ -1,7 +1,8 @@
-// VerifiedCall: a call with Options::verify. The engine's result is checked on its way to the caller.
+// VerifiedCall: a call with Options::verify. Checks the engine's result before the caller receives it.
 //
-// A list is checked when it is complete. A stream is checked batch by batch, each before the caller's sink gets it, and
-// at its end. The process of the caller does it, whatever engine finds the pairs.
+// List     checked when it is complete.
+// Stream   each batch is checked before the caller's sink receives it; the whole stream is checked at its end.
+// Process  the check runs in the caller's process, with every engine.
 #pragma once
 
 #include <functional>
@@ -18,8 +19,8 @@ public:
     VerifiedCall(const detail::Request& request, const detail::Output& output, const detail::Control& control)
         : request_(request), output_(output), control_(control) {}
 
-    /// Calls `run` once. `threads` of this process check; 0: one per core. Throws what `run` throws, and
-    /// Error{engine_failed} for a result that is wrong; then the caller empties the list.
+    /// Calls `run` once and checks its result on `threads` threads of this process; 0: one per core.
+    /// Throws: what `run` throws; Error{engine_failed} if the result is wrong. The caller must then empty the list.
     Summary run(unsigned threads, const Run& run);
 
 private:

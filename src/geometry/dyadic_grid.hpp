@@ -1,5 +1,5 @@
-// Float64 are integers times a power of two: with the least such power of all that take part in a computation they become
-// integers, as wide as their exponents spread.
+// Exact conversion of float64 numbers to integers: each finite float64 is an integer times a power of two. In units of the
+// least such power, all numbers of a computation are integers; their width depends on the spread of the exponents.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace octopair {
 
-/// mantissa * 2^exponent; the mantissa is odd, or 0.
+/// The number mantissa * 2^exponent. The mantissa is odd, or 0.
 struct Dyadic {
     std::int64_t mantissa = 0;
     int exponent = 0;
@@ -28,10 +28,11 @@ struct Dyadic {
         exponent = std::max(biased, 1) - 1075 + zeros;
     }
 
+    /// Returns an exponent e such that the magnitude is below 2^e.
     int end() const { return exponent + int(std::bit_width(std::uint64_t(mantissa < 0 ? -mantissa : mantissa))); }
 };
 
-/// Numbers on their way to integers.
+/// Numbers as integer multiples of their common unit, the least power of two among them.
 template <std::size_t count>
 class Grid {
 public:
@@ -48,9 +49,10 @@ public:
         bits_ = unsigned(end - begin);
     }
 
-    /// All integers are below 2^bits.
+    /// Returns a bound: all integers have magnitudes below 2^bits.
     unsigned bits() const { return bits_; }
 
+    /// Returns number `i` as an integer. Requires: Integer has more than bits() bits.
     template <typename Integer>
     Integer at(std::size_t i) const {
         if (numbers_[i].mantissa == 0) return Integer(0);

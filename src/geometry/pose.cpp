@@ -1,4 +1,4 @@
-// Poses made of a place and a quaternion.
+// make_pose(): makes a pose from a position and a quaternion.
 #include <cmath>
 
 #include "base/floating_point.hpp"
@@ -11,7 +11,7 @@ Pose make_pose(const Point3d& place, const std::array<double, 4>& turn) {
     const FloatingPointScope scope;
     const double length = std::hypot(std::hypot(turn[0], turn[1]), std::hypot(turn[2], turn[3]));
     if (!(length > 0) || !std::isfinite(length)) {
-        throw Error(ErrorCode::bad_input, "a pose's quaternion is not finite, or 0");
+        throw Error(ErrorCode::bad_input, "the quaternion of a pose must be finite and not 0");
     }
     const double w = turn[0] / length, x = turn[1] / length, y = turn[2] / length, z = turn[3] / length;
     return {{{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), place[0]},

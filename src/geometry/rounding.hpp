@@ -1,5 +1,5 @@
-// Outward rounding: bounds of numbers that float32 or float64 cannot hold. boxes/box_kernel.cpp has finite_float_above() for
-// many numbers at a time.
+// Outward rounding: bounds of numbers that float32 or float64 cannot represent. boxes/box_kernel.cpp has finite_float_above()
+// for many numbers at a time.
 //
 // Invariants
 // - A function named `..._above` returns no less than the exact value, and one named `..._below` no more, unless its comment
@@ -13,11 +13,11 @@
 
 namespace octopair::rounding {
 
-/// Returns the next float64 above, infinity at last.
+/// Returns the next larger float64; infinity after the largest finite one.
 inline double next_above(double value) { return std::nextafter(value, std::numeric_limits<double>::infinity()); }
-/// Returns the next float64 below, -infinity at last.
+/// Returns the next smaller float64; -infinity after the smallest finite one.
 inline double next_below(double value) { return std::nextafter(value, -std::numeric_limits<double>::infinity()); }
-/// Returns the next float32 above, infinity at last.
+/// Returns the next larger float32; infinity after the largest finite one.
 inline float next_above(float value) { return std::nextafter(value, std::numeric_limits<float>::infinity()); }
 
 /// Returns the smallest float32 >= `value`; infinity if there is no finite one.
@@ -26,8 +26,8 @@ inline float float_above(double value) {
     return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
-/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. A zero that is nearest to `value` is
-/// positive.
+/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. If the float32 nearest to `value` is 0,
+/// its sign is positive.
 inline float finite_float_above(double value) {
     if (value <= -double(FLT_MAX)) return -FLT_MAX;
     if (value >= double(FLT_MAX)) return FLT_MAX;

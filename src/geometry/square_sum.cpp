@@ -1,5 +1,5 @@
-// All numbers become integers: multiples of the least power of two among them (dyadic_grid.hpp). Most coordinates span few
-// binary digits, so that two or four words of 64 bits hold the sum; the widest type holds any float64.
+// Exact integer arithmetic: all numbers become integer multiples of the least power of two among them (dyadic_grid.hpp). Most
+// coordinates span few binary digits, so that two or four 64-bit words hold the sum. The widest type holds any float64.
 #include "geometry/square_sum.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ template <std::size_t words>
 class WordInteger {
 public:
     WordInteger() = default;
-    /// `number` in multiples of 2^unit.
+    /// Makes `number` in multiples of 2^unit. Requires: unit <= number.exponent.
     WordInteger(const Dyadic& number, int unit) {
         if (number.mantissa == 0) return;
         const auto shift = unsigned(number.exponent - unit);
@@ -98,7 +98,7 @@ int compare(const Differences& a, const Differences& b) {
             }
         }
     }
-    // Differences of numbers below 2^bits, squared, and three of these added: below 2^(2 * (bits + 1) + 2).
+    // A difference of numbers below 2^bits is below 2^(bits + 1); the sum of three squares is below 2^(2 * (bits + 1) + 2).
     const int bits = end - unit;
     if (bits <= 62) return compare_in<2>(a, b, unit);
     if (bits <= 126) return compare_in<4>(a, b, unit);
@@ -119,7 +119,7 @@ Differences differences_of(const Gaps& gaps) {
 int compare_square_sums(const Gaps& a, const Gaps& b) { return compare(differences_of(a), differences_of(b)); }
 
 int compare_root_with_middle(const Gaps& gaps, double low) {
-    // Above the largest float64 are the bits of infinity, which Dyadic takes for 2^1024.
+    // After the largest float64, the incremented bits are those of infinity; Dyadic interprets them as 2^1024.
     Dyadic half_low(-low), half_high(std::bit_cast<double>(std::bit_cast<std::uint64_t>(low) + 1));
     --half_low.exponent;
     --half_high.exponent;

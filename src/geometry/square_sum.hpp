@@ -1,22 +1,25 @@
-// Square sums: comparisons of sums of squared differences of float64, without error. Slow; for what rounding leaves open.
+// Square sums: exact comparisons of sums of squared differences of float64 numbers. Slow; used where float64 rounding leaves
+// the result open.
 #pragma once
 
 #include <array>
 
 namespace octopair {
 
-/// high - low as a real number. Requires: finite, high >= low.
+/// The real number high - low. Requires: both are finite; high >= low.
 struct Gap {
     double high = 0;
     double low = 0;
 };
 using Gaps = std::array<Gap, 3>;
 
-/// Returns -1, 0 or 1: how the sum of the squares of `a` compares with that of `b`.
+/// Returns -1, 0 or 1 if the sum of the squares of `a` is less than, equal to or greater than that of `b`.
 int compare_square_sums(const Gaps& a, const Gaps& b);
 
-/// Returns -1, 0 or 1: how the root of the sum of the squares of `gaps` compares with the middle between `low` and the next
-/// float64 above, which is 2^1024 after the largest. Requires: low finite, >= 0.
+/// Compares the root of the sum of the squares of `gaps` with the middle between `low` and the next larger float64. The
+/// successor of the largest float64 counts as 2^1024. Returns -1, 0 or 1 if the root is less than, equal to or greater than the
+/// middle.
+/// Requires: `low` is finite and >= 0.
 int compare_root_with_middle(const Gaps& gaps, double low);
 
 }  // namespace octopair

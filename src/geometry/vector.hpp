@@ -1,4 +1,4 @@
-// Vectors of three float64 numbers, and poses applied to them. Each operation is rounded once.
+// Operations on vectors of three float64 numbers, and poses applied to vectors. Each operation is rounded once.
 #pragma once
 
 #include <cmath>
@@ -15,23 +15,23 @@ inline double dot(const Point3d& a, const Point3d& b) { return (a[0] * b[0] + a[
 inline Point3d cross(const Point3d& a, const Point3d& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// Without overflow or underflow on the way.
+/// Returns the length, without overflow or underflow of intermediate results.
 inline double length(const Point3d& a) { return std::hypot(a[0], a[1], a[2]); }
 
 inline Point3d column(const Pose& pose, std::size_t k) { return {pose.rows[0][k], pose.rows[1][k], pose.rows[2][k]}; }
 inline Point3d place(const Pose& pose) { return column(pose, 3); }
 
-/// The pose without its place.
+/// Returns `v` multiplied by the pose's 3 x 3 matrix: its translation is not applied.
 inline Point3d turned(const Pose& pose, const Point3d& v) {
     const auto& r = pose.rows;
     return {r[0][0] * v[0] + r[0][1] * v[1] + r[0][2] * v[2], r[1][0] * v[0] + r[1][1] * v[1] + r[1][2] * v[2],
             r[2][0] * v[0] + r[2][1] * v[1] + r[2][2] * v[2]};
 }
-/// The transpose of the pose without its place: directions of the world, seen from the object.
+/// Returns `v` multiplied by the transpose of that matrix. For a rigid pose: a world direction in local coordinates.
 inline Point3d turned_back(const Pose& pose, const Point3d& v) {
     return {dot(column(pose, 0), v), dot(column(pose, 1), v), dot(column(pose, 2), v)};
 }
-/// Where a vertex is in the world: shapes.hpp defines the order of these operations.
+/// Returns the world position of a vertex. shapes.hpp defines the order of these operations.
 inline Point3d posed(const Pose& pose, const Point3d& v) {
     const auto coordinate = [&](const std::array<double, 4>& r) {
         return ((r[0] * v[0] + r[1] * v[1]) + r[2] * v[2]) + r[3];

@@ -28,7 +28,7 @@ SceneFormat scene_format(const std::string& path) {
     return SceneFormat::unknown;
 }
 
-bool has_parts(const std::string& path) {
+bool may_name_files(const std::string& path) {
     const std::string ending = ending_of(path);
     return ending == ".gltf" || ending == ".json";
 }
@@ -38,7 +38,8 @@ ResultFormat result_format(const std::string& path) {
     if (ending == ".npy") return ResultFormat::npy;
     if (ending == ".csv") return ResultFormat::csv;
     if (ending == ".jsonl") return ResultFormat::jsonl;
-    throw Error(ErrorCode::usage, fmt::format("{}: the name of a pairs file ends in .npy, .csv or .jsonl", path));
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: unknown file type; the name of a pairs file must end in .npy, .csv or .jsonl", path));
 }
 
 bool is_array_file(const std::string& path) { return !path.empty() && result_format(path) == ResultFormat::npy; }

@@ -1,4 +1,4 @@
-// File formats: the one table that says what the ending of a file's name means. Upper and lower case are the same.
+// File formats by the ending of the file's name. Case is ignored. No other file maps endings to formats.
 #pragma once
 
 #include <cstdint>
@@ -6,29 +6,29 @@
 
 namespace octopair::io {
 
-/// Returns the ending of a file's name in lower case, with its dot; empty if there is none.
+/// Returns the ending of a file's name in lower case, with its dot; empty if the name has no ending.
 std::string ending_of(const std::string& path);
 
-/// How a scene file is read. `mesh`: by Assimp. `unknown`: refused.
+/// Format of a scene file. Assimp reads `mesh` files. Readers refuse `unknown` files.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 
-/// How pairs or collisions are written. `npy`: an array of pairs; the others are rows of text.
+/// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
 enum class ResultFormat : std::uint8_t { npy, csv, jsonl };
 
-/// `mesh` only if this build reads mesh files.
+/// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files.
 SceneFormat scene_format(const std::string& path);
 inline bool is_npy_file(const std::string& path) { return scene_format(path) == SceneFormat::npy; }
 inline bool is_json_file(const std::string& path) { return scene_format(path) == SceneFormat::json; }
 inline bool is_mesh_file(const std::string& path) { return scene_format(path) == SceneFormat::mesh; }
 
-/// Returns whether a scene file may name other files, which are read with it (glTF, JSON).
-bool has_parts(const std::string& path);
+/// Returns whether a scene file may name other files that must be read too (glTF, JSON).
+bool may_name_files(const std::string& path);
 
 /// Throws: Error{usage} for an ending that is not .npy, .csv or .jsonl.
 ResultFormat result_format(const std::string& path);
 
-/// Returns whether a result goes to an array. An empty path means standard output, which gets rows of text.
-/// Throws: as result_format().
+/// Returns whether the result format of `path` is an array. An empty path means standard output, which gets rows of text.
+/// Throws: what result_format() throws.
 bool is_array_file(const std::string& path);
 
 }  // namespace octopair::io

@@ -1,4 +1,4 @@
-// What scene files become in memory: boxes frame after frame, with names and shapes where the files had them.
+// LoadedScene: a scene in memory. Boxes of all frames, and the names and shapes that the files have.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace octopair::io {
 
-/// Box i of frame f is boxes[f * objects + i]. Where there are shapes or triangles, boxes may be left to be made of them:
-/// then there are none.
+/// Box i of frame f is boxes[f * objects + i]. A scene with shapes or triangles may have no boxes yet; the caller then
+/// computes the boxes from the shapes.
 struct LoadedScene {
     std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
-    std::uint64_t objects = 0;  ///< in each frame
+    std::uint64_t objects = 0;  ///< number of objects in each frame
     std::uint64_t frames = 1;
-    bool moving = false;                 ///< a file with a frame axis, though it may hold one frame only
-    std::vector<std::string> names;      ///< empty, or one an object; objects of files without names have empty ones
-    std::optional<LoadedShapes> shapes;  ///< if they were asked for, and the file has any
-    std::optional<LoadedTriangles> triangles;  ///< likewise, where triangles are objects
+    bool moving = false;                 ///< true for a file with a frame axis, even with one frame
+    std::vector<std::string> names;      ///< empty, or one name per object; an object without a name has an empty one
+    std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes
+    std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
 
     bool lacks_boxes() const {
         return objects > 0 && std::visit([](const auto& buffer) { return buffer.size() == 0; }, boxes);
     }
 
-    /// The boxes of a frame, borrowed.
+    /// Returns the boxes of frame `f`, borrowed.
     Objects frame(std::uint64_t f) const {
         return std::visit(
             [&](const auto& buffer) {

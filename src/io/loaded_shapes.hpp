@@ -1,6 +1,7 @@
-// What scene files say of objects beside their boxes: shapes and poses, or the triangles of a set, for the exact stages.
+// Shapes and poses of a loaded scene, or the triangles of a loaded scene, for the narrow phase.
 //
-// Plain data, numbered as the boxes are. A shape is there once, however many objects have it.
+// - Objects have the same numbers as their boxes.
+// - Objects with the same shape share one entry of `shapes`.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +13,30 @@
 
 namespace octopair::io {
 
-/// Of n objects. The arrays that may be empty are so where no file says anything else than the default.
+/// Shapes, poses and attributes of n objects. Optional arrays are empty if no file sets a value.
 struct LoadedShapes {
     std::vector<shape::Any> shapes;
-    std::vector<std::uint32_t> geometry;  ///< of each object: which shape
-    std::vector<Pose> poses;              ///< of each object
-    std::vector<std::uint32_t>
-        parents;                  ///< of each object: alike for those of one parent; unlike all others without one
-    std::vector<Pose> end_poses;  ///< empty, or of each object: where it is at time 1; default its pose
-    std::vector<double> padding;  ///< empty, or of each object; default 0
-    std::vector<std::uint32_t> groups;  ///< empty, or of each object: bits; default 1
-    std::vector<std::uint32_t> masks;   ///< empty, or of each object: bits; default all
+    std::vector<std::uint32_t> geometry;  ///< n indices into `shapes`
+    std::vector<Pose> poses;              ///< n poses
+    std::vector<std::uint32_t> parents;   ///< n parent numbers; an object without a parent has a number of its own
+    std::vector<Pose> end_poses;          ///< n poses at time 1, or empty; the default is the pose
+    std::vector<double> padding;          ///< n paddings, or empty; the default is 0
+    std::vector<std::uint32_t> groups;    ///< n bit masks, or empty; the default is bit 0
+    std::vector<std::uint32_t> masks;     ///< n bit masks, or empty; the default is all bits
 
     static constexpr std::uint32_t default_groups = 1, default_mask = 0xFFFFFFFF;
 
-    /// Numbers the others' objects, shapes and parents on.
+    /// Appends the objects of `others`. Their objects, shapes and parents get the numbers after those of this scene.
     void append(LoadedShapes&& others);
 };
 
 /// Triangles as objects, in the world (octopair/shapes.hpp).
 struct LoadedTriangles {
     std::vector<Triangle3d> triangles;
-    std::vector<std::uint32_t> owners;     ///< of each triangle: the object it would be part of, were nodes objects
-    std::vector<std::string> owner_names;  ///< of all such objects, those without triangles too
+    std::vector<std::uint32_t> owners;  ///< for each triangle, the node that it belongs to (an index into owner_names)
+    std::vector<std::string> owner_names;  ///< names of all nodes, including nodes without triangles
 
-    /// Numbers the others' triangles and owners on.
+    /// Appends the triangles of `others`. Their triangles and owners get the numbers after those of this scene.
     void append(LoadedTriangles&& others);
 };
 

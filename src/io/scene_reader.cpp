@@ -37,23 +37,23 @@ Buffer<To> join_boxes(std::span<LoadedScene> scenes, std::uint64_t objects) {
             std::visit([&](const auto& boxes) { copy_frame(boxes, f * scene.objects, place); }, scene.boxes);
         }
         first += scene.objects;
-        scene.boxes = {};  // so that no more than one copy is held beside the result
+        scene.boxes = {};  // frees each input at once: at most one copy exists besides the result
     }
     return joined;
 }
 
-/// What a scene has beside boxes.
-const char* extent_of(const LoadedScene& scene) {
+/// Returns what a scene has besides boxes, in words for a message.
+const char* content_of(const LoadedScene& scene) {
     if (scene.shapes) return "shapes";
-    return scene.triangles ? "triangles" : "boxes alone";
+    return scene.triangles ? "triangles" : "only boxes";
 }
 
-void check_extents(std::span<const LoadedScene> scenes, std::span<const std::string> paths) {
+void check_same_content(std::span<const LoadedScene> scenes, std::span<const std::string> paths) {
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const std::string_view has = extent_of(scenes[i]), first_has = extent_of(scenes[0]);
+        const std::string_view has = content_of(scenes[i]), first_has = content_of(scenes[0]);
         if (has == first_has) continue;
         refuse(paths[i],
-               fmt::format("{} beside {} in {}; what is one set has the same of each", has, first_has, paths[0]));
+               fmt::format("has {}, but {} has {}; the files of one set must have the same", has, paths[0], first_has));
     }
 }
 
@@ -86,14 +86,14 @@ std::optional<std::string> fault_of(const Box<Real>& box) {
     return std::nullopt;
 }
 
-/// Its boxes are made of the shapes later, by the pipeline.
+/// Reads a JSON scene. The caller computes its boxes from the shapes.
 LoadedScene read_shapes(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
 #ifdef OCTOPAIR_WITH_PIPELINE
     if (content.objects == MeshObjects::triangle) refuse(path, "the objects of a JSON scene are shapes, not triangles");
     return read_json_scene(path, stop);
 #else
     (void)content, (void)stop;
-    refuse(path, "this build of octopair has no pipeline, and reads no JSON scenes");
+    refuse(path, "this build of octopair cannot read JSON scenes: it was built without the pipeline");
 #endif
 }
 
@@ -115,17 +115,19 @@ LoadedScene read_scene(const std::string& path, const SceneContent& content, con
             break;
     }
 #ifdef OCTOPAIR_WITH_MESHES
-    refuse(path, "the ending of its name is not known: it is not .npy, .csv, .json or that of a mesh file");
+    refuse(path, "unknown file type; the name must end in .npy, .csv, .json or the ending of a mesh file");
 #else
-    refuse(path, "the ending of its name is not .npy, .csv or .json, and this build of octopair reads no mesh files");
+    refuse(
+        path,
+        "unknown file type; the name must end in .npy, .csv or .json (this build of octopair cannot read mesh files)");
 #endif
 }
 
 void check_frame_counts(std::span<const FrameCount> counts, std::span<const std::string> paths) {
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] == counts[0]) continue;
-        refuse(paths[i], fmt::format("{} frames beside the {} of {}; one set needs the same number of each",
-                                     counts[i].frames, counts[0].frames, paths[0]));
+        refuse(paths[i], fmt::format("has {} frames, but {} has {}; the files of one set must have the same number",
+                                     counts[i].frames, paths[0], counts[0].frames));
     }
 }
 
@@ -134,7 +136,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     const bool boxless =
         std::any_of(scenes.begin(), scenes.end(), [](const LoadedScene& scene) { return scene.lacks_boxes(); });
     if (scenes.size() == 1 && (boxless || is_wide(scenes.front()) >= wide)) return std::move(scenes.front());
-    check_extents(scenes, paths);
+    check_same_content(scenes, paths);
     LoadedScene joined;
     joined.moving = scenes.front().moving;
     joined.frames = scenes.front().frames;

@@ -1,4 +1,4 @@
-// Scene files of any kind, told apart by the ending of their names: .npy, .csv, .json, and what Assimp reads.
+// Reads scene files of any format. The ending of the name gives the format: .npy, .csv, .json, or a mesh file of Assimp.
 #pragma once
 
 #include <optional>
@@ -11,24 +11,24 @@
 
 namespace octopair::io {
 
-/// What one object of a mesh file is: a node that shows a mesh, or a triangle.
+/// Kind of the objects of a mesh file: nodes with meshes, or triangles.
 enum class MeshObjects : std::uint8_t { node, triangle };
 
-/// What is wanted of files that hold more than boxes.
+/// Selects what to read from files that hold more than boxes.
 struct SceneContent {
     MeshObjects objects = MeshObjects::node;
-    bool shapes = false;  ///< beside boxes, what the exact stages need: shapes, or triangles
+    bool shapes = false;  ///< also read shapes or triangles, for the narrow phase
 };
 
-/// Throws Error{bad_input, io_failed, resource_limit, cancelled}; the message begins with the file.
+/// Reads a scene file. Throws: Error{bad_input, io_failed, resource_limit, cancelled} that begins with the file.
 LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop = {});
 
-/// Several scenes as one set: objects are numbered on, in each frame. Float32 beside float64 becomes float64, as all does
-/// if `wide`. Where one lacks boxes, the set does. Throws Error{bad_input} where their frames do not agree, or where some
-/// have shapes (or triangles) and others boxes alone.
+/// Joins scenes to one set. In each frame, the objects of a scene are numbered after those of the scenes before it.
+/// The boxes are float64 if `wide` or if any scene is float64. The set has no boxes if any scene lacks boxes.
+/// Throws: Error{bad_input} if the frames do not agree, or if only some scenes have shapes (or triangles).
 LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::string> paths, bool wide = false);
 
-/// How many frames a set has; one that stands still has the same one for ever.
+/// Number of frames of a set. A set that does not move has one frame, which is valid at all times.
 struct FrameCount {
     std::uint64_t frames = 1;
     bool moving = false;
@@ -36,22 +36,23 @@ struct FrameCount {
     bool operator==(const FrameCount&) const = default;
 };
 
-/// Throws Error{bad_input} unless the files of one set all have the same.
+/// Checks that all files of one set have the same number of frames. Throws: Error{bad_input}.
 void check_frame_counts(std::span<const FrameCount> counts, std::span<const std::string> paths);
 
-/// A file of a moving scene, to be read frame by frame; nothing if it is of another kind. Throws as read_scene does.
+/// Opens a moving scene for reading frame by frame. Returns nothing if the file is not a moving scene.
+/// Throws: what read_scene() throws.
 std::optional<NpyFrames> open_frames(const std::string& path);
 
-/// An object that is not a box, and why: "min x is nan, not a finite number".
+/// An object whose box is invalid. `what` says why, for example "min x is nan, not a finite number".
 struct Fault {
     std::uint64_t frame;
     std::uint64_t object;
     std::string what;
 };
 
-/// The first one, or nothing if all are boxes.
+/// Returns the first invalid box of the scene, or nothing if all boxes are valid.
 std::optional<Fault> find_fault(const LoadedScene& scene);
-/// Of one frame, 0.
+/// Returns the first invalid box of one frame. Fault::frame is 0.
 std::optional<Fault> find_fault(const Boxes& boxes);
 
 }  // namespace octopair::io

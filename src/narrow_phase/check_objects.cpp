@@ -1,4 +1,4 @@
-// What ShapedObjects must be.
+// check(): validates ShapedObjects. Errors name the object.
 #include <cmath>
 #include <string>
 
@@ -24,7 +24,8 @@ void check_sizes(const ShapedObjects& objects) {
     if (!objects.padding.empty()) agree(objects.padding.size(), "paddings");
 }
 
-/// Whether it turns and moves only: its columns are of length 1 and perpendicular, and it does not mirror.
+/// Returns true if the pose is a rotation and a translation: its columns have length 1 and are perpendicular, and it does not
+/// mirror.
 bool is_rigid(const Pose& pose) {
     constexpr double tolerance = 1e-6;
     const Point3d x = vector::column(pose, 0), y = vector::column(pose, 1), z = vector::column(pose, 2);
@@ -47,8 +48,9 @@ void check_pose(const Pose& pose, const Geometry& geometry, const std::string& w
     const shape::Any& shape = geometry.shape();
     if (std::holds_alternative<shape::Mesh>(shape) || std::holds_alternative<shape::ConvexHull>(shape)) return;
     if (!is_rigid(pose)) {
-        refuse_objects(whose +
-                       " scales, shears or mirrors; only meshes and convex hulls may be more than turned and moved");
+        refuse_objects(
+            whose +
+            " scales, shears or mirrors; only poses of meshes and convex hulls may do more than rotate and move");
     }
 }
 
@@ -63,9 +65,10 @@ void check_object(const ShapedObjects& objects, std::size_t i) {
     if (!objects.end_poses.empty()) {
         check_pose(objects.end_poses[i], geometry, "the end pose of object " + number);
         const auto motion = Motion::between(objects.poses[i], objects.end_poses[i]);
-        if (!motion) refuse_objects("object " + number + " does not get to its end pose by turning and moving alone");
+        if (!motion)
+            refuse_objects("object " + number + ": no rotation and translation leads from its pose to its end pose");
         if (motion->angle() > 0 && std::holds_alternative<shape::Plane>(geometry.shape())) {
-            refuse_objects("object " + number + " is a plane that turns; planes may only be moved");
+            refuse_objects("object " + number + " is a plane that rotates; planes may only be moved");
         }
     }
     if (objects.padding.empty()) return;

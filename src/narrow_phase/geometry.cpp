@@ -1,4 +1,4 @@
-// Geometry: a shape, checked and made ready.
+// Geometry: validates a shape and builds its PreparedShape.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,7 +59,7 @@ void check_shape(const shape::Plane& plane) {
     const double length = vector::length(plane.normal);
     if (!std::isfinite(length) || !std::isfinite(plane.offset / length)) {
         refuse_geometry("a plane's offset is " + std::to_string(plane.offset) +
-                        ", beyond float64 for a normal of its length");
+                        "; divided by the length of the normal it is beyond float64");
     }
 }
 void check_shape(const shape::ConvexHull& hull) {
@@ -81,7 +81,7 @@ void check_shape(const shape::Mesh& mesh) {
     }
 }
 
-/// The points of a hull, or the vertices that a triangle uses, each once.
+/// Returns the points of a hull, or the vertices of a mesh that some triangle uses; empty for other shapes.
 std::vector<Point3d> vertices_of(const shape::Any& shape) {
     if (const auto* hull = std::get_if<shape::ConvexHull>(&shape)) return hull->points;
     const auto* mesh = std::get_if<shape::Mesh>(&shape);
@@ -97,7 +97,7 @@ std::vector<Point3d> vertices_of(const shape::Any& shape) {
     return vertices;
 }
 
-/// Its core's outermost coordinates, and outward by the radius.
+/// Returns the bounding box: that of the core, widened by the radius and rounded outward.
 Box3d box_of(const ConvexSolid& solid) {
     Box3d box = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -118,7 +118,7 @@ double farthest_from(const Point3d& centre, const std::vector<Point3d>& points) 
     return most;
 }
 
-/// How far a solid that is not made of points reaches from the middle of its box.
+/// Returns the largest distance of a point of the core from the middle of its box. Requires: the core is not a set of points.
 double reach(const ConvexSolid& solid) {
     const Point3d& extents = solid.extents;
     switch (solid.core) {
@@ -143,9 +143,10 @@ ShapeBounds bounds_of(const detail::PreparedShape& made, const std::vector<Point
     const bool points = solid.core == ConvexSolid::Core::points;
     const double core =
         points ? farthest_from(bounds.centre, vertices.empty() ? solid.points : vertices) : reach(solid);
-    // The centre is rounded, and so are differences, squares and their sum.
+    // The factor covers the rounding of the centre, of differences, of squares and of their sum.
     bounds.radius = (core + solid.radius) * (1 + 16 * std::numeric_limits<double>::epsilon());
-    if (!std::isfinite(bounds.radius)) refuse_geometry("a shape is larger than float64 can tell");
+    if (!std::isfinite(bounds.radius))
+        refuse_geometry("a shape is too large: the radius of its bounding sphere is beyond float64");
     return bounds;
 }
 

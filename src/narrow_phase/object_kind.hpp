@@ -1,4 +1,4 @@
-// What a posed object is to the tests of pairs: a mesh, a convex solid or a plane.
+// Kind: the class of objects that decides which pair test applies: mesh, convex solid or plane.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ inline Kind kind_of(const PosedObject& object) {
     return object.geometry.convex.exists() ? Kind::solid : Kind::plane;
 }
 
-// Of objects of that kind, borrowed.
+// Views of an object, borrowed. Each requires that the object is of that kind.
 
 inline PosedMesh mesh_of(const PosedObject& object) { return {*object.geometry.tree, object.pose}; }
 inline PosedConvex solid_of(const PosedObject& object) { return {object.geometry.convex, object.pose}; }

@@ -19,9 +19,9 @@ namespace octopair {
 
 namespace {
 
-/// What each kind of pair is asked.
+/// Distance of two objects, the common form of SurfaceGap and ConvexGap.
 struct Distance {
-    double distance = 0, at_least = 0;  ///< as ConvexGap has them
+    double distance = 0, at_least = 0;  ///< see ConvexGap
     std::array<Point3d, 2> nearest = {};
 };
 std::optional<Distance> from(const std::optional<SurfaceGap>& gap) {
@@ -33,8 +33,9 @@ std::optional<Distance> from(const std::optional<ConvexGap>& gap) {
     return Distance{gap->distance, gap->at_least, {gap->on_a, gap->on_b}};
 }
 
-/// A depth of at most this is a touch: a part of the smaller one's size, as what is curved is known no better.
-double touch_of(const PosedObject& a, const PosedObject& b) {
+/// Returns the largest depth that counts as touching: a fraction of the smaller object's size. The fraction is larger if an
+/// object is curved, because its depth is less accurate.
+double touching_depth_of(const PosedObject& a, const PosedObject& b) {
     const auto size = [](const PosedObject& object) {
         const ShapeBounds& bounds = object.geometry.bounds;
         return bounds.bounded ? bounds.radius : std::numeric_limits<double>::infinity();
@@ -48,21 +49,21 @@ double touch_of(const PosedObject& a, const PosedObject& b) {
 
 Contact from(const ConvexContact& contact) { return {contact.point, contact.normal, contact.depth}; }
 
-/// One contact says it all.
+/// Sets the depth and the single contact of a pair for which one contact is sufficient.
 void set_contact(const Contact& contact, std::uint32_t max_contacts, Finding& finding) {
     finding.depth = contact.depth;
     finding.more_contacts = max_contacts == 0;
     if (max_contacts > 0) finding.contacts = {contact};
 }
 
-/// By the depth, which of those that touch is none.
-void set_class(double touch, Finding& finding) {
-    const bool touches = finding.depth <= touch;
+/// Sets the class according to the depth. A depth that counts as touching becomes 0.
+void set_class(double touching_depth, Finding& finding) {
+    const bool touches = finding.depth <= touching_depth;
     finding.collision_class = touches ? CollisionClass::touching : CollisionClass::penetrating;
     if (touches) finding.depth = 0;
 }
 
-/// Of two that meet: whether one contains the other; nothing of two that do not.
+/// Class of two objects that meet, contained or collision; nothing if they do not meet.
 using Meeting = std::optional<CollisionClass>;
 
 Meeting collision_if(bool meet) { return meet ? Meeting(CollisionClass::collision) : std::nullopt; }
@@ -70,8 +71,8 @@ Meeting contained_or_collision(bool contained) {
     return contained ? CollisionClass::contained : CollisionClass::collision;
 }
 
-// The kinds of pairs: each says whether the two meet, how far apart they are, and how they meet. Those of a mesh have it
-// first, those of a plane last.
+// Kinds of pairs. Each has the same functions: meeting(), gap(), find_contacts(), contained_depth(). A mesh comes first in its
+// pair, a plane last.
 
 struct TwoMeshes {
     PosedMesh a, b;
@@ -79,7 +80,7 @@ struct TwoMeshes {
     Meeting meeting() const {
         if (surfaces_meet(a, b)) return CollisionClass::collision;
         if (!encloses_part(a, b) && !encloses_part(b, a)) return std::nullopt;
-        return contained_or_collision(holds_whole(a, b) || holds_whole(b, a));
+        return contained_or_collision(contains_mesh(a, b) || contains_mesh(b, a));
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(a, b, most)); }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
@@ -90,7 +91,7 @@ struct TwoMeshes {
 
 struct TwoSolids {
     PosedConvex a, b;
-    double touch;
+    double touching_depth;
 
     Meeting meeting() const {
         if (!convex_meet(a, b)) return std::nullopt;
@@ -100,7 +101,7 @@ struct TwoSolids {
     void find_contacts(const ContactRequest& request, Finding& finding) const {
         const ConvexContact contact = convex_contact(a, b);
         set_contact(from(contact), request.max_contacts, finding);
-        set_class(touch, finding);
+        set_class(touching_depth, finding);
     }
     double contained_depth(const std::stop_token&) const { return convex_contact(a, b).depth; }
 };
@@ -108,16 +109,16 @@ struct TwoSolids {
 struct MeshAndSolid {
     PosedMesh mesh;
     BoxedSolid solid;
-    double touch;
+    double touching_depth;
 
     Meeting meeting() const {
-        if (surface_meets(mesh, solid)) return contained_or_collision(holds_mesh(solid, mesh));
+        if (surface_meets(mesh, solid)) return contained_or_collision(contains_mesh(solid, mesh));
         return encloses_solid(mesh, solid) ? Meeting(CollisionClass::contained) : std::nullopt;
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
-        find_mesh_solid_contacts(mesh, solid, {touch, request.stop}, finding);
-        set_class(touch, finding);
+        find_mesh_solid_contacts(mesh, solid, {touching_depth, request.stop}, finding);
+        set_class(touching_depth, finding);
         finding.more_contacts = finding.contacts.size() > request.max_contacts;
         if (finding.more_contacts) finding.contacts.resize(request.max_contacts);
     }
@@ -127,7 +128,7 @@ struct MeshAndSolid {
 struct SolidAndPlane {
     PosedConvex solid;
     PosedPlane plane;
-    double touch;
+    double touching_depth;
 
     PlaneSpan span() const { return span_across(plane, solid); }
     Meeting meeting() const { return collision_if(meets(span())); }
@@ -138,7 +139,7 @@ struct SolidAndPlane {
     }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
         set_plane_contact(plane, span(), request.max_contacts, finding);
-        set_class(touch, finding);
+        set_class(touching_depth, finding);
     }
     static double contained_depth(const std::stop_token&) { return 0; }
 
@@ -153,7 +154,7 @@ struct SolidAndPlane {
 struct MeshAndPlane {
     PosedMesh mesh;
     PosedPlane plane;
-    double touch;
+    double touching_depth;
 
     Meeting meeting() const { return collision_if(surface_meets(mesh, plane)); }
     std::optional<Distance> gap(double) const {
@@ -163,30 +164,31 @@ struct MeshAndPlane {
     }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
         SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), request.max_contacts, finding);
-        set_class(touch, finding);
+        set_class(touching_depth, finding);
     }
     static double contained_depth(const std::stop_token&) { return 0; }
 };
 
-/// Calls judge(pair) with the two as one of the kinds above, `first` being of no later kind than `second`. Planes are
-/// apart.
+/// Returns judge(pair), where pair is one of the kinds above; `of_planes` for two planes.
+/// Requires: the kind of `first` is not after the kind of `second`.
 template <typename Result, typename Judge>
 Result with_kind(const PosedObject& first, const PosedObject& second, Result of_planes, const Judge& judge) {
-    const double touch = touch_of(first, second);
+    const double touching_depth = touching_depth_of(first, second);
     const Kind a = kind_of(first), b = kind_of(second);
     if (a == Kind::mesh && b == Kind::mesh) return judge(TwoMeshes{mesh_of(first), mesh_of(second)});
-    if (a == Kind::mesh && b == Kind::solid) return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), touch});
-    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), touch});
-    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), touch});
-    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), touch});
+    if (a == Kind::mesh && b == Kind::solid)
+        return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), touching_depth});
+    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), touching_depth});
+    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), touching_depth});
+    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), touching_depth});
     return of_planes;
 }
 
-/// Some more than `reach`: what is as far as that within rounding counts.
+/// Returns `reach`, enlarged so that a distance equal to `reach` up to rounding counts.
 double room_for_rounding(double reach) { return reach * (1 + 1e-12); }
 
-/// What was found with the objects in the other order.
-void turn_round(Finding& finding) {
+/// Converts a finding to the other order of the two objects.
+void swap_objects(Finding& finding) {
     std::swap(finding.nearest[0], finding.nearest[1]);
     for (Contact& contact : finding.contacts) {
         contact.normal = vector::times(contact.normal, -1);
@@ -216,7 +218,7 @@ bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Fin
     const bool in_order = kind_of(a) <= kind_of(b);
     const bool counts = with_kind(in_order ? a : b, in_order ? b : a, false,
                                   [&](const auto& pair) { return judge_pair(pair, reach, finding); });
-    if (!in_order) turn_round(finding);
+    if (!in_order) swap_objects(finding);
     return counts;
 }
 
@@ -236,7 +238,7 @@ std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) 
 
 void find_contacts(const PosedObject& a, const PosedObject& b, const ContactRequest& request, Finding& finding) {
     const bool in_order = kind_of(a) <= kind_of(b);
-    if (!in_order) turn_round(finding);
+    if (!in_order) swap_objects(finding);
     with_kind(in_order ? a : b, in_order ? b : a, 0, [&](const auto& pair) {
         if (finding.collision_class == CollisionClass::contained) {
             finding.depth = pair.contained_depth(request.stop);
@@ -245,7 +247,7 @@ void find_contacts(const PosedObject& a, const PosedObject& b, const ContactRequ
         }
         return 0;
     });
-    if (!in_order) turn_round(finding);
+    if (!in_order) swap_objects(finding);
 }
 
 }  // namespace octopair

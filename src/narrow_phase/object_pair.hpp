@@ -1,6 +1,6 @@
-// Two objects of any shapes: whether they meet, how far apart they are, how they meet.
+// Pair tests of two objects of any shapes: whether they meet, their distance, and their contacts.
 //
-// What has an inside contains what lies there: a mesh inside a closed mesh meets it, and so does a ball inside one.
+// A closed mesh or a convex solid includes its interior: an object inside it meets it.
 #pragma once
 
 #include <array>
@@ -18,18 +18,20 @@ struct PosedObject {
     const Pose& pose;
 };
 
-/// Whether two objects meet or are no further apart than `reach`. Then sets the class (collision, contained, clearance)
-/// and, of clearance, distance and nearest points.
+/// Returns true if two objects meet or their distance is at most `reach`. Then sets the class of `finding` to collision,
+/// contained or clearance; for clearance also sets distance and nearest points.
 bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Finding& finding);
 
 struct ObjectGap {
-    double at_least = 0;  ///< the distance, or where it is known no better, what is proven of it; 0 if they meet
-    std::array<Point3d, 2> nearest = {};  ///< of objects that are apart
+    double at_least =
+        0;  ///< distance, or a proven lower bound if the distance is only approximate; 0 if the objects meet
+    std::array<Point3d, 2> nearest = {};  ///< nearest points, if the objects do not meet
 };
-/// Nothing where one of them is empty.
+/// Returns nothing if one of the objects is empty, or if both are planes.
 std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b);
 
-/// Of two objects that meet, and whose class is known so far as judge_objects() finds it: sets class, depth and contacts.
+/// Sets class, depth and contacts in `finding`; for contained objects only the depth.
+/// Requires: the objects meet, and judge_objects() has set the class.
 void find_contacts(const PosedObject& a, const PosedObject& b, const ContactRequest& request, Finding& finding);
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// PreparedShape: a shape with all that the exact stages make of it once, to be shared by its objects.
+// PreparedShape: a shape with the data that the exact stages compute once and share among all objects of the shape.
 #pragma once
 
 #include <memory>
@@ -12,20 +12,20 @@ namespace octopair {
 
 struct MeshTree;  // mesh_tree.hpp
 
-/// In the shape's own space, rounded outward; of planes, and of meshes without vertices, nothing.
+/// Bounds of a shape in its own coordinates, rounded outward.
 struct ShapeBounds {
     Box3d box = {};
-    Point3d centre = {};  ///< the box's
-    double radius = 0;    ///< of a sphere around the centre that holds all
-    bool bounded = false;
+    Point3d centre = {};   ///< centre of `box`
+    double radius = 0;     ///< radius of a sphere around `centre` that contains the shape
+    bool bounded = false;  ///< false for planes and for meshes without triangles: there are no bounds
 };
 
 struct detail::PreparedShape {
     shape::Any shape;
     ShapeBounds bounds;
     ConvexSolid convex;     ///< exists for all but planes and meshes
-    VertexBlocks vertices;  ///< of hulls, and of meshes those that a triangle uses
-    /// Of meshes; of convex shapes, a tree of one node, their box; of planes none.
+    VertexBlocks vertices;  ///< points of a hull, or vertices of a mesh that some triangle uses; otherwise empty
+    /// Bounding hierarchy of a mesh; for convex shapes a tree of one node, their box; null for planes.
     std::shared_ptr<const MeshTree> tree;
 };
 

@@ -1,12 +1,12 @@
-// Boxes of shaped objects for the all-pairs stage, of what they sweep where they move.
+// boxes_of(): boxes of shaped objects for the all-pairs stage. The box of a moving object contains its whole sweep.
 //
-// Meshes    the bounds of their vertices as they are in the world, exactly. Others: of their support, and outward by what
-//           rounding may have taken.
-// Sweeps    an object that turns is looked at in steps of at most 1/8 radian; between two of these its points stay within
-//           Motion::sagitta of straight ways, so the boxes of the steps are widened by that.
-// Planes    an upright one (across an axis, to 1e-9) is as thin as rounding allows. Others fill the bounds of all other
-//           objects: a smaller box that holds the part within these would be too small for a margin, as the plane's
-//           nearest point to an object may lie outside them.
+// Meshes    The exact bounds of the vertices in the world.
+// Solids    The bounds of the support points, widened by the rounding error.
+// Sweeps    The motion is cut into steps of at most 1/8 radian. Between two steps, points stay within Motion::sagitta() of
+//           straight lines, so the union of the boxes of all steps is widened by that.
+// Planes    The box of a plane perpendicular to an axis (within 1e-9) is as thin as rounding allows. The box of another plane
+//           is the bounds of all other objects. A smaller box, around the part of the plane in these bounds, would be wrong for
+//           a margin: the point of the plane nearest to an object may lie outside the bounds.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,7 +53,7 @@ Box3d box_by_support(const detail::PreparedShape& shape, const Pose& pose) {
         for (std::size_t k = 0; k < 3; ++k) {
             magnitude += std::fabs(row[k]) * std::max(std::fabs(local.min[k]), std::fabs(local.max[k]));
         }
-        // The support is right to a few roundings of each coordinate, and so are three products and four sums.
+        // A support errs by a few roundings of each coordinate, and so do three products and four sums.
         widen(box, int(axis), shape.convex.radius + 16 * epsilon * magnitude);
     }
     return box;
@@ -72,7 +72,7 @@ Box3d swept_box(const detail::PreparedShape& shape, const Motion& motion) {
     const double reach = vector::length(shape.bounds.centre) + shape.bounds.radius;
     const double sagitta = motion.sagitta(reach, 1.0 / steps);
     for (int axis = 0; axis < 3; ++axis) {
-        // Places on the way, and boxes there, are rounded too.
+        // Covers the rounding of poses during the motion and of the boxes at these poses.
         const double largest = std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis]));
         widen(box, axis, sagitta + 64 * epsilon * (largest + motion.speed(reach)));
     }
@@ -83,7 +83,7 @@ const shape::Plane* plane_of(const ShapedObjects& objects, std::size_t i) {
     return std::get_if<shape::Plane>(&objects.geometries[objects.geometry[i]].shape());
 }
 
-/// Of objects that are not planes; `bounds` grows around them.
+/// Returns the boxes of all objects that are not planes, and extends `bounds` to contain them.
 std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<Box3d>& bounds) {
     check(objects);
     std::vector<Box3d> boxes(objects.size());
@@ -95,7 +95,8 @@ std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<
                        : swept_box(shape, *Motion::between(objects.poses[i], objects.end_poses[i]));
         for (int axis = 0; axis < 3; ++axis) {
             if (std::isfinite(boxes[i].min[axis]) && std::isfinite(boxes[i].max[axis])) continue;
-            throw Error(ErrorCode::bad_input, "object " + std::to_string(i) + " reaches beyond float64");
+            throw Error(ErrorCode::bad_input,
+                        "object " + std::to_string(i) + ": its box is beyond the range of float64");
         }
         if (!bounds) bounds = boxes[i];
         unite(*bounds, boxes[i]);
@@ -103,9 +104,9 @@ std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<
     return boxes;
 }
 
-/// The axis that a plane is across.
+/// Returns the axis that the plane is perpendicular to, if there is one.
 std::optional<std::size_t> upright_axis(const PosedPlane& plane) {
-    // A tilt of 1e-9 makes way along the axis longer than along the normal by 1e-18 of it: less than a rounding.
+    // With a tilt of 1e-9, a distance along the axis exceeds that along the normal by 1e-18 of it: less than a rounding.
     constexpr double tolerance = 1e-9;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::fabs(plane.normal[(axis + 1) % 3]) > tolerance) continue;
@@ -114,7 +115,7 @@ std::optional<std::size_t> upright_axis(const PosedPlane& plane) {
     return std::nullopt;
 }
 
-/// Cuts the box down to the plane's part of it.
+/// Reduces the box along `axis` to the part that contains the plane.
 void flatten(Box3d& box, const PosedPlane& plane, std::size_t axis) {
     double slope = 0, reach = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -143,7 +144,7 @@ void add_planes(const ShapedObjects& objects, const std::optional<Box3d>& bounds
             flatten(boxes[i], plane, *axis);
             continue;
         }
-        // Two turns that leave a normal where it is differ by a turn about it: it is there all the time.
+        // Two rotations with the same normal differ by a rotation about the normal, so the normal is constant.
         const PosedPlane end = posed_plane(*shape, objects.end_poses[i]);
         if (upright_axis(end) != axis || (end.normal[*axis] > 0) != (plane.normal[*axis] > 0)) continue;
         flatten(boxes[i], plane, *axis);

@@ -25,7 +25,7 @@ CornerBounds corner_bounds_of(std::span<const Point3d> points) {
     return bounds;
 }
 
-/// Brings neighbours together: halves the points across their longest side, down to blocks.
+/// Sorts neighbours into the same block: recursively halves the points along the longest side of their bounds.
 void arrange(std::span<Point3d> points, std::size_t block_size) {
     if (points.size() <= block_size) return;
     const CornerBounds bounds = corner_bounds_of(points);
@@ -42,7 +42,7 @@ void arrange(std::span<Point3d> points, std::size_t block_size) {
 
 }  // namespace
 
-/// A row of a pose, and how far rounding may move what it makes of a vertex, or of a block's bounds.
+/// A row of a pose, and a bound on the rounding error of its product with a vertex or with a block's bounds.
 struct VertexBlocks::Row {
     std::array<double, 4> factors;
     double slack;
@@ -50,7 +50,7 @@ struct VertexBlocks::Row {
     Row(const std::array<double, 4>& row, const Point3d& largest) : factors(row) {
         double magnitude = std::fabs(row[3]);
         for (std::size_t k = 0; k < 3; ++k) magnitude += std::fabs(row[k]) * largest[k];
-        // A sum of four products of numbers below these, and of as many for the half side: at most 16 roundings.
+        // The centre and the half side each sum at most four products of numbers below these: at most 16 roundings.
         slack = 16 * std::numeric_limits<double>::epsilon() * magnitude + std::numeric_limits<double>::min();
     }
     double centre(const Block& block) const {
@@ -82,7 +82,7 @@ VertexBlocks::VertexBlocks(std::vector<Point3d> vertices) {
     }
 }
 
-void VertexBlocks::look_into(std::size_t block, const Row& row, double& low, double& high) const {
+void VertexBlocks::extend_by_block(std::size_t block, const Row& row, double& low, double& high) const {
     const std::array<double, 4>& r = row.factors;
     const auto& [x, y, z] = places_[block];
     double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -107,11 +107,11 @@ Box3d VertexBlocks::world_box(const Pose& pose) const {
             if (centre + half > reach_high) reach_high = centre + half, highest = i;
         }
         double low = std::numeric_limits<double>::infinity(), high = -low;
-        look_into(lowest, row, low, high);
-        look_into(highest, row, low, high);
+        extend_by_block(lowest, row, low, high);
+        extend_by_block(highest, row, low, high);
         for (std::size_t i = 0; i < blocks_.size(); ++i) {
             const double centre = row.centre(blocks_[i]), half = row.half(blocks_[i]);
-            if (!(centre - half >= low && centre + half <= high)) look_into(i, row, low, high);
+            if (!(centre - half >= low && centre + half <= high)) extend_by_block(i, row, low, high);
         }
         box.min[axis] = low, box.max[axis] = high;
     }

@@ -1,7 +1,8 @@
-// VertexBlocks: points in blocks of neighbours, so that the extreme ones are found without a look at all.
+// VertexBlocks: vertices in blocks of neighbours, to find the extreme ones without reading all vertices.
 //
-// World boxes of many instances of one mesh would cost instances x vertices. A block is looked into only if its box, with
-// what rounding may add, reaches beyond what was found before; the result is exactly that of a look at every vertex.
+// Cost      Without blocks, the world boxes of all instances of a mesh would cost instances x vertices.
+// Skipping  The vertices of a block are read only if its box, widened by the rounding error, exceeds the bounds found so far.
+// Exact     The result is that of reading every vertex.
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@ public:
 
     bool empty() const { return blocks_.empty(); }
 
-    /// The bounds of the vertices where a pose puts them (vector::posed); not finite where these are beyond float64.
-    /// Not empty.
+    /// Returns the bounds of the vertices in the world (vector::posed); not finite if a coordinate is beyond float64.
+    /// Requires: !empty().
     Box3d world_box(const Pose& pose) const;
 
 private:
@@ -29,14 +30,14 @@ private:
     struct Block {
         Point3d centre, half;
     };
-    using Places = std::array<std::array<double, block_size>, 3>;  ///< by axis; the last one is repeated
+    using Places = std::array<std::array<double, block_size>, 3>;  ///< by axis; padded with the last vertex
 
     struct Row;
-    void look_into(std::size_t block, const Row& row, double& low, double& high) const;
+    void extend_by_block(std::size_t block, const Row& row, double& low, double& high) const;
 
-    std::vector<Block> blocks_;  // apart from what is in them: all are looked at, few looked into
+    std::vector<Block> blocks_;  // separate from places_: all blocks are read, but the vertices of few
     std::vector<Places> places_;
-    Point3d largest_ = {};  ///< of each axis, the largest absolute coordinate
+    Point3d largest_ = {};  ///< largest absolute coordinate on each axis
 };
 
 }  // namespace octopair

@@ -9,13 +9,13 @@
 namespace octopair {
 
 Directory::Directory(const Space& space, const SplitFlags& shape) {
-    if (shape.size() >= most_octants) throw Error(ErrorCode::resource_limit, "more octants than can be numbered");
+    if (shape.size() >= most_octants) throw Error(ErrorCode::resource_limit, "octree: needs 2^26 - 1 octants or more");
     octants_.reserve(shape.size());
     append({}, 0, shape);
     make_table(space);
 }
 
-/// The octant that comes next in the shape, and its subtree.
+/// Appends the next octant of the shape and its subtree. Returns the octant's index.
 OctantIndex Directory::append(const OctantCube& cube, OctantIndex parent, const SplitFlags& shape) {
     const OctantIndex index = OctantIndex(octants_.size());
     octants_.push_back({cube.lo, cube.level, parent, index + 1, Octant::no_children});
@@ -32,7 +32,8 @@ OctantIndex Directory::append(const OctantCube& cube, OctantIndex parent, const 
 }
 
 void Directory::leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const {
-    // One table after the other for all boxes, so that no box waits for another's and none is mispredicted.
+    // All boxes go through one level of tables before any goes to the next. So the lookups of different boxes overlap, and no
+    // branch on the depth of a box's leaf is mispredicted.
     std::array<std::uint32_t, 256> waiting;
     for (std::size_t begin = 0; begin < boxes.size(); begin += waiting.size()) {
         const auto some = boxes.subspan(begin, std::min(waiting.size(), boxes.size() - begin));
@@ -58,7 +59,7 @@ void Directory::leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) c
     }
 }
 
-/// A table of the octants of a level, from the cell `first` on; it begins at `begin` of table_.
+/// A table of octants of one level, which starts at cell `first` of the space and at element `begin` of table_.
 struct Directory::Table {
     Cell first;
     std::array<std::uint32_t, 3> sizes;
@@ -81,7 +82,7 @@ void Directory::make_table(const Space& space) {
     fill_table(0, {{}, table_size_, level, 0});
 }
 
-/// What lies within octant `octant`, all of which the table covers but for what is beyond its sizes.
+/// Fills in the elements of `table` that lie in octant `index`. Elements beyond the table's sizes are left out.
 void Directory::fill_table(OctantIndex index, const Table& table) {
     const Octant octant = octants_[index];
     if (!octant.leaf() && octant.level < table.level) {
@@ -105,7 +106,7 @@ void Directory::fill_table(OctantIndex index, const Table& table) {
     }
 }
 
-/// A further table, below an octant of `table`. Returns the element that tells of it.
+/// Adds a table for the levels below an octant of `table`. Returns the element that refers to the new table.
 std::uint32_t Directory::add_table(OctantIndex index, const Table& table) {
     count_path(Path::table_further);
     const std::size_t begin = table_.size();

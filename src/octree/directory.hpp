@@ -1,7 +1,9 @@
-// Directory: the octants of a linear octree in pre-order, and the way from cells to them.
+// Directory: the octants of a linear octree in pre-order, and a lookup from cells to leaves.
 //
 // Invariants
-//   octants()[0] is the root; an octant's subtree is octants [i, octant.next), its children (all eight or none) in digit order.
+//   octants()[0] is the root.
+//   The subtree of octant i is the octants [i, octants()[i].next).
+//   An octant has eight children, in the order of digits, or none.
 //   The leaves tile the whole space, so every cell lies in exactly one leaf.
 #pragma once
 
@@ -20,11 +22,12 @@ namespace octopair {
 /// A position in Directory::octants().
 using OctantIndex = std::uint32_t;
 
+/// An octant in a Directory.
 struct Octant {
-    Cell lo;                 ///< its first cell on each axis
-    unsigned level;          ///< its side is 2^(21 - level) cells
-    OctantIndex parent;        ///< the root is its own
-    OctantIndex next;          ///< the first octant after its subtree
+    Cell lo;                 ///< first cell on each axis
+    unsigned level;          ///< the side is 2^(21 - level) cells
+    OctantIndex parent;      ///< the root is its own parent
+    OctantIndex next;        ///< first octant after the subtree
     std::uint32_t children;  ///< row of the child table; no_children for a leaf
 
     static constexpr std::uint32_t no_children = ~std::uint32_t(0);
@@ -39,7 +42,7 @@ struct Octant {
         }
         return touched;
     }
-    /// The axes, as class bits (entry.hpp), on which a box begins before this octant.
+    /// Returns the axes, as class bits (boxes/entry.hpp), on which `box` begins before this octant.
     std::uint32_t begins_before(const CellBox& box) const {
         std::uint32_t axes = 0;
         for (unsigned axis = 0; axis < 3; ++axis) axes |= std::uint32_t(box.lo[axis] < lo[axis]) << axis;
@@ -49,15 +52,16 @@ struct Octant {
 
 class Directory {
 public:
-    /// The root alone.
+    /// Makes the root alone.
     Directory() : Directory({}, {0}) {}
-    /// The shape is that of the root. Throws Error{resource_limit} for more than 2^26 octants.
+    /// Makes the octants of `shape`, which is the shape of the whole tree.
+    /// Throws: Error{resource_limit} for 2^26 - 1 or more octants.
     Directory(const Space& space, const SplitFlags& shape);
 
     std::span<const Octant> octants() const { return octants_; }
     OctantIndex child(const Octant& octant, unsigned digit) const { return children_[octant.children][digit]; }
 
-    /// A leaf and its level.
+    /// Index and level of a leaf.
     class Leaf {
     public:
         Leaf() = default;
@@ -69,16 +73,16 @@ public:
         explicit Leaf(std::uint32_t element) : element_(element) {}
         std::uint32_t element_;
     };
-    /// The leaf that holds the cell.
+    /// Returns the leaf that holds `cell`.
     Leaf leaf(const Cell& cell) const {
         unsigned shift = table_shift_;
         std::uint32_t found = first_element(cell);
         while (found >= further) found = further_element(found, cell, shift);
         return Leaf(found);
     }
-    /// Of many at once: the leaf that each box begins in.
+    /// Finds the leaf that each box begins in, for many boxes at once.
     void leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const;
-    /// The leaf itself, or the octant of `level` that holds it.
+    /// Returns the octant of `level` that holds the leaf, or the leaf itself if its level is not deeper.
     OctantIndex at_most(const Leaf& leaf, unsigned level) const {
         OctantIndex octant = leaf.octant();
         for (unsigned at = leaf.level(); at > level; --at) octant = octants_[octant].parent;
@@ -95,8 +99,9 @@ private:
     std::vector<Octant> octants_;
     std::vector<std::array<OctantIndex, 8>> children_;
 
-    // From cells to leaves: a table of one level's octants, row-major, and for octants that are divided further tables
-    // of the next three levels, and so on. An element is a leaf and its level, or where the further table begins.
+    // Lookup from cells to leaves. The first table has the octants of one level, row-major. An octant that is divided further
+    // has a table of the next three levels, and so on. An element is a leaf with its level, or `further` plus the
+    // position where the octant's table begins.
     static constexpr unsigned table_levels = 3;
     static constexpr unsigned octant_bits = 26;
     static constexpr std::uint32_t most_octants = (std::uint32_t(1) << octant_bits) - 1;
@@ -105,7 +110,8 @@ private:
         const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;
         return table_[(z * table_size_[1] + y) * table_size_[0] + x];
     }
-    /// In the table that `element` tells, whose octants have 2^shift cells an axis afterwards.
+    /// Returns the element of `cell` in the table that `element` refers to. Lowers `shift` to that table: its octants have
+    /// 2^shift cells on each axis.
     std::uint32_t further_element(std::uint32_t element, const Cell& cell, unsigned& shift) const {
         const unsigned bits = std::min(shift, table_levels);
         const unsigned mask = (1u << bits) - 1;

@@ -1,8 +1,11 @@
-// Executor: how the steps of the algorithm are shared out. The steps themselves know no threads.
+// Executor: runs the shares of a step of the algorithm. The steps themselves use no threads.
 //
-// Shares are numbered; an executor may run them in any order and side by side, and hands each a place to put its pairs
-// such that pairs end up in the order of the shares. It may run one again that ended half-way, and may be one of several
-// in processes that all go through the same steps: then a share runs in one of them.
+// Invariants
+//   Shares are numbered. An executor may run them in any order and concurrently.
+//   Pairs of share i come before those of share i + 1, whatever the order in which the shares run.
+//   A share may be run again after its worker died, so bodies must be idempotent.
+//   Executors in several processes may divide one step among them. All processes then make the same calls, and each share
+//   runs in one of the processes.
 #pragma once
 
 #include <cstddef>
@@ -17,39 +20,40 @@ namespace octopair {
 
 class Executor;
 
-/// Where one share's pairs go, in order. One thread at a time.
+/// Receives the pairs of one share, in order.
+/// Thread safety: one thread at a time.
 class ShareWriter {
 public:
     virtual ~ShareWriter() = default;
-    /// The rows may be counted only: then write_count is called in place of write.
+    /// True if pairs are counted only: the share then calls write_count in place of write.
     virtual bool counting() const = 0;
     virtual void write(std::span<const Pair> pairs) = 0;
     virtual void write_count(std::uint64_t pairs) = 0;
 };
 
-/// Which executor builds an octree, and in which pages.
+/// The executor that builds an octree, and the pages that hold the octree.
 struct BuildPlace {
     Executor& executor;
     PageSource& pages;
-    PageSource& scratch;  ///< for data that nobody reads after the sort
+    PageSource& scratch;  ///< for data that is not read after the scatter step
 };
 
 class Executor {
 public:
     virtual ~Executor() = default;
-    /// How many shares can run side by side.
+    /// Returns the number of shares that can run concurrently.
     virtual unsigned width() const = 0;
-    /// Calls body(i) for each i below `count`.
+    /// Calls body(i) for each i in [0, count).
     virtual void for_each(std::size_t count, const std::function<void(std::size_t)>& body) = 0;
-    /// The same, with pairs: those of share i come before those of share i + 1.
+    /// Calls body(i, writer) for each i in [0, count), where `writer` receives the pairs of share i.
     virtual void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) = 0;
-    /// Returns where a scan with this executor builds a nested octree of `entries` entries: usually with this executor, in
-    /// memory of this process. Processes that scan together must make the same calls, and get the same kind of place.
-    /// The executor returned is valid until the next call.
+    /// Returns where a scan with this executor builds a nested octree of `entries` entries. The default is this executor, with
+    /// memory of this process. The returned executor is valid until the next call.
+    /// Requires: processes that scan together make the same calls. They get the same kind of place.
     virtual BuildPlace build_place([[maybe_unused]] std::size_t entries) { return {*this, own_pages(), own_pages()}; }
 };
 
-/// For steps that write no pairs.
+/// Discards pairs: the writer for steps that write none.
 class NoPairs final : public ShareWriter {
 public:
     bool counting() const override { return true; }
@@ -57,7 +61,7 @@ public:
     void write_count(std::uint64_t) override {}
 };
 
-/// Runs all shares on the calling thread, pairs to one writer: how a share runs steps within itself.
+/// Runs all shares on the calling thread and gives their pairs to one writer. A share uses it to run steps within itself.
 class SerialExecutor final : public Executor {
 public:
     explicit SerialExecutor(ShareWriter& writer) : writer_(writer) {}

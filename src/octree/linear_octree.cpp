@@ -43,7 +43,7 @@ std::vector<Entry> sample_of(const EntrySource& source) {
     std::vector<std::size_t> positions(sample.size());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
     std::vector<Entry> sampled(sample.size());
-    source.pick(positions, sampled);  // what is invalid is found by sort, with its position
+    source.pick(positions, sampled);  // scatter finds invalid objects, with their positions
     return sampled;
 }
 
@@ -71,7 +71,7 @@ OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects, co
 }
 
 OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop) {
-    // The sample is gone when the entries need the memory.
+    // The sample is freed before the entries need the memory.
     const std::vector<Entry> sampled = sample_of(source);
     return plan_octree(sampled, source.size(), stop);
 }
@@ -123,27 +123,28 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
     }
     memory_.ghosts.clear();
-    if (crowded()) {
+    if (is_crowded()) {
         count_path(Path::crowded_octree);
-        memory_.homes.clear();  // the scan needs the memory more
+        memory_.homes.clear();  // the scan of a crowded octant needs this memory
     }
     seconds_.scatter = seconds_since(clock);
 }
 
-/// Where each range of octants begins among the entries, and each octant.
+/// Sets the positions where the entries of each range of octants, and of each octant, begin.
 void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges, std::vector<std::uint64_t>& range_begins) {
     begins_.resize(octants().size() + 1);
     std::uint64_t at = 0;
     for (const NumberedOctants& range : ranges) {
         range_begins.push_back(at);
-        for (OctantIndex octant = range.begin; octant < range.end; ++octant) begins_[octant] = at + memory_.begins[octant];
+        for (OctantIndex octant = range.begin; octant < range.end; ++octant)
+            begins_[octant] = at + memory_.begins[octant];
         at += memory_.totals[range.number];
     }
     begins_.back() = at;
 }
 
-/// Whether one octant holds half of the entries.
-bool LinearOctree::crowded() const {
+/// True if one octant holds more than half of the entries.
+bool LinearOctree::is_crowded() const {
     for (OctantIndex octant = 0; octant < octants().size(); ++octant) {
         if (2 * entries(octant).size() > entry_count()) return true;
     }

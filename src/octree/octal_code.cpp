@@ -8,13 +8,13 @@ namespace octopair {
 
 namespace {
 
-constexpr unsigned max_integer_digits = 19;  // of a uint64
+constexpr unsigned max_integer_digits = 19;  // decimal digits that any uint64 can hold
 
 [[noreturn]] void refuse(std::string_view what, std::string_view why) {
     throw Error(ErrorCode::bad_input, "octal code '" + std::string(what) + "': " + std::string(why));
 }
 
-/// Appends the paper's digit (1..8, or 0: none). `ended` says that a 0 came before.
+/// Appends one of the paper's digits: 1..8, or 0 after the path. `ended`: a 0 came before.
 OctalCode append_paper_digit(OctalCode code, unsigned digit, bool& ended, std::string_view whole) {
     if (digit > 8) refuse(whole, "digits are 1..8, or 0 after the path");
     if (digit == 0) {
@@ -62,7 +62,7 @@ OctalCode OctalCode::from_text(std::string_view text) {
         code = append_paper_digit(code, digit, ended, text);
     }
     skip_spaces();
-    if (!rest.empty()) refuse(text, "something follows the '}'");
+    if (!rest.empty()) refuse(text, "unexpected text after the '}'");
     return code;
 }
 
@@ -86,7 +86,7 @@ std::string OctalCode::text() const {
 
 std::uint64_t OctalCode::integer(unsigned depth) const {
     if (depth == 0) depth = level();
-    if (depth < level()) refuse(text(), "is deeper than the integer form asked for");
+    if (depth < level()) refuse(text(), "has more levels than the requested depth");
     if (depth > max_integer_digits) refuse(text(), "needs more than 19 digits");
     std::uint64_t value = 0;
     for (unsigned i = 0; i < depth; ++i) value = value * 10 + (i < level() ? digit(i) + 1 : 0);

@@ -1,4 +1,4 @@
-// Sample: one position of each stride, at a fixed scattered place in it.
+// Sample: one position of each stride of a range, at a fixed pseudorandom place within the stride.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,12 @@
 
 namespace octopair {
 
-/// The positions of [0, size) that stand for all, in ascending order. Scattered, so that what is laid out with a period
-/// does not fool the sample; fixed, so that it is a function of the size alone.
+/// Sampled positions of [0, size), ascending. Places are scattered, so that a period in the data does not bias the sample.
+/// They are fixed, so that the sample is a function of the constructor's arguments alone.
 class Sample {
 public:
-    /// About one position of each `stride`, but at most about `most`. Requires: `stride` and `most` are 1 or more.
+    /// Samples about one position of each `stride`, but at most about `most` positions.
+    /// Requires: `stride` and `most` are 1 or more.
     Sample(std::size_t size, std::size_t stride, std::size_t most) : size_(size) {
         stride_ = stride > size / most ? stride : size / most;
     }
@@ -21,7 +22,7 @@ public:
         const std::size_t position = i * stride_ + std::size_t(scattered * stride_ >> 32);
         return position < size_ ? position : size_ - 1;
     }
-    /// How many positions each of the sample stands for.
+    /// Returns the number of positions that each sampled position represents.
     std::size_t stride() const { return stride_; }
 
 private:

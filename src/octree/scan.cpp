@@ -16,13 +16,14 @@ namespace {
 
 using Handed = std::vector<Entry>;
 
-/// The boxes handed down to the octants on one path, level by level; each with its class bits in that octant.
+/// The entries handed down to the octants of one path, by level, each with its class bits in that octant.
 class HandedDown {
 public:
-    /// `moved`: by how many cells the space is to be off, as a planted fault.
+    /// `moved`: number of cells by which boxes are shifted, for Fault::nested_space_moved; otherwise 0.
     HandedDown(const LinearOctree& octree, std::uint32_t moved) : octree_(octree), moved_(moved) {}
 
-    /// Those that touch `octant`, kept by the octants above. Nodes must come in pre-order, from any first one.
+    /// Returns the entries that octants above keep and that touch `octant`.
+    /// Requires: calls come in pre-order of octants; any octant may be the first.
     const Handed& at(OctantIndex octant) {
         const unsigned level = octree_.octants()[octant].level;
         if (lists_.size() <= level) {
@@ -36,8 +37,8 @@ public:
             const OctantIndex parent = octree_.octants()[octant].parent;
             (void)at(parent);
             lists_[level].clear();
-            hand(lists_[level - 1], octant);
-            hand(octree_.entries(parent), octant);
+            hand_down(lists_[level - 1], octant);
+            hand_down(octree_.entries(parent), octant);
         }
         owners_[level] = octant;
         return lists_[level];
@@ -46,24 +47,24 @@ public:
 private:
     static constexpr OctantIndex none = ~OctantIndex(0);
 
-    void hand(std::span<const Entry> from, OctantIndex to) {
+    void hand_down(std::span<const Entry> from, OctantIndex to) {
         std::array<CellBox, 64> cells;
         while (!from.empty()) {
             const auto some = from.first(std::min(from.size(), cells.size()));
             octree_.space().cells(some, cells);
             for (std::size_t i = 0; i < some.size(); ++i) {
                 if (has_test_hooks) move(cells[i]);
-                hand(some[i], cells[i], to);
+                hand_down(some[i], cells[i], to);
             }
             from = from.subspan(some.size());
         }
     }
 
-    void hand(const Entry& entry, const CellBox& box, OctantIndex to) {
+    void hand_down(const Entry& entry, const CellBox& box, OctantIndex to) {
         const Octant& octant = octree_.octants()[to];
         if (octant.touches(box) == planted(Fault::handed_to_wrong_child)) return;
         count_path(Path::handed_down);
-        // Bits are added, never taken back: see entry.hpp.
+        // Class bits are added, never cleared (boxes/entry.hpp).
         Entry& handed = lists_[octant.level].emplace_back(entry);
         handed.mask |= octant.begins_before(box);
     }
@@ -81,10 +82,10 @@ private:
     std::vector<OctantIndex> owners_;
 };
 
-/// The entries of a join as those of a scene: rows, then columns.
-class EntriesOf final : public EntrySource {
+/// Source of a nested octree: the entries of a join, rows before columns.
+class JoinSource final : public EntrySource {
 public:
-    explicit EntriesOf(const SweepInput& join) : join_(join) {}
+    explicit JoinSource(const SweepInput& join) : join_(join) {}
     std::size_t size() const override { return join_.rows.size() + (join_.self ? 0 : join_.columns.size()); }
     bool load(std::size_t begin, std::span<Entry> out) const override {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(begin + i);
@@ -102,7 +103,8 @@ private:
     const SweepInput& join_;
 };
 
-/// Scans single octants, keeping its memory from octant to octant. One thread at a time.
+/// Scans single octants, and keeps its memory between them.
+/// Thread safety: one thread at a time.
 class OctantScan {
 public:
     OctantScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
@@ -118,31 +120,31 @@ public:
     }
 
 private:
-    /// Pairs of the octant's own entries, and of these with what was handed down.
+    /// Finds the pairs among the octant's own entries, and between own entries and entries handed down.
     void scan_self(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
         const EntryList own_list{own}, handed_list{handed};
-        const bool laid_out = lay_out(own_list, axis, own_set_);
+        const bool laid_out = try_lay_out(own_list, axis, own_set_);
         if (!laid_out) count_path(Path::own_too_large);
-        if (own.size() > 1 && !(laid_out && own_swept())) crowded({own_list, own_list, true, {}});
-        if (!handed.empty() && !(laid_out && handed_swept(handed_list, axis))) {
-            crowded({handed_list, own_list, false, {}});
+        if (own.size() > 1 && !(laid_out && try_own_sweep())) scan_crowded({own_list, own_list, true, {}});
+        if (!handed.empty() && !(laid_out && try_handed_sweep(handed_list, axis))) {
+            scan_crowded({handed_list, own_list, false, {}});
         }
     }
 
-    bool own_swept() {
-        const bool done = swept({{own_set_, own_set_, SweepKind::self}});
+    bool try_own_sweep() {
+        const bool done = try_sweep({{own_set_, own_set_, SweepKind::self}});
         count_path(done ? Path::own_swept : Path::own_window_too_wide);
         return done;
     }
 
-    bool handed_swept(const EntryList& handed, unsigned axis) {
-        const bool laid_out = lay_out(handed, axis, handed_set_);
-        const bool done = laid_out && swept_between();
+    bool try_handed_sweep(const EntryList& handed, unsigned axis) {
+        const bool laid_out = try_lay_out(handed, axis, handed_set_);
+        const bool done = laid_out && try_cross_sweeps();
         count_path(done ? Path::handed_swept : laid_out ? Path::handed_window_too_wide : Path::handed_too_large);
         return done;
     }
 
-    /// The same for pairs between the sets of a join: the sets are never swept against themselves.
+    /// Finds the pairs between the two sets of a join. No set is swept against itself.
     void scan_join(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
         const EntryList own_first = of_set(own, first_set, positions_[0]);
         const EntryList own_second = of_set(own, second_set, positions_[1]);
@@ -161,23 +163,25 @@ private:
 
     void join(const EntryList& rows, const EntryList& columns, unsigned axis) {
         if (rows.size() == 0 || columns.size() == 0) return;
-        const bool done = lay_out(rows, axis, handed_set_) && lay_out(columns, axis, own_set_) && swept_between();
+        const bool done =
+            try_lay_out(rows, axis, handed_set_) && try_lay_out(columns, axis, own_set_) && try_cross_sweeps();
         count_path(done ? Path::join_swept : Path::join_crowded);
-        if (!done) crowded({rows, columns, false, {}});
+        if (!done) scan_crowded({rows, columns, false, {}});
     }
 
-    bool lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
+    /// Returns false, with nothing done, if the list is too large.
+    bool try_lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
         if (list.size() > tuning().scan.crowded_octant) return false;
         order_.lay_out(list, axis, set);
         return true;
     }
 
-    bool swept_between() {
-        return swept({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
+    bool try_cross_sweeps() {
+        return try_sweep({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
     }
 
-    /// Sweeps if that tests few boxes for each.
-    bool swept(std::initializer_list<Sweep> sweeps) {
+    /// Runs the sweeps and returns true, unless they would test too many columns for each row.
+    bool try_sweep(std::initializer_list<Sweep> sweeps) {
         std::uint64_t tests = 0;
         std::size_t rows = 0;
         for (const Sweep& sweep : sweeps) {
@@ -193,49 +197,51 @@ private:
         return true;
     }
 
-    /// A join too costly for the quick way. Parts of one shape are joined on their own: boxes as long as the octant
-    /// keep any sweep and any split from thinning the others.
-    void crowded(const SweepInput& join) {
-        if (swept(join)) return count_path(Path::crowd_swept);
+    /// Finds the pairs of a join that is too costly for a sweep along the first axis. Parts of one shape are joined
+    /// separately: boxes as long as the octant prevent any sweep and any split from thinning the other boxes.
+    void scan_crowded(const SweepInput& join) {
+        if (try_sweep(join)) return count_path(Path::crowd_swept);
         count_path(Path::crowd_parted);
         const auto rows = part_by_shape(join.rows);
         throw_if_stopped(context_.stop);
         const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns);
         for (unsigned i = 0; i < rows.size(); ++i) {
             const EntryList row_list{join.rows.entries, rows[i], false};
-            if (join.self) crowded_part({row_list, row_list, true, {}}, true);
+            if (join.self) scan_crowded_part({row_list, row_list, true, {}}, true);
             const unsigned first = join.self && !planted(Fault::part_joined_twice) ? i + 1 : 0;
             for (unsigned k = first; k < rows.size(); ++k) {
                 if (join.self && k == i) continue;
                 const EntryList column_list{join.columns.entries, join.self ? rows[k] : columns[k], false};
-                crowded_part({row_list, column_list, false, {}}, i == k);
+                scan_crowded_part({row_list, column_list, false, {}}, i == k);
             }
         }
     }
 
-    void crowded_part(const SweepInput& join, bool same_shape) {
+    void scan_crowded_part(const SweepInput& join, bool same_shape) {
         if (join.rows.size() == 0 || join.columns.size() == 0) return;
-        if (swept(join)) return count_path(Path::part_swept);
-        // An octree tells apart the two sets of the caller's join, but not others.
+        if (try_sweep(join)) return count_path(Path::part_swept);
+        // Only the two sets of the caller's join have bits in the masks. A nested octree of other rows and columns would
+        // also report pairs within the rows and within the columns.
         const bool separable = join.self || context_.rule.join();
-        if (same_shape && separable && split_afresh(join)) return;
+        if (same_shape && separable && try_nested_scan(join)) return;
         count_path(Path::part_recursive);
         recursive_sweep(context_, join, executor_);
     }
 
-    bool swept(const SweepInput& join) {
+    bool try_sweep(const SweepInput& join) {
         const SweepChoice choice = choose_sweep(join, order_, context_.stop);
         if (choice.good) tiled_sweep(context_, join, choice.axis, executor_);
         return choice.good;
     }
 
-    /// Scans a nested octree, one of the join's own entries; false, with nothing done, where it would not thin them.
-    bool split_afresh(const SweepInput& join) {
+    /// Scans a nested octree of the join's entries. Returns false, with no pairs written, if the nesting is too deep or the
+    /// octree does not thin the entries.
+    bool try_nested_scan(const SweepInput& join) {
         if (context_.nesting >= tuning().scan.most_nesting) {
             count_path(Path::not_nested_depth);
             return false;
         }
-        const EntriesOf entries(join);
+        const JoinSource entries(join);
         const BuildPlace place = executor_.build_place(entries.size());
         LinearOctree octree(place.pages, place.scratch);
         octree.build(entries, place.executor, context_.stop);
@@ -250,7 +256,8 @@ private:
         return true;
     }
 
-    /// Whether a nested octree of so many entries leaves less to do in its octants, and does not multiply the entries.
+    /// True if the largest octant of a nested octree holds few enough of the join's `entries`, and the octree has not
+    /// multiplied the entries beyond the bound.
     bool thins(const LinearOctree& octree, std::size_t entries) const {
         std::size_t largest = 0;
         for (OctantIndex octant = 0; octant < octree.octants().size(); ++octant) {
@@ -270,10 +277,10 @@ private:
     SweepOrder order_;
     SweepSet own_set_;
     SweepSet handed_set_;
-    std::array<std::vector<std::uint32_t>, 4> positions_;  // of an octant's entries of each set
+    std::array<std::vector<std::uint32_t>, 4> positions_;  // of own entries by set, then of entries handed down by set
 };
 
-/// Runs of octants in pre-order that make up one share each; a large octant is a share alone.
+/// A run of octants in pre-order that is scanned as one share. A large octant is a share alone.
 struct Share {
     OctantIndex begin = 0, end = 0;
     bool large = false;

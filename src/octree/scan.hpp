@@ -1,12 +1,15 @@
-// Scan: one pass over the linear octree in pre-order that finds all pairs.
+// Scan: finds all pairs of a linear octree in one pass over its octants, in pre-order.
 //
-// In each octant its own entries are swept against each other and against the boxes handed down: the entries that
-// octants above keep because they are too large for smaller ones, as far as they touch this octant. So octal codes on a
-// common path meet, and no others (the paper's section 3.3, step 7). Which octant reports a pair is decided by
-// entry.hpp's rule.
+// Invariants
+//   An octant's own entries are swept against each other and against the entries handed down to the octant. An entry that
+//   is handed down touches the octant, but an octant above keeps it, because it is too large for smaller octants.
+//   Two entries meet only if one's octal code is on the path of the other's.
+//   The masks of two entries decide which octant reports them as a pair (boxes/entry.hpp).
 //
-// An octant whose sweep would cost too much is first quantised afresh: its entries become a linear octree of their own.
-// If that cannot thin them, recursive_sweep.hpp takes over. Both decisions are functions of the entries alone.
+// If a sweep of an octant would cost too much, the octant's entries become a nested linear octree with a space of its own.
+// If that does not thin them, recursive_sweep.hpp is used. Both decisions are functions of the entries alone.
+//
+// Source: Lucchesi, Egbert, Harris 2014, section 3.3, step 7.
 #pragma once
 
 #include <functional>
@@ -16,19 +19,21 @@
 
 namespace octopair {
 
-/// The octants [begin, end) of an octree, in pre-order. Borrows it.
+/// The octants [begin, end) of an octree, in pre-order. Borrows the octree.
 struct OctreeRange {
     OctreeRange(const LinearOctree& whole)  // NOLINT(google-explicit-constructor): a tree is a range of itself
         : OctreeRange(whole, 0, OctantIndex(whole.octants().size())) {}
-    OctreeRange(const LinearOctree& tree, OctantIndex first, OctantIndex last) : octree(tree), begin(first), end(last) {}
+    OctreeRange(const LinearOctree& tree, OctantIndex first, OctantIndex last)
+        : octree(tree), begin(first), end(last) {}
 
     const LinearOctree& octree;
     OctantIndex begin, end;
 };
 
-/// Writes the pairs that these octants report, in pre-order. Of octants outside, only entries that reach into these are
-/// read. `progress` (may be empty) is told how many entries are done, from any of
-/// the executor's threads. Throws Error{cancelled}.
+/// Writes the pairs that `octants` report, in pre-order of octants. From octants outside the range, reads only the entries
+/// that are handed down into it. Calls `progress`, unless empty, with the number of entries of each finished share, on any
+/// thread of the executor.
+/// Throws: Error{cancelled}.
 void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
           const std::function<void(std::uint64_t)>& progress);
 

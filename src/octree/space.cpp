@@ -12,13 +12,13 @@ namespace octopair {
 
 namespace {
 
-/// How far the bulk of the objects reaches on one axis, and how long a typical one is.
+/// Range of the bulk of the objects on one axis, and the extent of a typical object.
 struct AxisFit {
     double begin = 0, end = 0, typical = 0;
     double extent() const { return end - begin; }
 };
 
-/// Between the 1/64 quantiles plus a quarter on each side, but no further than the sample itself reaches.
+/// Returns the range between the 1/64 quantiles, plus a quarter on each side, but within the range of the sample.
 AxisFit fit_axis(std::span<const SpaceSample::Measured, SpaceSample::measures> measured) {
     const SpaceSample::Measured &lows = measured[0], &highs = measured[1], &extents = measured[2];
     const double quarter = std::max(0.0, highs.quantile - lows.quantile) / 4;
@@ -38,7 +38,7 @@ SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, 
     values.reserve(intervals.size());
     for (const Interval& interval : intervals) {
         const double low = double(interval.low), high = double(interval.high);
-        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // is refused later
+        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // refused later
         values.push_back(what == Measure::low ? low : what == Measure::high ? high : high - low);
     }
     if (values.empty()) return {};
@@ -54,7 +54,8 @@ SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, 
 
 namespace {
 
-/// About the distance between neighbours: a power of two near the cube root of volume / objects.
+/// Returns about the distance between neighbours: a power of two near the cube root of volume / objects. Axes without extent
+/// are left out.
 double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
     int exponent = -int(std::bit_width(objects));
     int dimensions = 0;
@@ -117,13 +118,13 @@ Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects
 }
 
 Box3d Space::bounds(const CellBox& cells) const {
-    // A cell more on each side for the rounding to cells, and what float32 may round beside that.
+    // One more cell on each side covers the rounding to cells; `roundings` covers the float32 operations of the map.
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double roundings = 0x1p-21;
     Box3d bounds;
     for (unsigned axis = 0; axis < 3; ++axis) {
         const double origin = double(map_.origin[axis]), cell = 1 / double(map_.scale[axis]);
-        // The map's difference overflows to its last cell.
+        // In the map, a difference above FLT_MAX overflows and gets the last cell. So no cell begins farther away.
         const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
         const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
         bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));

@@ -1,13 +1,17 @@
-// Space: the octree's space, and the one monotone map from coordinates to its cells.
+// Space: the octree's quantised space, and the one monotone map from coordinates to its cells.
 //
-// Each axis has 2^21 cells (the deepest level of an octal code). cell() never falls as the coordinate grows, and is
-// used for everything: which octant a box begins in, which octants it touches, and which octant reports a pair. So
-// rounding at octant borders can neither lose nor duplicate a pair, and what lies outside the space is clamped into its
-// border cells.
+// Invariants
+//   Each axis has 2^21 cells, as the deepest level of an octal code has octants.
+//   SpaceMap::cell() is monotone: its result never falls as the coordinate grows.
+//   The same map decides which octant a box begins in, which octants it touches, and which octant reports a pair. So
+//   rounding at octant borders neither loses nor duplicates a pair.
+//   Coordinates outside the space are clamped into its border cells.
 //
-// fit() chooses the space from a sample: bounds of the bulk (a far-out object does not stretch them), octants longer on
-// axes on which objects are longer, and four times longer on the axis that separates the objects best, along which
-// octants are swept. It uses no library function whose last bit could differ between machines.
+// Space::fit() chooses the space from a sample:
+//   The bounds are those of the bulk of the objects; a far-out object does not stretch them.
+//   Octants are longer on axes on which objects are longer.
+//   Octants are four times longer on the axis that separates the objects best. Octants are swept along this axis.
+//   No library function is used whose last bit could differ between machines.
 #pragma once
 
 #include <array>
@@ -21,7 +25,7 @@
 
 namespace octopair {
 
-/// A cell on each axis, and a zero that makes it a register.
+/// Number of a cell on each axis, and a zero that fills up a SIMD register.
 using Cell = std::array<std::uint32_t, 4>;
 
 inline constexpr unsigned deepest = OctalCode::max_level;
@@ -38,16 +42,16 @@ inline unsigned natural_level(const CellBox& box) {
     return deepest - unsigned(std::bit_width(extent));
 }
 
-/// The map: the specification of what the kernel does with many boxes at once.
+/// Map from coordinates to cells: the specification of the SIMD version (space_kernel.cpp).
 struct SpaceMap {
     static constexpr float end = float(cells_per_axis - 1);
-    static constexpr float whole = 0x1p23f;  // from here on numbers are whole: adding it rounds, and shows the digits
+    static constexpr float whole = 0x1p23f;  // adding it rounds to an integer, which is then in the low bits
     std::array<float, 4> origin = {0, 0, 0, 0};
     std::array<float, 4> scale = {1, 1, 1, 0};
     std::array<float, 4> last = {end, end, end, 0};
 
     std::uint32_t cell(float coordinate, unsigned axis) const {
-        // Clamped before the conversion: infinity (of an overflowing difference) is a border cell like any far value.
+        // Clamped before the conversion: an overflowing difference (infinity) gets a border cell, like any far value.
         const float scaled = (coordinate - origin[axis]) * scale[axis];
         const float below = scaled > 0.0f ? scaled : 0.0f;
         const float clamped = below < last[axis] ? below : last[axis];
@@ -55,27 +59,29 @@ struct SpaceMap {
     }
 };
 
-/// What a space is fitted to: some of the sampled boxes, of which three numbers are measured on each axis. The order of
-/// boxes does not matter, and each number can be measured in another place.
+/// The subset of the sampled boxes that a space is fitted to, and the three measures taken of it on each axis. Measures do not
+/// depend on the order of boxes. Each can be taken in another process.
 class SpaceSample {
 public:
-    /// Of a sample of so many.
+    /// `sampled`: number of boxes in the sample.
     explicit SpaceSample(std::size_t sampled);
-    /// Whether the i-th of the sample counts.
+    /// True if box `i` of the sample belongs to the subset.
     bool has(std::size_t i) const { return i % stride_ == 0; }
 
-    /// A box on one axis.
+    /// The two ends of a box on one axis.
     struct Interval {
         float low, high;
     };
     enum class Measure : std::uint8_t { low, high, extent };
     static constexpr unsigned measures = 3;
-    /// Of the lows: the least, and a quantile near it; likewise the highs; of the extents the median.
+    /// `low`: the 1/64 quantile and the minimum. `high`: the 63/64 quantile and the maximum. `extent`: the median and the
+    /// maximum.
     struct Measured {
         double quantile = 0, extreme = 0;
     };
+    /// Returns zeros if no interval is finite.
     static Measured measure(std::span<const Interval> intervals, Measure what);
-    /// Of all axes, one after another.
+    /// All measures of the first axis, then of the second and of the third.
     using AllMeasured = std::array<Measured, 3 * measures>;
 
 private:
@@ -85,7 +91,7 @@ private:
 class Space {
 public:
     Space() = default;
-    /// `objects`: how many the sample stands for. The sample may be empty.
+    /// Returns a space for the `objects` objects that the sample represents. The sample may be empty.
     static Space fit(std::span<const Entry> sample, std::uint64_t objects);
     static Space fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects);
 
@@ -94,17 +100,17 @@ public:
         cells(std::span(&entry, 1), {&box, 1});
         return box;
     }
-    /// Of many at once (frame_kernel.cpp). Of what is not a valid box, some cells with lo <= hi.
+    /// Computes the cells of many boxes at once (space_kernel.cpp). An invalid box gets some cells with lo <= hi.
     void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
     void cells(std::span<const Box3f> bounds, std::span<CellBox> boxes) const;
 
-    /// At least all coordinates that these cells stand for; infinite at the border.
+    /// Returns a box that contains all coordinates whose cells are in `cells`; infinite at the border of the space.
     Box3d bounds(const CellBox& cells) const;
 
     const SpaceMap& map() const { return map_; }
-    /// The axis that octants are long on and are swept along first.
+    /// Returns the axis on which octants are longest. Octants are swept along this axis first.
     unsigned long_axis() const { return long_axis_; }
-    /// The last cell of an axis that a box can touch.
+    /// Returns the last cell of an axis that a box can touch.
     std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(map_.last[axis]); }
 
 private:

@@ -1,4 +1,4 @@
-// Space::cells for many boxes: one box end to a register, compiled for each instruction set by Highway.
+// SIMD version of Space::cells: one end of a box in each register. Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "octree/space_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -29,12 +29,12 @@ void cells_simd(const SpaceMap& map, std::span<const Bounds> bounds, std::span<C
 
 #else
 
-/// Both ends of a box: x, y, z, and a fourth number that does not count.
+/// Returns both ends of a box: x, y, z, and a fourth number that is ignored.
 template <typename D, typename Bounds>
 auto load_ends(D d, const Bounds& bounds) {
     const float* const numbers = bounds.min;
     const auto low = hn::LoadU(d, numbers);
-    if constexpr (sizeof(Bounds) == 6 * sizeof(float)) {  // nothing may be read beyond it
+    if constexpr (sizeof(Bounds) == 6 * sizeof(float)) {  // nothing may be read beyond the box
         return std::pair(low, hn::Shuffle0321(hn::LoadU(d, numbers + 2)));
     } else {
         return std::pair(low, hn::LoadU(d, numbers + 3));
@@ -58,7 +58,7 @@ void cells_simd(const SpaceMap& map, std::span<const Bounds> bounds, std::span<C
         return hn::And(hn::BitCast(words, hn::Add(clamped, whole)), kept);
     };
     for (std::size_t i = 0; i < bounds.size(); ++i) {
-        // Both are read before one is written: the processor mistakes addresses 4 KiB apart for the same.
+        // Both ends are read before one is written: the processor mistakes addresses 4 KiB apart for the same (4K aliasing).
         const auto [low, high] = load_ends(floats, bounds[i]);
         const auto lo = cell(low);
         hn::Store(lo, words, boxes[i].lo.data());

@@ -26,8 +26,8 @@ struct TbbThreads::Arena {
 
 namespace {
 
-/// Lets oneTBB have as many threads as the largest team; it would otherwise stop at the number of cores, and say so on
-/// standard error.
+/// Raises oneTBB's thread limit to the size of the largest team. By default the limit is the number of cores, and oneTBB prints
+/// a warning to standard error if a team is larger.
 void allow_threads(unsigned threads) {
     using oneapi::tbb::global_control;
     static std::mutex mutex;
@@ -35,44 +35,45 @@ void allow_threads(unsigned threads) {
     const std::lock_guard lock(mutex);
     const auto limit = global_control::max_allowed_parallelism;
     if (threads <= global_control::active_value(limit)) return;
-    allowed = nullptr;  // of several limits the lowest would count
+    allowed = nullptr;  // if several limits exist, the lowest counts
     allowed = std::make_unique<global_control>(limit, threads);
 }
 
-/// Of one call: tells the sanitizer that what was before it comes before its tasks, and these before its end.
+/// Tells the thread sanitizer the order of one call: everything before the call happens before its tasks, and the tasks happen
+/// before the call returns.
 class TaskOrder {
 public:
-    TaskOrder() { leave(); }
-    ~TaskOrder() { enter(); }
+    TaskOrder() { release(); }
+    ~TaskOrder() { acquire(); }
     TaskOrder(const TaskOrder&) = delete;
     TaskOrder& operator=(const TaskOrder&) = delete;
 
-    /// Calls `body` as a task; what it throws is passed on. oneTBB gives a task the floating-point state of whoever began
-    /// to use it, which may be any.
+    /// Calls `body` as a task. Exceptions propagate. Sets the default floating-point state, because oneTBB runs a task in the
+    /// state of the thread that first used oneTBB.
     template <typename Body>
     void task(Body&& body) {
-        enter();
-        const Leaving leaving{*this};
+        acquire();
+        const ReleaseAtEnd release_at_end{*this};
         const FloatingPointScope scope;
         body();
     }
 
 private:
-    struct Leaving {
+    struct ReleaseAtEnd {
         TaskOrder& order;
-        ~Leaving() { order.leave(); }
+        ~ReleaseAtEnd() { order.release(); }
     };
 
 #ifdef OCTOPAIR_THREAD_SANITIZER
-    void leave() { __tsan_release(this); }
-    void enter() { __tsan_acquire(this); }
+    void release() { __tsan_release(this); }
+    void acquire() { __tsan_acquire(this); }
 #else
-    void leave() {}
-    void enter() {}
+    void release() {}
+    void acquire() {}
 #endif
 };
 
-/// The first exception of several tasks, apart from what oneTBB itself may throw.
+/// Stores the first exception of several tasks. Keeps exceptions of tasks apart from those of oneTBB itself.
 class FirstFailure {
 public:
     template <typename Body>
@@ -93,7 +94,8 @@ private:
     std::exception_ptr first_;
 };
 
-/// Calls what starts threads; oneTBB says in a runtime_error that the system has none to give.
+/// Calls `body`, which starts threads. oneTBB throws a runtime_error if the system cannot create a thread.
+/// Throws: Error{resource_limit} in that case.
 template <typename Body>
 void start(Body&& body) {
     try {
@@ -122,7 +124,8 @@ void TbbThreads::run(unsigned count, const std::function<void(unsigned)>& body) 
     failure.rethrow();
 }
 
-void TbbThreads::run_beside(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help) {
+void TbbThreads::run_with_helpers(unsigned helpers, const std::function<void()>& lead,
+                                  const std::function<void()>& help) {
     TaskOrder order;
     start([&] {
         arena_->arena.execute([&] {
@@ -130,7 +133,7 @@ void TbbThreads::run_beside(unsigned helpers, const std::function<void()>& lead,
             try {
                 for (unsigned i = 0; i < helpers; ++i) group.run([&] { order.task(help); });
             } catch (const std::runtime_error&) {
-                // No thread to be had: fewer helpers will do, and those that run wait for the lead.
+                // The system cannot create a thread. Fewer helpers are enough, and those that run wait for `lead`.
             }
             {
                 const FloatingPointScope scope;

@@ -1,8 +1,9 @@
-// TbbThreads: what octopair takes from oneTBB, behind plain functions.
+// TbbThreads: the functions of oneTBB that octopair uses. The only interface to oneTBB.
 //
-// Alone in its file so that it can be compiled without the thread sanitizer: Debian's libtbb is not instrumented, and the
-// sanitizer cannot see how it orders tasks. In such a build the order that oneTBB promises, what comes before a call
-// before its tasks and these before its return, is told to the sanitizer.
+// It has its own source file so that this file can be compiled without the thread sanitizer: Debian's libtbb is not
+// instrumented, and the sanitizer cannot see how oneTBB orders tasks. In a build with the sanitizer, the source tells it the
+// order that oneTBB guarantees: everything before a call happens before its tasks, and the tasks happen before the call
+// returns.
 #pragma once
 
 #include <functional>
@@ -12,14 +13,17 @@ namespace octopair {
 
 class TbbThreads {
 public:
+    /// Makes an arena of `threads` threads, the calling thread included.
     explicit TbbThreads(unsigned threads);
     ~TbbThreads();
 
-    /// Calls body(i) once for each i below `count`; returns when all have returned. Rethrows one of their exceptions.
+    /// Calls body(i) once for each i below `count`, on several threads. Returns when all bodies have returned.
+    /// Throws: the first exception of a body; Error{resource_limit} if no threads can be started.
     void run(unsigned count, const std::function<void(unsigned)>& body);
-    /// Calls `lead` on this thread and `help` `helpers` times on others, as far as there are any; returns when all have
-    /// returned. Neither may throw.
-    void run_beside(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help);
+    /// Calls `lead` on the calling thread, and `help` up to `helpers` times on other threads, if they are available. Returns
+    /// when all calls have returned. Requires: `lead` and `help` do not throw.
+    /// Throws: Error{resource_limit} if no threads can be started.
+    void run_with_helpers(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help);
 
 private:
     struct Arena;

@@ -11,7 +11,9 @@ namespace octopair {
 
 namespace {
 
-unsigned thread_count(unsigned asked) { return asked > 0 ? asked : std::max(1u, std::thread::hardware_concurrency()); }
+unsigned thread_count(unsigned requested) {
+    return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
+}
 
 }  // namespace
 
@@ -26,7 +28,7 @@ void Team::for_each(std::size_t count, const std::function<void(std::size_t, uns
         for (std::size_t i = 0; i < count; ++i) body(i, 0);
         return;
     }
-    // Indices are handed out in order by one counter, so that early ones, which a consumer may wait for, finish first.
+    // One counter assigns indices in ascending order, so that low indices, for which a consumer may wait, finish first.
     std::atomic<std::size_t> next = 0;
     const auto work = [&](unsigned worker) {
         try {
@@ -49,7 +51,7 @@ void Team::with_helpers(const std::function<void()>& lead, const std::function<v
             failed = std::current_exception();
         }
     };
-    tbb_->run_beside(threads_ - 1, leading, help);
+    tbb_->run_with_helpers(threads_ - 1, leading, help);
     if (failed) std::rethrow_exception(failed);
 }
 

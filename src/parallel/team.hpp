@@ -1,7 +1,8 @@
-// Team: the threads of an engine.
+// Team: the thread pool of an engine.
 //
-// A team of one runs everything on the calling thread and touches no scheduler. Which thread runs which index is free;
-// nothing above this file may let its result depend on it. Not reentrant: a body must not call its team.
+// - A team of one thread runs everything on the calling thread and uses no scheduler.
+// - It is not defined which thread runs which index. No result may depend on it.
+// - Not reentrant: a body must not call its team.
 #pragma once
 
 #include <cstddef>
@@ -15,24 +16,26 @@ class TbbThreads;
 
 class Team {
 public:
-    /// 0: one thread per core.
+    /// Makes a team of `threads` threads, the calling thread included; 0: one per core.
     explicit Team(unsigned threads);
     ~Team();
 
     unsigned threads() const { return threads_; }
 
-    /// Calls body(i, worker) once for each i below `count`, started in order; worker < threads() is not shared by two
-    /// running bodies. Rethrows the first exception of a body, after which no further bodies start.
+    /// Calls body(i, worker) once for each i below `count`, started in ascending order. At any time, bodies that run have
+    /// different values of worker < threads().
+    /// Throws: the first exception of a body. No further body starts after an exception.
     void for_each(std::size_t count, const std::function<void(std::size_t, unsigned)>& body);
 
-    /// Runs `lead` on the calling thread while up to threads() - 1 others run `help` (maybe fewer, maybe after `lead`,
-    /// so `lead` must not wait for a helper to begin). Returns when all have; `help` must return soon after `lead`
-    /// does.
+    /// Runs `lead` on the calling thread, and `help` on up to threads() - 1 other threads. Fewer helpers may run, and they may
+    /// start after `lead` has returned. Returns when `lead` and all helpers have returned.
+    /// Requires: `lead` does not wait for a helper to start; `help` returns soon after `lead` and does not throw.
+    /// Throws: the exception of `lead`.
     void with_helpers(const std::function<void()>& lead, const std::function<void()>& help);
 
 private:
     unsigned threads_;
-    std::unique_ptr<TbbThreads> tbb_;  // none for a team of one
+    std::unique_ptr<TbbThreads> tbb_;  // null for a team of one thread
 };
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// What a batch is made of, for those that fill it, cut it off and empty it again.
+// BatchAccess: internal access to a Batch, for code that fills, truncates and reuses batches.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace octopair::detail {
 
 struct BatchAccess {
-    /// Empties it for other pairs; its memory is kept.
+    /// Empties the batch for new pairs, and keeps its memory.
     static void restart(Batch& batch, const std::stop_token& stop) {
         batch.pairs_.clear();
         batch.findings_.clear();
@@ -20,7 +20,7 @@ struct BatchAccess {
         batch.pairs_.insert(batch.pairs_.end(), pairs.begin(), pairs.end());
     }
 
-    /// The first so many pairs stay, with what is known of them; memory is kept.
+    /// Truncates the batch to its first `pairs` pairs and their findings, and keeps its memory.
     static void cut(Batch& batch, std::size_t pairs) {
         batch.pairs_.resize(pairs);
         if (!batch.findings_.empty()) batch.findings_.resize(pairs);

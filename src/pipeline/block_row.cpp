@@ -21,7 +21,7 @@ BlockRow::~BlockRow() {
     for (std::thread& helper : helpers_) helper.join();
 }
 
-Block& BlockRow::room() {
+Block& BlockRow::empty_block() {
     while (filled_ == head_ + slots_.size()) advance();
     return slot(filled_).block;
 }
@@ -34,7 +34,7 @@ void BlockRow::add() {
         if (idle_ > 0) {
             added_.notify_one();
         } else {
-            others_wait = filled_ > claimed_ + 1;  // the first is for this thread
+            others_wait = filled_ > claimed_ + 1;  // this thread processes the first one itself
         }
     }
     if (others_wait && may_start_ && helpers_.size() + 1 < threads_) start_helper();
@@ -44,7 +44,7 @@ void BlockRow::start_helper() {
     try {
         helpers_.emplace_back([this] { help(); });
     } catch (const std::system_error&) {
-        may_start_ = false;  // none to be had: those there are will do
+        may_start_ = false;  // no more threads available: continue with the present ones
     }
 }
 
@@ -65,11 +65,11 @@ void BlockRow::hand_out_head() {
     Slot& head = slot(head_);
     if (head.failure) std::rethrow_exception(std::exchange(head.failure, nullptr));
     deliver_(head.block);
-    head.done = false;  // nobody else looks at it before it is filled again
+    head.done = false;  // without the lock: no other thread reads it before the block is filled again
     ++head_;
 }
 
-/// One step: hands out, works at a block, or waits.
+/// Makes progress by one step: delivers the head, processes a block, or waits until the head is done.
 void BlockRow::advance() {
     Slot* mine = nullptr;
     {
@@ -78,9 +78,9 @@ void BlockRow::advance() {
             if (claimed_ < filled_) {
                 mine = &slot(claimed_++);
             } else {
-                leading_waits_ = true;
+                caller_waits_ = true;
                 done_.wait(lock, [&] { return slot(head_).done; });
-                leading_waits_ = false;
+                caller_waits_ = false;
             }
         }
     }
@@ -113,7 +113,7 @@ void BlockRow::help() {
         work_at(mine);
         lock.lock();
         mine.done = true;
-        if (leading_waits_) done_.notify_one();
+        if (caller_waits_) done_.notify_one();
     }
 }
 

@@ -1,11 +1,14 @@
-// BlockRow: blocks on their way, worked at by several threads and handed out in order.
+// BlockRow: a ring buffer of blocks that several threads process and the calling thread delivers in order.
 //
-//     room() -> fill it -> add() -> work on any thread -> deliver on the calling thread, in order
+//     empty_block() -> fill it -> add() -> `work` on any thread -> `deliver` on the calling thread, in order
 //
-// The calling thread fills blocks and hands them out; when the row is full it works itself, and waits only where others have
-// all the blocks in their hands. Helpers are threads of the row's own, started when there is work for them: those of an engine
-// may be blocked inside its search while a sink runs, and its scheduler has no others to give.
-// Invariant: head_ <= claimed_ <= filled_ <= head_ + the row's length; blocks before claimed_ are done or in someone's hands.
+// The calling thread fills and delivers blocks. If the row is full, it also processes blocks. It waits only if other threads
+// process all remaining blocks. The row starts its own helper threads when there is work for them. It cannot use the threads
+// of the engine: they may be blocked inside the search while a sink runs.
+//
+// Invariants
+//   head_ <= claimed_ <= filled_ <= head_ + length of the row.
+//   Each block before claimed_ is done, or one thread processes it.
 #pragma once
 
 #include <condition_variable>
@@ -21,38 +24,39 @@
 
 namespace octopair {
 
-/// What one filter did to one block.
+/// Statistics of one filter for one block.
 struct FilterWork {
-    std::uint64_t in = 0, out = 0;
+    std::uint64_t in = 0, out = 0;  ///< numbers of pairs before and after the filter
     double seconds = 0;
 };
 
 struct Block {
     Batch batch;
-    std::vector<FilterWork> work;  ///< by filter
+    std::vector<FilterWork> work;  ///< one element for each filter
 };
 
 class BlockRow {
 public:
     using Step = std::function<void(Block&)>;
 
-    /// `work` is called on any thread, `deliver` on the calling one. What `work` throws is thrown where its block would have
-    /// been delivered, so that it does not depend on threads.
+    /// `work` runs on any thread, `deliver` on the calling thread. An exception of `work` is rethrown when its block would be
+    /// delivered, so which exception is thrown does not depend on the number of threads.
     BlockRow(unsigned threads, Step work, Step deliver);
     BlockRow(const BlockRow&) = delete;
     BlockRow& operator=(const BlockRow&) = delete;
-    /// Waits for the blocks that helpers have in their hands.
+    /// Waits until helpers have processed the blocks that they have claimed.
     ~BlockRow();
 
+    /// Returns the number of blocks in a row for `threads` threads.
     static std::size_t length(unsigned threads) { return threads == 1 ? 1 : std::size_t(threads) * 4; }
 
-    /// The block to fill next. Works and hands out until there is one.
-    Block& room();
-    /// The block of room() is filled.
+    /// Returns the block to fill next. While the row is full, processes and delivers blocks.
+    Block& empty_block();
+    /// Adds the block that empty_block() returned. Requires: it is filled.
     void add();
-    /// Hands out what is done; does not wait.
+    /// Delivers blocks from the head on that are done. Does not wait.
     void hand_out();
-    /// Works and hands out until the row is empty.
+    /// Processes and delivers blocks until the row is empty.
     void finish();
 
 private:
@@ -75,11 +79,11 @@ private:
     std::vector<Slot> slots_;
     std::mutex mutex_;
     std::condition_variable added_, done_;
-    std::uint64_t head_ = 0;     // next to be handed out; the calling thread's
-    std::uint64_t claimed_ = 0;  // next to be worked at
-    std::uint64_t filled_ = 0;   // next to be filled; the calling thread's to change
-    unsigned idle_ = 0;          // helpers that wait
-    bool leading_waits_ = false;
+    std::uint64_t head_ = 0;     // next block to be delivered; used by the calling thread only
+    std::uint64_t claimed_ = 0;  // next block to be processed
+    std::uint64_t filled_ = 0;   // next block to be filled; modified by the calling thread only
+    unsigned idle_ = 0;          // number of helpers that wait
+    bool caller_waits_ = false;
     bool ended_ = false;
     bool may_start_ = true;
     std::vector<std::thread> helpers_;

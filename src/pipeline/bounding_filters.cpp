@@ -1,8 +1,10 @@
-// "bounding spheres" and "oriented boxes": what these cheap hulls tell apart does not reach the exact stages.
+// Filters "bounding spheres" and "oriented boxes": remove pairs whose bounding volumes are apart, before the exact stages.
 //
-// A gap counts only beyond what rounding may have made of it. A plane is itself; a mesh without triangles meets nothing.
-// Moving objects are judged by their spheres in both filters: these are around centres that move straight but for
-// Motion::sagitta, so the two are nearest where the straight way from one to the other is.
+// Invariants
+//   A gap counts only if it is greater than the bound on its rounding error.
+//   A plane has no bounding volume: it is tested itself. A mesh without triangles is apart from everything.
+//   Moving objects are tested by their spheres in both filters. Their centres deviate from straight lines by at most
+//   Motion::sagitta, so the minimum distance is that of two points on straight lines, minus this deviation.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +22,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// The longest that a pose makes something of length 1, at most: the square root of a norm of its transpose times itself.
+/// Returns an upper bound on the factor by which a pose stretches lengths: the root of a norm of its transpose times itself.
 double stretch_of(const Pose& pose) {
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -35,7 +37,7 @@ double stretch_of(const Pose& pose) {
 struct Ball {
     Point3d centre;
     double radius;
-    double slack;  ///< what rounding may add to how far things reach
+    double slack;  ///< bound on the rounding error of centre and radius
 };
 
 Ball ball_of(const detail::PreparedShape& shape, const Pose& pose) {
@@ -47,10 +49,10 @@ Ball ball_of(const detail::PreparedShape& shape, const Pose& pose) {
     return ball;
 }
 
-/// Half the edges of a posed box.
+/// Returns the half edges of a posed box.
 std::array<Point3d, 3> half_edges(const detail::PreparedShape& shape, const Pose& pose) {
     const Box3d& box = shape.bounds.box;
-    // Radii are not posed, so a pose that is a turn but for 1e-6 makes them no smaller.
+    // Poses do not scale radii. A pose may deviate from a rotation by 1e-6, which must not shrink the radius.
     constexpr double off_turn = 4e-6;
     std::array<Point3d, 3> edges;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -65,17 +67,18 @@ double reach_along(const std::array<Point3d, 3>& edges, const Point3d& unit) {
            std::fabs(vector::dot(edges[2], unit));
 }
 
-/// Both objects of a pair.
-struct Couple {
+/// The two objects of a pair.
+struct ShapePair {
     const detail::PreparedShape &a, &b;
     const Pose &pose_a, &pose_b;
-    const Pose *end_a, *end_b;  ///< or null
-    double reach;               ///< margin and paddings
+    const Pose *end_a, *end_b;  ///< null: the object does not move
+    double reach;               ///< margin plus both paddings
 };
 
 const shape::Plane* plane_of(const detail::PreparedShape& shape) { return std::get_if<shape::Plane>(&shape.shape); }
 
-/// Whether a plane is further than `reach` from a ball, or from a box at its centre.
+/// Returns whether the distance of a plane from a solid is greater than `reach`. `thick`: half thickness of the solid around
+/// the ball's centre, along the plane's normal.
 bool plane_apart(const PosedPlane& plane, const Ball& ball, double thick, double reach) {
     const double height = vector::dot(vector::minus(ball.centre, plane.point), plane.normal);
     const double slack = 2 * ball.slack + 32 * rounding * (vector::length(plane.point) + std::fabs(height));
@@ -87,18 +90,18 @@ bool balls_apart(const Ball& a, const Ball& b, double reach) {
     return distance - (a.radius + b.radius) - (a.slack + b.slack) > reach;
 }
 
-/// The one with two poses, of which one may be the only one.
+/// Returns the motion between two poses. `end` is null for an object that does not move.
 std::optional<Motion> motion_of(const Pose& begin, const Pose* end) {
     return end ? Motion::between(begin, *end) : Motion::between(begin, begin);
 }
 
-bool moving_balls_apart(const Couple& couple) {
-    const auto move_a = motion_of(couple.pose_a, couple.end_a), move_b = motion_of(couple.pose_b, couple.end_b);
+bool moving_balls_apart(const ShapePair& pair) {
+    const auto move_a = motion_of(pair.pose_a, pair.end_a), move_b = motion_of(pair.pose_b, pair.end_b);
     if (!move_a || !move_b) return false;
-    const Ball a = ball_of(couple.a, move_a->at(0)), b = ball_of(couple.b, move_b->at(0));
-    const Ball last_a = ball_of(couple.a, move_a->at(1)), last_b = ball_of(couple.b, move_b->at(1));
-    const double aside = move_a->sagitta(vector::length(couple.a.bounds.centre), 1) +
-                         move_b->sagitta(vector::length(couple.b.bounds.centre), 1);
+    const Ball a = ball_of(pair.a, move_a->at(0)), b = ball_of(pair.b, move_b->at(0));
+    const Ball last_a = ball_of(pair.a, move_a->at(1)), last_b = ball_of(pair.b, move_b->at(1));
+    const double aside = move_a->sagitta(vector::length(pair.a.bounds.centre), 1) +
+                         move_b->sagitta(vector::length(pair.b.bounds.centre), 1);
     const Point3d from = vector::minus(b.centre, a.centre);
     const Point3d way = vector::minus(vector::minus(last_b.centre, last_a.centre), from);
     const double squared = vector::dot(way, way);
@@ -106,29 +109,28 @@ bool moving_balls_apart(const Couple& couple) {
     const double nearest = vector::length(vector::plus(from, vector::times(way, part)));
     const double radii = std::max(a.radius, last_a.radius) + std::max(b.radius, last_b.radius);
     const double slack = 4 * (a.slack + b.slack + last_a.slack + last_b.slack) + 32 * rounding * std::sqrt(squared);
-    return nearest - radii - aside - slack > couple.reach;
+    return nearest - radii - aside - slack > pair.reach;
 }
 
-bool boxes_apart(const Couple& couple) {
-    const Ball ball_a = ball_of(couple.a, couple.pose_a), ball_b = ball_of(couple.b, couple.pose_b);
-    const auto a = half_edges(couple.a, couple.pose_a), b = half_edges(couple.b, couple.pose_b);
+bool boxes_apart(const ShapePair& pair) {
+    const Ball ball_a = ball_of(pair.a, pair.pose_a), ball_b = ball_of(pair.b, pair.pose_b);
+    const auto a = half_edges(pair.a, pair.pose_a), b = half_edges(pair.b, pair.pose_b);
     const Point3d between = vector::minus(ball_b.centre, ball_a.centre);
     const double slack = 4 * (ball_a.slack + ball_b.slack);
-    const auto tells_apart = [&](const Point3d& axis) {
+    const auto separates = [&](const Point3d& axis) {
         const double length = vector::length(axis);
         if (!(length > 0)) return false;
         const Point3d unit = vector::times(axis, 1 / length);
-        return std::fabs(vector::dot(between, unit)) - reach_along(a, unit) - reach_along(b, unit) - slack >
-               couple.reach;
+        return std::fabs(vector::dot(between, unit)) - reach_along(a, unit) - reach_along(b, unit) - slack > pair.reach;
     };
     for (const auto* edges : {&a, &b}) {
         for (std::size_t k = 0; k < 3; ++k) {
-            if (tells_apart(vector::cross((*edges)[k], (*edges)[(k + 1) % 3]))) return true;
+            if (separates(vector::cross((*edges)[k], (*edges)[(k + 1) % 3]))) return true;
         }
     }
     for (const Point3d& edge_a : a) {
         for (const Point3d& edge_b : b) {
-            if (tells_apart(vector::cross(edge_a, edge_b))) return true;
+            if (separates(vector::cross(edge_a, edge_b))) return true;
         }
     }
     return false;
@@ -136,24 +138,24 @@ bool boxes_apart(const Couple& couple) {
 
 enum class Hull : std::uint8_t { ball, box };
 
-bool with_plane_apart(const Couple& couple, Hull hull) {
-    const bool first = plane_of(couple.a) != nullptr;
-    const detail::PreparedShape& other = first ? couple.b : couple.a;
-    const Pose& pose = first ? couple.pose_b : couple.pose_a;
-    const PosedPlane plane = posed_plane(*plane_of(first ? couple.a : couple.b), first ? couple.pose_a : couple.pose_b);
+bool with_plane_apart(const ShapePair& pair, Hull hull) {
+    const bool first = plane_of(pair.a) != nullptr;
+    const detail::PreparedShape& other = first ? pair.b : pair.a;
+    const Pose& pose = first ? pair.pose_b : pair.pose_a;
+    const PosedPlane plane = posed_plane(*plane_of(first ? pair.a : pair.b), first ? pair.pose_a : pair.pose_b);
     const Ball ball = ball_of(other, pose);
     const double thick = hull == Hull::ball ? ball.radius : reach_along(half_edges(other, pose), plane.normal);
-    return plane_apart(plane, ball, thick, couple.reach);
+    return plane_apart(plane, ball, thick, pair.reach);
 }
 
-bool told_apart(const Couple& couple, Hull hull) {
-    const bool plane_a = plane_of(couple.a) != nullptr, plane_b = plane_of(couple.b) != nullptr;
-    if ((!plane_a && !couple.a.bounds.bounded) || (!plane_b && !couple.b.bounds.bounded)) return true;
+bool are_apart(const ShapePair& pair, Hull hull) {
+    const bool plane_a = plane_of(pair.a) != nullptr, plane_b = plane_of(pair.b) != nullptr;
+    if ((!plane_a && !pair.a.bounds.bounded) || (!plane_b && !pair.b.bounds.bounded)) return true;
     if (plane_a && plane_b) return false;
-    if (plane_a || plane_b) return !couple.end_a && !couple.end_b && with_plane_apart(couple, hull);
-    if (couple.end_a || couple.end_b) return moving_balls_apart(couple);
-    if (hull == Hull::box) return boxes_apart(couple);
-    return balls_apart(ball_of(couple.a, couple.pose_a), ball_of(couple.b, couple.pose_b), couple.reach);
+    if (plane_a || plane_b) return !pair.end_a && !pair.end_b && with_plane_apart(pair, hull);
+    if (pair.end_a || pair.end_b) return moving_balls_apart(pair);
+    if (hull == Hull::box) return boxes_apart(pair);
+    return balls_apart(ball_of(pair.a, pair.pose_a), ball_of(pair.b, pair.pose_b), pair.reach);
 }
 
 class BoundingFilter final : public Filter {
@@ -170,7 +172,7 @@ public:
     std::string_view name() const override { return hull_ == Hull::ball ? "bounding spheres" : "oriented boxes"; }
 
     void apply(Batch& batch) const override {
-        batch.keep_if([&](std::size_t i) { return !told_apart(couple_of(batch.pairs()[i]), hull_); });
+        batch.keep_if([&](std::size_t i) { return !are_apart(shape_pair(batch.pairs()[i]), hull_); });
     }
 
 private:
@@ -183,7 +185,7 @@ private:
     static double padding_of(const ShapedObjects& objects, std::uint32_t i) {
         return objects.padding.empty() ? 0 : objects.padding[i];
     }
-    Couple couple_of(const Pair& pair) const {
+    ShapePair shape_pair(const Pair& pair) const {
         return {shape_of(first_, pair.a),
                 shape_of(second_, pair.b),
                 first_.poses[pair.a],

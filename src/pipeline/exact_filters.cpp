@@ -1,4 +1,4 @@
-// The exact stages for objects: "exact object" and "exact feature".
+// Filters "exact object" and "exact feature": the exact stages for objects.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace octopair {
 
 namespace {
 
-/// The objects of pairs: of one set, or of two.
+/// The posed objects of pairs, from one set or from two.
 class PosedPairs {
 public:
     PosedPairs(const ShapedObjects& first, const ShapedObjects* second)
@@ -26,7 +26,7 @@ public:
         check(second_);
     }
 
-    /// Whether any of them moves.
+    /// Returns whether any object moves.
     bool moving() const { return moving_; }
     PosedObject a(const Pair& pair) const { return {prepared(first_, pair.a), first_.poses[pair.a]}; }
     PosedObject b(const Pair& pair) const { return {prepared(second_, pair.b), second_.poses[pair.b]}; }
@@ -51,7 +51,7 @@ private:
     bool moving_;
 };
 
-/// Two objects as they are at a time.
+/// The poses of two moving objects at one time.
 struct Moment {
     Moment(const MovingObject& first, const MovingObject& second, double at)
         : time(at),
@@ -72,8 +72,8 @@ struct MovingPair {
     MovingObject a, b;
 };
 
-/// Whether moving objects meet, or else come within reach; as they are at the first such moment. When they meet there is a
-/// gap left, of the search's tolerance, unless they met from the beginning.
+/// Returns whether moving objects meet, or come within `reach`. `finding` describes the first such moment. At the time of
+/// impact there is still a gap of the search's tolerance, unless the objects meet at the beginning.
 bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const std::stop_token& stop) {
     const auto& [a, b] = pair;
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -86,13 +86,13 @@ bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const 
         finding.collision_class = CollisionClass::collision;
         finding.distance = 0;
     }
-    // Within the search's tolerance.
+    // The distance may exceed `reach` by the search's tolerance.
     if (finding.collision_class == CollisionClass::clearance) finding.distance = std::min(finding.distance, reach);
     finding.time = *time;
     return true;
 }
 
-/// Where the gap of the moment of impact is, there they touch.
+/// Finds the contacts at the time of impact. If a gap is left, the middle of its nearest points is the contact.
 void find_impact(const Moment& moment, const ContactRequest& request, Finding& finding) {
     Finding at_moment;
     judge_objects(moment.a(), moment.b(), std::numeric_limits<double>::infinity(), at_moment);
@@ -112,7 +112,7 @@ void find_impact(const Moment& moment, const ContactRequest& request, Finding& f
     finding.contacts = {contact};
 }
 
-/// Whether a pair counts; what was learned of it so far is replaced, but for the note.
+/// Returns whether pair `i` counts. If so, replaces its finding, except the note.
 bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i) {
     const Pair pair = batch.pairs()[i];
     const double reach = margin + objects.padding(pair);
@@ -152,7 +152,7 @@ public:
         const ContactRequest request{options_.max_contacts, batch.stop()};
         batch.keep_if([&](std::size_t i) {
             const Pair pair = batch.pairs()[i];
-            // Where no exact stage came before, this one is both.
+            // Without an "exact object" filter before, this filter also decides whether the pair counts.
             const bool judged = batch.finding(i).collision_class != CollisionClass::unknown;
             if (!judged && !judge(objects_, options_.margin, batch, i)) return false;
             Finding& finding = batch.finding(i);

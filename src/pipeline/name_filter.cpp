@@ -1,8 +1,8 @@
-// Exclusion rules by name.
+// Filter "name rules": removes pairs whose names match an exclusion rule.
 //
-// Each name is held against each pattern once. Names that fit the same patterns are of one kind; a kind knows, as ascending
-// lists, the rules whose first pattern its names fit, and those whose second. A pair is left out where the lists of its two
-// kinds have a rule in common; most kinds have none.
+// Each name is matched against each pattern once. Names that match the same patterns are of one kind. A kind has two ascending
+// lists: rules whose first pattern its names match, and rules whose second pattern they match. A pair is removed if the
+// first list of one kind and the second list of the other have a rule in common. Most kinds have empty lists.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -15,7 +15,7 @@ namespace octopair {
 
 namespace {
 
-/// At a character of UTF-8: behind it.
+/// Returns the position behind the UTF-8 character at `at`.
 std::size_t behind_character(std::string_view text, std::size_t at) {
     const auto is_continuation = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };
     const bool begins_several = (static_cast<unsigned char>(text[at]) & 0xC0) == 0xC0;
@@ -26,10 +26,10 @@ std::size_t behind_character(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-bool fits(std::string_view name, std::string_view pattern) {
+bool matches_pattern(std::string_view name, std::string_view pattern) {
     constexpr auto none = std::string_view::npos;
     std::size_t n = 0, p = 0;
-    std::size_t star = none, taken = 0;  // the last `*`, and where what it stands for ends
+    std::size_t star = none, taken = 0;  // the last `*`, and the end of the text that it matches
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
             star = p++;
@@ -40,7 +40,7 @@ bool fits(std::string_view name, std::string_view pattern) {
         } else if (p < pattern.size() && pattern[p] == name[n]) {
             ++n, ++p;
         } else if (star != none) {
-            // Earlier stars need not be tried again: what follows them was found as early as can be.
+            // No backtracking to earlier stars: the text between two stars was matched at its first occurrence.
             n = taken = behind_character(name, taken);
             p = star + 1;
         } else {
@@ -55,13 +55,13 @@ namespace {
 
 using RuleList = std::vector<std::uint32_t>;
 
-/// The rules whose first and whose second pattern a name fits.
+/// The rules whose first pattern (`as_a`) and whose second pattern (`as_b`) a name matches.
 struct Kind {
     RuleList as_a, as_b;
     auto operator<=>(const Kind&) const = default;
 };
 
-/// Kinds of names, shared by all that a filter is given.
+/// All kinds of names of a filter, shared by both sets.
 class Kinds {
 public:
     explicit Kinds(std::span<const NameRule> rules) {
@@ -71,7 +71,7 @@ public:
         }
     }
 
-    /// Of each name, the number of its kind.
+    /// Returns the number of the kind of each name.
     std::vector<std::uint32_t> of(std::span<const std::string> names) {
         std::vector<std::uint32_t> kinds;
         kinds.reserve(names.size());
@@ -85,7 +85,7 @@ private:
     std::uint32_t of(const std::string& name) {
         Kind kind;
         for (const auto& [pattern, rules] : patterns_) {
-            if (name.empty() || !fits(name, pattern)) continue;
+            if (name.empty() || !matches_pattern(name, pattern)) continue;
             kind.as_a.insert(kind.as_a.end(), rules.as_a.begin(), rules.as_a.end());
             kind.as_b.insert(kind.as_b.end(), rules.as_b.begin(), rules.as_b.end());
         }
@@ -96,9 +96,9 @@ private:
         return place->second;
     }
 
-    std::map<std::string, Kind> patterns_;  // with the rules that have them
+    std::map<std::string, Kind> patterns_;  // by pattern: the rules that have it
     std::map<Kind, std::uint32_t> numbers_;
-    std::vector<const Kind*> kinds_;  // in numbers_
+    std::vector<const Kind*> kinds_;  // by number: keys of numbers_
 };
 
 bool have_common(const RuleList& first, const RuleList& second) {
@@ -138,7 +138,7 @@ private:
 
 }  // namespace
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): the public face lets callers hand their rules over.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the public function takes the rules by value.
 std::unique_ptr<Filter> make_name_filter(std::span<const std::string> names, std::vector<NameRule> rules,
                                          std::optional<std::span<const std::string>> second) {
     return std::make_unique<NameFilter>(names, rules, second);

@@ -1,12 +1,12 @@
-// Patterns that names fit: `*` stands for any characters, none as well, `?` for one, every other for itself. Characters are
-// those of UTF-8; what is not UTF-8 counts by bytes.
+// Patterns for names: `*` matches any number of characters, `?` matches one character, every other character matches itself.
+// Characters are UTF-8; each byte that is not valid UTF-8 counts as a character.
 #pragma once
 
 #include <string_view>
 
 namespace octopair {
 
-/// Takes up to |name| * |pattern| steps.
-bool fits(std::string_view name, std::string_view pattern);
+/// Returns whether `name` matches `pattern`. Complexity: O(|name| * |pattern|).
+bool matches_pattern(std::string_view name, std::string_view pattern);
 
 }  // namespace octopair

@@ -1,5 +1,6 @@
-// Values of each object of the two sets that a pair is of, which may be one and the same. A number beyond a set's end is an
-// error: the filter was given the values of other objects than the pipeline.
+// PerObject: one value for each object of the two sets of a join, or of the one set of a call.
+//
+// A pair with an object that has no value is an error: the filter got values for other objects than the engine.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +16,14 @@ namespace octopair {
 template <typename Value>
 class PerObject {
 public:
-    /// `what`: of what an object has none, in the message.
+    /// `what` names the value in error messages. Borrows the spans.
     PerObject(const char* what, std::span<const Value> first, std::optional<std::span<const Value>> second)
         : what_(what), first_(first), second_(second.value_or(first)) {}
 
     const Value& first(std::uint32_t a) const { return at(first_, a); }
     const Value& second(std::uint32_t b) const { return at(second_, b); }
 
-    /// Throws where a number is beyond the end.
+    /// Throws: Error{bad_input} if an object of the pair has no value.
     void check(Pair pair) const { (void)first(pair.a), (void)second(pair.b); }
     std::span<const Value> all_first() const { return first_; }
     std::span<const Value> all_second() const { return second_; }
@@ -33,8 +34,8 @@ private:
         return values[object];
     }
     [[noreturn]] void refuse(std::size_t size, std::uint32_t object) const {
-        throw Error(ErrorCode::bad_input,
-                    "object " + std::to_string(object) + " has no " + what_ + ": there are " + std::to_string(size));
+        throw Error(ErrorCode::bad_input, "object " + std::to_string(object) + " has no " + what_ +
+                                              ": values were given for " + std::to_string(size) + " objects");
     }
 
     const char* what_;

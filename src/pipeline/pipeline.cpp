@@ -1,8 +1,8 @@
-// Pipeline: an engine's pairs, gathered into blocks, through all filters and in order to the sink.
+// Pipeline: gathers an engine's pairs into blocks, applies all filters, and passes the results to the sink in order.
 //
-// Blocks are as long as keeps a thread busy for a moment: one pair where a pair takes long, so that threads share the work
-// to its end; thousands where a pair costs nothing, so that handing blocks about costs less. The result does not depend on it:
-// a filter judges each pair by itself.
+// The size of blocks follows the measured time of a pair. A block has one pair if a pair takes long, so that all threads
+// have work until the end. It has thousands if pairs are cheap, so that passing blocks between threads costs little.
+// The result does not depend on the size, because a filter judges each pair by itself.
 #include <algorithm>
 #include <chrono>
 #include <new>
@@ -21,17 +21,17 @@ namespace {
 
 using Filters = std::vector<std::unique_ptr<Filter>>;
 
-/// Thrown through an engine's search when enough has come out.
-struct Enough {};
+/// Thrown through an engine's search when Options::limit collisions have been delivered and one more was found.
+struct LimitReached {};
 
-/// How many pairs the next block should have.
+/// Chooses the number of pairs of the next block from measured times.
 class BlockSize {
 public:
     explicit BlockSize(std::size_t most) : most_(most), pairs_(std::min<std::size_t>(first, most)) {}
 
     std::size_t pairs() const { return pairs_; }
 
-    /// A block of so many pairs took so long.
+    /// Adds a measurement: a block of `pairs` pairs took `seconds`.
     void learn(std::uint64_t pairs, double seconds) {
         if (pairs == 0) return;
         const double a_pair = seconds / double(pairs);
@@ -42,13 +42,13 @@ public:
 
 private:
     static constexpr std::size_t first = 64;
-    static constexpr double aim = 2e-4;  // seconds; far more than it takes to hand a block over
+    static constexpr double aim = 2e-4;  // seconds for a block; far more than it takes to pass a block between threads
 
     std::size_t most_, pairs_;
-    double seconds_ = -1;  // of a pair, lately
+    double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet
 };
 
-/// One call's way from the engine's sink to the caller's. Everything but apply() runs on the calling thread.
+/// One call: from the engine's sink through the filters to the caller's sink. Only apply() runs on other threads as well.
 class Flow {
 public:
     struct Setup {
@@ -64,7 +64,7 @@ public:
           sink_(setup.sink),
           summary_(summary),
           left_(setup.options.limit.value_or(~std::uint64_t(0))),
-          size_(most_pairs(setup)),
+          size_(max_block_pairs(setup)),
           forward_(setup.stop, Forward{abandon_}),
           row_(
               setup.threads, [this](Block& block) { apply(block); }, [this](Block& block) { deliver(block); }) {}
@@ -72,8 +72,10 @@ public:
     Flow& operator=(const Flow&) = delete;
     ~Flow() { abandon_.request_stop(); }
 
-    /// Pairs in all blocks together; a fourth of the buffer at most.
-    static std::uint64_t held_pairs(const Setup& setup) { return most_pairs(setup) * BlockRow::length(setup.threads); }
+    /// Returns the maximum number of pairs in all blocks. They use at most a quarter of Options::buffer_bytes, or 256 KiB.
+    static std::uint64_t held_pairs(const Setup& setup) {
+        return max_block_pairs(setup) * BlockRow::length(setup.threads);
+    }
 
     void take(std::span<const Pair> pairs) {
         const Timed timed(seconds_);
@@ -95,7 +97,7 @@ public:
         row_.finish();
     }
 
-    /// On the calling thread.
+    /// Returns the time spent in take() and finish(), on the calling thread.
     double seconds() const { return seconds_; }
 
 private:
@@ -104,13 +106,13 @@ private:
         void operator()() const { abandon.request_stop(); }
     };
 
-    static std::size_t most_pairs(const Setup& setup) {
+    static std::size_t max_block_pairs(const Setup& setup) {
         const std::uint64_t pairs = std::max<std::uint64_t>(setup.options.buffer_bytes, 1 << 20) / sizeof(Pair) / 4;
         return std::size_t(std::clamp<std::uint64_t>(pairs / BlockRow::length(setup.threads), 1, 4096));
     }
 
     void begin_block() {
-        filling_ = &row_.room();
+        filling_ = &row_.empty_block();
         detail::BatchAccess::restart(filling_->batch, abandon_.get_token());
         goal_ = size_.pairs();
     }
@@ -120,7 +122,7 @@ private:
         row_.add();
     }
 
-    /// On any thread.
+    /// Applies all filters to a block. Runs on any thread.
     void apply(Block& block) const {
         block.work.assign(filters_.size(), {});
         for (std::size_t i = 0; i < filters_.size(); ++i) {
@@ -130,7 +132,7 @@ private:
             const Timed timed(work.seconds);
             filters_[i]->apply(block.batch);
             work.out = block.batch.pairs().size();
-            // What a filter says after a stop request need not be true.
+            // A filter may return wrong results after a stop request.
             if (block.batch.stop().stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
         }
     }
@@ -145,7 +147,7 @@ private:
         if (sink_ && !batch.pairs().empty()) sink_(batch);
         if (too_many) {
             summary_.truncated = true;
-            throw Enough{};
+            throw LimitReached{};
         }
     }
 
@@ -164,18 +166,18 @@ private:
     const Filters& filters_;
     const CollisionSink& sink_;
     PipelineSummary& summary_;
-    std::uint64_t left_;  // of the limit
+    std::uint64_t left_;  // collisions that the limit still allows
     BlockSize size_;
     double seconds_ = 0;
     Block* filling_ = nullptr;
-    std::size_t goal_ = 0;  // of the block that is being filled
+    std::size_t goal_ = 0;  // number of pairs at which the current block is full
     std::stop_source abandon_;
     std::stop_callback<Forward> forward_;
-    BlockRow row_;  // the last, so that its helpers end before what they use
+    BlockRow row_;  // last, so that its helpers end before the members that they use are destroyed
 };
 
-/// Some pairs at a time, so that progress is told and what is done is handed out meanwhile. An empty sink counts.
-Summary give(const PairList& pairs, const PairSink& take, const Options& options) {
+/// Passes the pairs of a list to `take` in parts, and reports progress after each. With an empty `take`, only counts pairs.
+Summary stream_list(const PairList& pairs, const PairSink& take, const Options& options) {
     constexpr std::size_t some = 1 << 16;
     Summary summary;
     summary.pairs = std::min(pairs.size(), options.limit.value_or(pairs.size()));
@@ -202,7 +204,7 @@ struct Pipeline::State {
     unsigned threads;
     Filters filters = {};
 
-    /// What every call becomes; `search` asks the engine.
+    /// Runs a call. `search(take, options)` passes all candidate pairs to `take`.
     template <typename Search>
     PipelineSummary run(const CollisionSink& sink, const Options& options, const std::stop_token& stop,
                         const Search& search) const {
@@ -231,7 +233,7 @@ private:
         options.limit.reset();
         options.buffer_bytes -= std::min(options.buffer_bytes, Flow::held_pairs(setup) * sizeof(Pair));
         if (setup.options.progress) {
-            // The end is told when filters have seen all.
+            // Progress 1 is reported when the filters have processed all pairs.
             options.progress = [&](double done) {
                 if (done < 1) setup.options.progress(done);
             };
@@ -242,7 +244,7 @@ private:
         try {
             summary.search = search(take, options);
             flow.finish();
-        } catch (const Enough&) {
+        } catch (const LimitReached&) {
         }
         const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
         const double elsewhere = flow.seconds() + summary.search.verification.seconds;
@@ -259,11 +261,11 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
 
 void Pipeline::add(std::unique_ptr<Filter> filter) {
-    if (filter == nullptr) throw Error(ErrorCode::usage, "a pipeline is given no filter");
+    if (filter == nullptr) throw Error(ErrorCode::usage, "Pipeline::add: the filter is null");
     state_->filters.push_back(std::move(filter));
 }
 
-// NOLINTNEXTLINE(readability-function-size): the public face has these five.
+// NOLINTNEXTLINE(readability-function-size): the public function has these five parameters.
 PipelineSummary Pipeline::run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options,
                               std::stop_token stop) {
     return state_->run(sink, options, stop, [&](const PairSink& take, const Options& passed) {
@@ -274,7 +276,7 @@ PipelineSummary Pipeline::run(Engine& engine, const Input& input, const Collisio
 PipelineSummary Pipeline::filter(const PairList& pairs, const CollisionSink& sink, const Options& options,
                                  std::stop_token stop) {
     return state_->run(sink, options, stop,
-                       [&](const PairSink& take, const Options& passed) { return give(pairs, take, passed); });
+                       [&](const PairSink& take, const Options& passed) { return stream_list(pairs, take, passed); });
 }
 
 }  // namespace octopair

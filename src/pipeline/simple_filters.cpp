@@ -1,4 +1,4 @@
-// Filters that ask no geometry: a condition of the user's, groups and masks, ignored pairs, parents.
+// Filters that use no geometry: a condition of the caller, groups and masks, ignored pairs, parents.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -47,11 +47,12 @@ private:
 void check_sizes(const GroupMasks& set) {
     if (set.groups.size() != set.masks.size()) {
         throw Error(ErrorCode::bad_input, std::to_string(set.groups.size()) + " groups and " +
-                                              std::to_string(set.masks.size()) + " masks, not one of each an object");
+                                              std::to_string(set.masks.size()) +
+                                              " masks; each object needs one group and one mask");
     }
 }
 
-/// Pairs in a hash table of twice their number: where the hash says, or at the next places up to a free one.
+/// A set of pairs: a hash table with linear probing, at most half full.
 class PairSet {
 public:
     explicit PairSet(const std::vector<Pair>& pairs)
@@ -62,11 +63,11 @@ public:
     bool contains(Pair pair) const { return places_[find(pair)] != free_place; }
 
 private:
-    /// No pair has it: objects' numbers are below 2^32 - 1.
+    /// Key of a free place. No pair has it, because indices of objects are less than 2^32 - 1.
     static constexpr std::uint64_t free_place = ~std::uint64_t(0);
 
     static std::uint64_t key(Pair pair) { return std::uint64_t(pair.a) << 32 | pair.b; }
-    /// Where it is, or would be.
+    /// Returns the place of a pair, or the free place where it would be inserted.
     std::size_t find(Pair pair) const {
         const std::uint64_t wanted = key(pair), mixed = (wanted ^ wanted >> 29) * 0x9E3779B97F4A7C15u;
         std::size_t place = std::size_t(mixed ^ mixed >> 32) & (places_.size() - 1);

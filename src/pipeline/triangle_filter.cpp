@@ -1,6 +1,6 @@
-// "exact triangle": triangles as objects.
+// Filter "exact triangle": tests triangles that are objects themselves.
 //
-// Pairs are judged first and described afterwards: few of those that come in are left, and only these need findings.
+// All pairs of a batch are tested first. Only the few pairs that remain get findings.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,9 +13,9 @@
 #include "base/floating_point.hpp"
 #include "boxes/box_kernel.hpp"
 #include "narrow_phase/exact/contact_of_triangles.hpp"
-#include "narrow_phase/exact/triangle_prefilter.hpp"
 #include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
+#include "narrow_phase/exact/triangle_prefilter.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "parallel/team.hpp"
@@ -33,7 +33,7 @@ bool is_finite(const Triangle3d& triangle) {
     return finite;
 }
 
-/// Calls body(begin, size) for parts of so many triangles.
+/// Calls body(begin, size) in parallel for parts of `triangles` triangles.
 template <typename Body>
 void for_each_part(std::size_t triangles, unsigned threads, const Body& body) {
     constexpr std::size_t part = 1 << 15;
@@ -61,7 +61,7 @@ void check(const TriangleSet& set, unsigned threads) {
     }
 }
 
-/// True if their boxes say that they are further apart than this, whatever roundings make of it.
+/// Returns whether the distance of the triangles' boxes exceeds `margin`, by more than rounding errors.
 bool boxes_apart(const Triangle3d& a, const Triangle3d& b, double margin) {
     Point3d gap = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -87,10 +87,10 @@ public:
     void apply(Batch& batch) const override {
         const auto pairs = batch.pairs();
         check(pairs);
-        std::vector<std::uint8_t> looks(pairs.size());
-        look_at({triangles_.all_first(), triangles_.all_second(), pairs}, looks);
-        keep_undecided(batch, looks);
-        batch.keep_if([&](std::size_t i) { return counts(batch.pairs()[i], looks[i]); });
+        std::vector<std::uint8_t> prefiltered(pairs.size());
+        prefilter_pairs({triangles_.all_first(), triangles_.all_second(), pairs}, prefiltered);
+        keep_undecided(batch, prefiltered);
+        batch.keep_if([&](std::size_t i) { return counts(batch.pairs()[i], prefiltered[i]); });
         batch.keep_if([&](std::size_t i) {
             describe(batch.pairs()[i], batch.finding(i));
             return true;
@@ -98,7 +98,7 @@ public:
     }
 
 private:
-    /// Pairs one by one only where some number is beyond the end, for the first such to be named.
+    /// Throws: Error{bad_input} that names the first triangle out of range. Checks maxima first, because errors are rare.
     void check(std::span<const Pair> pairs) const {
         std::uint32_t a = 0, b = 0;
         for (const Pair& pair : pairs) {
@@ -109,23 +109,23 @@ private:
         for (const Pair& pair : pairs) triangles_.check(pair);
     }
 
-    /// True if a look at triangles of one mesh is enough to leave them out.
-    bool leaves_out(std::uint8_t look) const {
-        if (look == look_apart) return options_.margin == 0;
+    /// Returns whether the flags of the prefilter suffice to remove a pair.
+    bool leaves_out(std::uint8_t flags) const {
+        if (flags == prefilter_apart) return options_.margin == 0;
         const bool adjacent = !join_ && owners_.empty() && options_.adjacent != AdjacentTriangles::include;
-        return look == (look_apart | look_shared) && adjacent;
+        return flags == (prefilter_apart | prefilter_shared) && adjacent;
     }
 
-    /// Most pairs end here, by no branch of their own; of the others, the looks move with them.
-    void keep_undecided(Batch& batch, std::vector<std::uint8_t>& looks) const {
+    /// Removes pairs that the prefilter decides, which are most, without a branch for each. Moves the flags of the others.
+    void keep_undecided(Batch& batch, std::vector<std::uint8_t>& prefiltered) const {
         const std::array<bool, 4> left_out = {leaves_out(0), leaves_out(1), leaves_out(2), leaves_out(3)};
-        std::vector<std::uint32_t> undecided(looks.size());
+        std::vector<std::uint32_t> undecided(prefiltered.size());
         std::size_t count = 0;
-        for (std::size_t i = 0; i < looks.size(); ++i) {
-            const std::uint8_t look = looks[i];
+        for (std::size_t i = 0; i < prefiltered.size(); ++i) {
+            const std::uint8_t flags = prefiltered[i];
             undecided[count] = std::uint32_t(i);
-            looks[count] = look;
-            count += left_out[look] ? 0 : 1;
+            prefiltered[count] = flags;
+            count += left_out[flags] ? 0 : 1;
         }
         batch.keep_these(std::span(undecided).first(count));
     }
@@ -134,8 +134,8 @@ private:
         return !join_ && (owners_.empty() || owners_[pair.a] == owners_[pair.b]);
     }
 
-    bool counts(const Pair& pair, std::uint8_t look) const {
-        const bool apart = (look & look_apart) != 0, share = (look & look_shared) != 0;
+    bool counts(const Pair& pair, std::uint8_t flags) const {
+        const bool apart = (flags & prefilter_apart) != 0, share = (flags & prefilter_shared) != 0;
         if (apart && (share ? may_be_adjacent(pair) : options_.margin == 0)) {
             return share && options_.adjacent == AdjacentTriangles::include;
         }
@@ -145,7 +145,7 @@ private:
         return options_.adjacent == AdjacentTriangles::beyond_shared && meet_beyond_shared(a, b);
     }
 
-    /// Of triangles that do not meet.
+    /// Returns whether the distance is at most the margin. Requires: the triangles do not meet.
     bool within_margin(const Triangle3d& a, const Triangle3d& b) const {
         return options_.margin > 0 && !boxes_apart(a, b, options_.margin) &&
                triangle_gap(a, b).distance <= options_.margin;
@@ -197,7 +197,7 @@ std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned thre
 void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads) {
     const FloatingPointScope scope;
     if (boxes.size() != triangles.size()) {
-        throw Error(ErrorCode::bad_input, "room for " + std::to_string(boxes.size()) + " boxes of " +
+        throw Error(ErrorCode::bad_input, "boxes_of: the output has " + std::to_string(boxes.size()) + " boxes for " +
                                               std::to_string(triangles.size()) + " triangles");
     }
     std::atomic<bool> all_finite = true;

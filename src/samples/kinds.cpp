@@ -29,7 +29,7 @@ Point uniform_point(RandomStream& random) {
     return point;
 }
 
-/// The cube root by Newton's method in a fixed number of steps, as std::cbrt may differ from one library to the next.
+/// Returns the cube root, by Newton's method in a fixed number of steps: std::cbrt may differ between libraries.
 double cube_root(double x) {
     double root = 1;
     while (root * root * root < x) root *= 2;
@@ -51,7 +51,7 @@ Placer cubes(const Population& population, double pairs_per_object) {
 Placer uniform(const Population& population) { return cubes(population, 0.5); }
 Placer dense(const Population& population) { return cubes(population, 5); }
 
-/// Sides smallest * 2^k * (1 + f), k of 0..9 and f of [0, 1): three decades, about as many objects in each octave.
+/// Cubes of side smallest * 2^k * (1 + f), with k in 0..9 and f in [0, 1), both uniform: sizes span three decades.
 Placer mixed(const Population& population) {
     constexpr int octaves = 10;
     constexpr double pairs_per_object = 2.4;
@@ -97,7 +97,7 @@ Placer clustered(const Population& population) {
     };
 }
 
-/// 20 uniform cubes of cubes, each 1e-5 of the world wide.
+/// 20 clusters of uniformly distributed cubes; each cluster is 1e-5 of the world wide.
 Placer micro20(const Population& population) {
     constexpr std::uint64_t clusters = 20;
     constexpr double width = 1e-5;
@@ -111,7 +111,7 @@ Placer micro20(const Population& population) {
     };
 }
 
-/// Cubes in a world four of their sides high.
+/// Cubes in a flat world: its height is four sides of a cube.
 Placer flat(const Population& population) {
     constexpr double height_in_sides = 4;
     constexpr double pairs_per_object = 0.75;
@@ -125,7 +125,7 @@ Placer flat(const Population& population) {
     };
 }
 
-/// The world give or take 1% on every side.
+/// Returns a box of about the world's size: each face is moved inward by at most 1%.
 Box3f world_size_box(RandomStream& random) {
     Box3f box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -161,14 +161,14 @@ Placer coincident(const Population& population) {
     return [box = box_of(uniform_point(random), {0.5, 0.5, 0.5})](std::uint64_t) { return box; };
 }
 
-/// The order in which plates come: steps of about the golden section of n, so that all n slots are met once.
+/// Returns a stride of about the golden section of `slots` and coprime to it: i * stride mod slots takes each slot once.
 std::uint64_t slot_stride(std::uint64_t slots) {
     std::uint64_t stride = slots * 618 / 1000 | 1;
     while (std::gcd(stride, slots) != 1) stride += 2;
     return stride;
 }
 
-/// Each plate in a slot of its own along the axis; one in 1,000 is thick enough to reach the next.
+/// Plates, each in its own slot along the axis. One in 1,000 is thick enough to reach the next plate.
 template <std::size_t axis>
 Placer plates(const Population& population) {
     const std::uint64_t slots = std::max<std::uint64_t>(population.objects, 1);
@@ -185,7 +185,7 @@ Placer plates(const Population& population) {
     };
 }
 
-/// Every 20th object is a sheet, the others are cubes of dust; their sides follow from 0.4 n pairs of sheet and dust.
+/// Every 20th object is a sheet; the others are small cubes. Their sides are chosen for 0.4 n pairs of a sheet and a cube.
 template <std::size_t axis>
 Placer sheets(const Population& population) {
     const double thickness = 0.4 / count(population);
@@ -201,7 +201,7 @@ Placer sheets(const Population& population) {
     };
 }
 
-/// Rod i lies along axis i mod 3. Two rods of different axes overlap where they do on the third: 2 n pairs.
+/// Rods; rod i lies along axis i mod 3. Two rods along different axes overlap if they overlap on the third axis: 2 n pairs.
 Placer rods(const Population& population) {
     const double side = std::min(3.0 / count(population), 0.5);
     return [=](std::uint64_t i) {
@@ -247,7 +247,7 @@ constexpr Kind kind_table[] = {
 std::span<const Kind> all_kinds() { return kind_table; }
 
 double cube_side(std::uint64_t objects, double pairs_per_object) {
-    // n^2 / 2 pairs of objects, each with the chance (2 side)^3.
+    // There are n^2 / 2 pairs of objects; each overlaps with probability (2 side)^3.
     const double n = double(std::max<std::uint64_t>(objects, 1));
     return cube_root(2 * pairs_per_object / n) / 2;
 }

@@ -1,4 +1,4 @@
-// The kinds of scenes: how each places its object i. Internal to samples.
+// Kind: a kind of sample scene, and the function that places its objects. Internal to samples.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace octopair::samples {
 
-/// The box of object i. Pure: any order of calls gives the same boxes.
+/// Returns the box of object i. A pure function of i.
 using Placer = std::function<Box3f(std::uint64_t)>;
 
-/// What the sizes of a scene follow from.
+/// Parameters of a scene. The sizes of its boxes depend on the number of objects.
 struct Population {
     std::uint64_t objects;
     std::uint64_t seed;
@@ -22,15 +22,15 @@ struct Population {
 struct Kind {
     std::string_view name;
     std::string_view description;
-    bool moves;
+    bool moves;  ///< true if a scene may have several frames
     Placer (*make_placer)(const Population&);
 };
 
-/// All kinds, in the order of docs/scenes.md.
+/// Returns all kinds, in the order of docs/scenes.md.
 std::span<const Kind> all_kinds();
 
-/// The side of a cube such that n cubes, thrown into the unit cube at random, make `pairs_per_object` * n pairs (fewer
-/// where they are so large that the border of the world matters).
+/// Returns a side length: n cubes of this side at random places in the unit cube form about `pairs_per_object` * n pairs. Large
+/// cubes form fewer, because of the border of the world.
 double cube_side(std::uint64_t objects, double pairs_per_object);
 
 }  // namespace octopair::samples

@@ -12,23 +12,23 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Divides each triangle into four; new vertices stand in the middle of edges, moved out to the radius.
-class Divider {
+/// Divides each triangle into four. New vertices are the midpoints of edges, projected to the sphere.
+class SphereSubdivision {
 public:
-    Divider(shape::Mesh& mesh, double radius) : mesh_(mesh), radius_(radius) {}
+    SphereSubdivision(shape::Mesh& mesh, double radius) : mesh_(mesh), radius_(radius) {}
 
-    void divide() {
+    void subdivide() {
         std::vector<Corners> finer;
         for (const auto& [a, b, c] : mesh_.triangles) {
-            const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            const std::uint32_t ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
             finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
         }
         mesh_.triangles = std::move(finer);
     }
 
 private:
-    std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
-        const auto [at, is_new] = middles_.try_emplace(std::minmax(a, b), std::uint32_t(mesh_.vertices.size()));
+    std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
+        const auto [at, is_new] = midpoints_.try_emplace(std::minmax(a, b), std::uint32_t(mesh_.vertices.size()));
         if (!is_new) return at->second;
         const Point3d &p = mesh_.vertices[a], &q = mesh_.vertices[b];
         Point3d point = {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
@@ -40,7 +40,7 @@ private:
 
     shape::Mesh& mesh_;
     double radius_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> midpoints_;
 };
 
 }  // namespace
@@ -60,22 +60,22 @@ shape::Mesh sphere_mesh(double radius, unsigned level) {
     shape::Mesh mesh;
     mesh.vertices = {{radius, 0, 0}, {-radius, 0, 0}, {0, radius, 0}, {0, -radius, 0}, {0, 0, radius}, {0, 0, -radius}};
     mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-    for (unsigned i = 0; i < level; ++i) Divider(mesh, radius).divide();
+    for (unsigned i = 0; i < level; ++i) SphereSubdivision(mesh, radius).subdivide();
     return mesh;
 }
 
 shape::Mesh torus_mesh(const TorusRequest& request) {
-    constexpr double small = 0.35, turn = 2 * std::numbers::pi;
+    constexpr double minor_radius = 0.35, full_turn = 2 * std::numbers::pi;
     RandomStream random(request.seed, 0);
     shape::Mesh mesh;
     for (std::uint32_t ring = 0; ring < request.rings; ++ring) {
-        const double around = turn * ring / request.rings;
+        const double major_angle = full_turn * ring / request.rings;
         for (std::uint32_t side = 0; side < request.sides; ++side) {
-            const double about = turn * side / request.sides;
-            const double radius = small * (1 + random.uniform(-request.bump, request.bump));
-            const double from_axis = 1 + radius * std::cos(about);
+            const double minor_angle = full_turn * side / request.sides;
+            const double radius = minor_radius * (1 + random.uniform(-request.bump, request.bump));
+            const double from_axis = 1 + radius * std::cos(minor_angle);
             mesh.vertices.push_back(
-                {from_axis * std::cos(around), from_axis * std::sin(around), radius * std::sin(about)});
+                {from_axis * std::cos(major_angle), from_axis * std::sin(major_angle), radius * std::sin(minor_angle)});
             const std::uint32_t next_ring = (ring + 1) % request.rings, next_side = (side + 1) % request.sides;
             const std::uint32_t a = ring * request.sides + side, b = next_ring * request.sides + side;
             const std::uint32_t c = next_ring * request.sides + next_side, d = ring * request.sides + next_side;

@@ -1,4 +1,4 @@
-// Meshes for tests, examples and benchmarks, made by rule or from a seed; closed, and counterclockwise from outside.
+// Meshes for tests, examples and benchmarks, constructed or random from a seed. Closed; counterclockwise seen from outside.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace octopair::samples {
 
-/// A box of 12 triangles between two corners.
+/// Returns the axis-aligned box between two corners, of 12 triangles.
 shape::Mesh box_mesh(const Point3d& min, const Point3d& max);
 
-/// A sphere around the origin, of 8 * 4^level triangles.
+/// Returns a sphere around the origin, of 8 * 4^level triangles.
 shape::Mesh sphere_mesh(double radius, unsigned level);
 
-/// A bumpy torus around the z axis: 2 * rings * sides triangles. Its large radius is 1, the small one 0.35, and each vertex
-/// is moved in or out by up to `bump` of that.
+/// Parameters of a bumpy torus around the z axis. Its major radius is 1, its minor radius 0.35.
 struct TorusRequest {
     std::uint32_t rings, sides;
-    double bump = 0;
+    double bump = 0;  ///< largest random displacement of a vertex, as a part of the minor radius
     std::uint64_t seed = 1;
 };
+/// Returns a torus of 2 * rings * sides triangles.
 shape::Mesh torus_mesh(const TorusRequest& request);
 
-/// Any turn, as likely as any other, and a place in the cube from 0 to `width`.
+/// Returns a uniformly distributed rotation and a position in the cube [0, width)^3.
 Pose random_pose(RandomStream& random, double width);
 
 }  // namespace octopair::samples

@@ -25,7 +25,7 @@ const Kind& find_kind(std::string_view name) {
     refuse(message);
 }
 
-/// Calls `place(i)` for every object and hands the boxes on in batches.
+/// Calls `place(i)` for each object and passes the boxes to `sink` in batches.
 template <typename Place>
 void emit_frame(std::uint64_t objects, const Place& place, const SceneSink& sink) {
     std::vector<Box3f> batch;
@@ -39,7 +39,7 @@ void emit_frame(std::uint64_t objects, const Place& place, const SceneSink& sink
     }
 }
 
-/// The low corners of cubes that move about the unit cube, a step a frame.
+/// Cubes that move randomly in the unit cube, one step per frame.
 class BrownianMotion {
 public:
     explicit BrownianMotion(const SceneSpec& spec)
@@ -50,7 +50,8 @@ public:
         }
     }
 
-    /// Moves every object by at most an eighth of its side on each axis; the world's walls throw it back.
+    /// Moves every object by at most an eighth of its side on each axis. The low corners are reflected at the unit cube's
+    /// faces.
     void step(std::uint64_t frame) {
         const std::uint64_t seed = mix_bits(spec_.seed) + frame;
         for (std::uint64_t i = 0; i < spec_.objects; ++i) {
@@ -76,7 +77,7 @@ public:
 private:
     SceneSpec spec_;
     double side_;
-    std::vector<double> positions_;
+    std::vector<double> positions_;  // low corners, x, y, z of each object
 };
 
 void emit_moving(const SceneSpec& spec, const SceneSink& sink) {

@@ -1,10 +1,10 @@
-// Seeded scenes, byte for byte the same on every machine and compiler.
+// Sample scenes from a seed, with the same bytes on every machine and compiler.
 //
-// World     the unit cube, unless a kind says otherwise (docs/scenes.md has the table: what each kind stresses, its
-// pairs). Sameness  the numbers come from integers by IEEE addition, multiplication, division and square root alone: no
-// function
-//           of the mathematical library, no contraction. Object i of a static kind depends on (kind, objects, seed, i).
-// Memory    a batch; `brownian` with several frames also keeps its positions, 24 bytes an object.
+// World     The unit cube, unless a kind says otherwise. docs/scenes.md has a table of all kinds: their purpose and number of
+//           pairs.
+// Sameness  The numbers come from integers by IEEE addition, multiplication, division and square root only: no functions of the
+//           mathematical library, no contraction. Object i of a static kind depends only on (kind, objects, seed, i).
+// Memory    One batch. A `brownian` scene with several frames also stores positions, 24 bytes per object.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,23 @@ struct SceneSpec {
     std::string kind;           ///< one of scene_kinds()
     std::uint64_t objects = 0;  ///< at most 2^32 - 1
     std::uint64_t seed = 0;
-    std::uint64_t frames = 1;  ///< at least 1; more only for a kind that moves
+    std::uint64_t frames = 1;  ///< number of time steps, >= 1; above 1 only for a kind that moves
 };
 
+/// Receives the boxes of a scene in batches. The span is valid only during the call.
 using SceneSink = std::function<void(std::span<const Box3f>)>;
 
-/// The names of all kinds, in the order of docs/scenes.md.
+/// Returns the names of all kinds, in the order of docs/scenes.md.
 std::vector<std::string_view> scene_kinds();
-/// One line on `kind`, without a full stop. Throws Error{usage} for an unknown kind.
+/// Returns a description of `kind`: one line without a full stop. Throws: Error{usage} for an unknown kind.
 std::string_view scene_description(std::string_view kind);
-/// True if `kind` may have several frames. Throws Error{usage} for an unknown kind.
+/// Returns true if a scene of `kind` may have several frames. Throws: Error{usage} for an unknown kind.
 bool scene_moves(std::string_view kind);
 
-/// Hands the boxes to `sink` in batches, frame after frame; no batch spans two frames, and a scene without objects has
-/// none. Throws Error{usage} for an unknown kind or a count out of range, before the first batch.
+/// Passes the boxes to `sink` in batches, frame after frame. A batch has boxes of one frame and is not empty.
+/// Throws: Error{usage} for an unknown kind or a number out of range, before the first batch.
 void generate_scene(const SceneSpec& spec, const SceneSink& sink);
-/// One frame as a whole. Throws as generate_scene does.
+/// Returns all boxes of a scene of one frame. Throws: as generate_scene().
 std::vector<Box3f> make_scene(std::string_view kind, std::uint64_t objects, std::uint64_t seed);
 
 }  // namespace octopair::samples

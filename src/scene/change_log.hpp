@@ -1,6 +1,9 @@
-// ChangeLog: what the objects that changed since the last step were before.
+// ChangeLog: the states that changed objects had at the last step.
 //
-// It keeps no more than a part of the objects; beyond, a step searches all and does not need it.
+// Invariants
+//   An object has at most one entry in the log: its state before its first change since the last step.
+//   ObjectTable::mark() of an object is the position of its entry, or `none` if it has no entry.
+//   A log that overflowed is empty. The next step then searches all objects and needs no log.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +17,7 @@
 
 namespace octopair {
 
-/// An object before its first change since the last step.
+/// State of an object before its first change since the last step.
 struct PreviousState {
     std::uint32_t index;
     ObjectState state;
@@ -22,31 +25,32 @@ struct PreviousState {
 
 class ChangeLog {
 public:
-    /// Before a call that changes so many objects: whether they fit is known at once, and note() does not fail.
-    void expect(ObjectTable& table, std::uint64_t changes) noexcept {
+    /// Reserves memory for `changes` calls of note(), so that they cannot fail. The log overflows if they do not fit.
+    void reserve(ObjectTable& table, std::uint64_t changes) noexcept {
         if (overflowed_) return;
-        if (double(formers_.size() + changes) >= most(table)) return overflow(table);
+        if (double(previous_states_.size() + changes) >= most(table)) return overflow(table);
         try {
-            reserve_more(formers_, std::size_t(changes));
+            reserve_more(previous_states_, std::size_t(changes));
         } catch (...) {
             overflow(table);
         }
     }
-    /// To be called before a change of an object, or after it was created (`existed` false), which was expected.
+    /// Logs the state of an object, unless it is in the log already.
+    /// Requires: reserve() has been called; the object has not changed yet, or was just created (`existed` is false).
     void note(ObjectTable& table, std::uint32_t index, bool existed) {
         if (overflowed_ || table.mark(index) != ObjectTable::none) return;
-        table.set_mark(index, std::uint32_t(formers_.size()));
-        formers_.push_back({index, table.state(index)});
-        formers_.back().state.exists = existed;
+        table.set_mark(index, std::uint32_t(previous_states_.size()));
+        previous_states_.push_back({index, table.state(index)});
+        previous_states_.back().state.exists = existed;
     }
 
-    std::span<const PreviousState> formers() const { return formers_; }
-    /// More has changed than is kept.
+    std::span<const PreviousState> previous_states() const { return previous_states_; }
+    /// Returns whether more objects changed than the log holds.
     bool overflowed() const { return overflowed_; }
 
-    /// Nothing is kept until clear().
+    /// Empties the log. It stays empty until clear().
     void give_up(ObjectTable& table) { overflow(table); }
-    /// After a step.
+    /// Empties the log after a step, so that it records changes again.
     void clear(ObjectTable& table) {
         forget(table);
         overflowed_ = false;
@@ -64,11 +68,11 @@ private:
     }
 
     void forget(ObjectTable& table) {
-        for (const PreviousState& former : formers_) table.set_mark(former.index, ObjectTable::none);
-        formers_.clear();
+        for (const PreviousState& former : previous_states_) table.set_mark(former.index, ObjectTable::none);
+        previous_states_.clear();
     }
 
-    std::vector<PreviousState> formers_;
+    std::vector<PreviousState> previous_states_;
     bool overflowed_ = false;
 };
 

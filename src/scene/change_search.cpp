@@ -13,8 +13,8 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t listed_ahead = 8;   // changes
-constexpr std::size_t judged_ahead = 16;  // hits whose objects are fetched before they are judged
+constexpr std::size_t listed_ahead = 8;   // changes prefetched before they are listed
+constexpr std::size_t judged_ahead = 16;  // hits whose objects are prefetched before they are tested
 
 bool are_pair(const ObjectState& a, const ObjectState& b, double margin) {
     return a.exists && b.exists && within_reach(a.box, b.box, margin + (a.padding + b.padding)) &&
@@ -23,7 +23,7 @@ bool are_pair(const ObjectState& a, const ObjectState& b, double margin) {
 
 std::uint32_t unit_of(std::uint64_t key) { return std::uint32_t(key >> 32); }
 
-/// Where the share of a position begins: at the unit that it lies in, so that no unit is in two shares.
+/// Returns the first position of the unit that `position` lies in. Shares begin there, so that no unit is in two shares.
 std::size_t share_begin(std::span<const std::uint64_t> order, std::size_t position) {
     if (position >= order.size()) return order.size();
     while (position > 0 && unit_of(order[position]) == unit_of(order[position - 1])) --position;
@@ -42,7 +42,7 @@ Entry EntryRounding::entry(const Box3d& box, double padding) const {
     return entry;
 }
 
-void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits) {
+void ChangeSearch::run(const View& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits) {
     for (Worker& worker : workers_) {
         worker.began.clear();
         worker.ended.clear();
@@ -50,11 +50,11 @@ void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& c
     read_changes(scene, octree);
     list_visits(octree, limits);
     for (std::uint32_t number = 0; number < changes_.size(); ++number) {
-        if (alone_[number] == 0) continue;
+        if (is_large_[number] == 0) continue;
         throw_if_beyond(limits, workers_[0]);
-        make_alone(scene, octree, number);
+        apply_large_change(scene, octree, number);
     }
-    make_visits(scene, octree, limits);
+    apply_listed_changes(scene, octree, limits);
     collect(&Worker::began, changes.began);
     collect(&Worker::ended, changes.ended);
 }
@@ -62,11 +62,11 @@ void ChangeSearch::run(const Scene& scene, MutableOctree& octree, PairChanges& c
 void ChangeSearch::throw_if_beyond(const Limits& limits, const Worker& worker) const {
     throw_if_stopped(limits.stop);
     const bool many = worker.began.size() + worker.ended.size() > limits.pairs / workers_.size();
-    if (many || std::chrono::steady_clock::now() > limits.deadline) throw TooDear{};
+    if (many || std::chrono::steady_clock::now() > limits.deadline) throw LimitReached{};
 }
 
-void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree) {
-    const auto formers = scene.log.formers();
+void ChangeSearch::read_changes(const View& scene, const MutableOctree& octree) {
+    const auto formers = scene.log.previous_states();
     changes_.clear();
     entries_.clear();
     for (std::size_t i = 0; i < formers.size(); ++i) {
@@ -74,7 +74,7 @@ void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree)
         const PreviousState& former = formers[i];
         const ObjectState now = scene.table.state(former.index);
         changes_.push_back({former.index, former.state.exists, now.exists, {}, {}});
-        // One that did not exist, or does not, has a box that means nothing.
+        // An object that did not exist, or no longer exists, has a valid box here that is not used.
         entries_.push_back(scene.rounding.entry(former.state.box, now.padding));
         entries_.push_back(scene.rounding.entry(now.box, now.padding));
     }
@@ -86,23 +86,23 @@ void ChangeSearch::read_changes(const Scene& scene, const MutableOctree& octree)
     }
 }
 
-/// A list for each thread, of as many changes, in their order.
+/// Lists the visits of all changes: one list for each thread, with an equal number of changes, in the order of the log.
 void ChangeSearch::list_visits(MutableOctree& octree, const Limits& limits) {
     listed_.resize(team_.threads());
-    alone_.assign(changes_.size(), 0);
+    is_large_.assign(changes_.size(), 0);
     const std::size_t part = (changes_.size() + listed_.size() - 1) / listed_.size();
     const auto list_part = [&](std::size_t i, unsigned) {
         listed_[i].clear();
         const std::size_t end = std::min((i + 1) * part, changes_.size());
         for (std::size_t k = i * part; k < end; ++k) {
             throw_if_stopped(limits.stop);
-            if (listed_[i].visits.size() > limits.visits / listed_.size()) throw TooDear{};
+            if (listed_[i].visits.size() > limits.visits / listed_.size()) throw LimitReached{};
             if (k + listed_ahead < end) octree.prefetch(changes_[k + listed_ahead]);
-            if (!octree.list(changes_[k], std::uint32_t(k), listed_[i])) alone_[k] = 1;
+            if (!octree.list(changes_[k], std::uint32_t(k), listed_[i])) is_large_[k] = 1;
         }
     };
     for (bool again = true; again;) {
-        team_.for_each(listed_.size(), std::ref(list_part));  // by reference: nothing is put on the heap
+        team_.for_each(listed_.size(), std::ref(list_part));  // by reference, so that std::function allocates nothing
         again = false;
         for (const MutableOctree::Visits& visits : listed_) {
             again |= !visits.first_used.empty();
@@ -111,7 +111,7 @@ void ChangeSearch::list_visits(MutableOctree& octree, const Limits& limits) {
     }
 }
 
-void ChangeSearch::make_alone(const Scene& scene, MutableOctree& octree, std::uint32_t number) {
+void ChangeSearch::apply_large_change(const View& scene, MutableOctree& octree, std::uint32_t number) {
     const OctreeChange& change = changes_[number];
     Worker& worker = workers_[0];
     const auto search = [&](const CellBox& box, std::uint8_t around) {
@@ -131,7 +131,7 @@ void ChangeSearch::make_alone(const Scene& scene, MutableOctree& octree, std::ui
     }
 }
 
-void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const Limits& limits) {
+void ChangeSearch::apply_listed_changes(const View& scene, MutableOctree& octree, const Limits& limits) {
     auto& visits = listed_[0].visits;
     for (std::size_t i = 1; i < listed_.size(); ++i) {
         visits.insert(visits.end(), listed_[i].visits.begin(), listed_[i].visits.end());
@@ -143,7 +143,7 @@ void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const 
         keys[i] = std::uint64_t(visits[i].unit) << 32 | i;
     }
     octree.reserve(puts);
-    // One thread may as well go from change to change.
+    // A single thread needs no sort by unit: it makes the visits in the order of the changes.
     const auto order = team_.threads() == 1 ? keys : sort_.sort(32, 32 + unsigned(std::bit_width(octree.units())));
     const std::size_t share_size = tuning().scene.share_visits, run_size = tuning().scene.run_visits;
     const auto make_share = [&](std::size_t i, unsigned worker) {
@@ -159,7 +159,7 @@ void ChangeSearch::make_visits(const Scene& scene, MutableOctree& octree, const 
     team_.for_each((order.size() + share_size - 1) / share_size, std::ref(make_share));
 }
 
-void ChangeSearch::judge(const Scene& scene, Worker& worker) const {
+void ChangeSearch::judge(const View& scene, Worker& worker) const {
     const auto& hits = worker.hits;
     Judged judged;
     for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -168,14 +168,14 @@ void ChangeSearch::judge(const Scene& scene, Worker& worker) const {
             scene.table.prefetch(changes_[hits[i + judged_ahead].change].object);
         }
         if (judged.change != hits[i].change) {
-            const PreviousState& former = scene.log.formers()[hits[i].change];
+            const PreviousState& former = scene.log.previous_states()[hits[i].change];
             judged = {hits[i].change, former.index, former.state, scene.table.state(former.index)};
         }
         judge(scene, hits[i], judged, worker);
     }
 }
 
-void ChangeSearch::judge(const Scene& scene, const Hit& hit, const Judged& judged, Worker& worker) const {
+void ChangeSearch::judge(const View& scene, const Hit& hit, const Judged& judged, Worker& worker) const {
     const std::uint32_t other = hit.object;
     if (other == judged.object) return;
     const ObjectState other_after = scene.table.state(other);
@@ -184,10 +184,10 @@ void ChangeSearch::judge(const Scene& scene, const Hit& hit, const Judged& judge
     if (const std::uint32_t number = scene.table.mark(other); number == ObjectTable::none) {
         was = are_pair(judged.before, other_after, scene.margin);
     } else {
-        const bool earlier = alone_[number] != alone_[hit.change] ? alone_[number] != 0 : number < hit.change;
+        const bool earlier = is_large_[number] != is_large_[hit.change] ? is_large_[number] != 0 : number < hit.change;
         began = began && earlier;
         ended = ended && !earlier;
-        was = are_pair(judged.before, scene.log.formers()[number].state, scene.margin);
+        was = are_pair(judged.before, scene.log.previous_states()[number].state, scene.margin);
     }
     const bool is = are_pair(judged.after, other_after, scene.margin);
     const std::uint64_t key = key_of({std::min(judged.object, other), std::max(judged.object, other)});

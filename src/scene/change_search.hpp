@@ -1,10 +1,12 @@
-// ChangeSearch: the pairs that begin and end where a few objects of a scene changed.
+// ChangeSearch: finds the pairs that begin and end because a few objects of a scene changed.
 //
-// The changes are made one after the other, or so that it looks like that: around where an object was, and where it is,
-// the octree is searched, while those of lower number have changed already and those of higher number have not. So
-//   a pair that ended    is found by the change of the lower number of the two that are in it,
-//   a pair that began    by that of the higher number.
-// What is found is judged on the boxes and traits themselves, as they were and as they are.
+// Invariants
+//   The result is that of applying the changes to the octree one after the other, in the order of the log.
+//   Each change searches the octree around the old and the new place of its object. Objects of earlier changes are then at
+//   their new places, objects of later changes at their old places.
+//   A pair of two changed objects that ended is found by the earlier change of the two.
+//   A pair of two changed objects that began is found by the later change of the two.
+//   The octree yields candidates. The old and new boxes and traits of the two objects decide.
 #pragma once
 
 #include <chrono>
@@ -21,66 +23,67 @@
 
 namespace octopair {
 
-/// How the boxes of a scene became those of its octree.
+/// How boxes of a scene become entries of its octree.
 struct EntryRounding {
-    bool exact = true;  ///< as they are
-    OutwardRounding rounding;
+    bool exact = true;         ///< true: entries have the bounds of the boxes, without rounding
+    OutwardRounding rounding;  ///< used if not `exact`
 
     Entry entry(const Box3d& box, double padding) const;
 };
 
 class ChangeSearch {
 public:
-    struct Scene {
+    /// The parts of a scene that a search reads.
+    struct View {
         const ObjectTable& table;
         const ChangeLog& log;
         const EntryRounding& rounding;
         double margin;
     };
 
-    /// When to give up.
+    /// Limits beyond which a full detection is expected to be cheaper.
     struct Limits {
         std::chrono::steady_clock::time_point deadline;
-        std::uint64_t visits;  ///< most, of units of the octree
-        std::uint64_t pairs;   ///< most that begin and end
+        std::uint64_t visits;  ///< maximum number of visits of octree units
+        std::uint64_t pairs;   ///< maximum number of pairs that begin or end
         const std::stop_token& stop;
     };
-    /// Thrown where a limit is met: another way is cheaper.
-    struct TooDear {};
+    /// Thrown when a limit is reached.
+    struct LimitReached {};
 
     explicit ChangeSearch(Team& team) : team_(team), workers_(team.threads()) {}
 
-    /// Brings the octree up to date, and tells what changed. Throws Error{cancelled} and TooDear; whatever it throws leaves
-    /// the octree in no state to be used.
-    void run(const Scene& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits);
+    /// Brings `octree` up to date, and stores in `changes` the pairs that began and ended.
+    /// Throws: Error{cancelled}; LimitReached if a limit is reached. The octree must be built anew after any exception.
+    void run(const View& scene, MutableOctree& octree, PairChanges& changes, const Limits& limits);
 
 private:
-    /// A worker's own.
+    /// Buffers of one thread.
     struct Worker {
         std::vector<Hit> hits;
         std::vector<std::uint64_t> began, ended;
     };
-    /// The object of a change whose hits are looked at.
+    /// The changed object whose hits are tested.
     struct Judged {
         std::uint32_t change = ~std::uint32_t(0);
         std::uint32_t object = 0;
         ObjectState before{}, after{};
     };
 
-    void read_changes(const Scene& scene, const MutableOctree& octree);
+    void read_changes(const View& scene, const MutableOctree& octree);
     void list_visits(MutableOctree& octree, const Limits& limits);
-    void make_alone(const Scene& scene, MutableOctree& octree, std::uint32_t number);
-    void make_visits(const Scene& scene, MutableOctree& octree, const Limits& limits);
-    void judge(const Scene& scene, Worker& worker) const;
-    void judge(const Scene& scene, const Hit& hit, const Judged& judged, Worker& worker) const;
-    /// Between runs of visits: what one finds is not much.
+    void apply_large_change(const View& scene, MutableOctree& octree, std::uint32_t number);
+    void apply_listed_changes(const View& scene, MutableOctree& octree, const Limits& limits);
+    void judge(const View& scene, Worker& worker) const;
+    void judge(const View& scene, const Hit& hit, const Judged& judged, Worker& worker) const;
+    /// Throws: Error{cancelled}; LimitReached if a limit is reached. Called between runs of visits, which find few pairs each.
     void throw_if_beyond(const Limits& limits, const Worker& worker) const;
     void collect(std::vector<std::uint64_t> Worker::*keys, std::vector<Pair>& pairs);
 
     Team& team_;
     std::vector<Worker> workers_;
-    std::vector<OctreeChange> changes_;  // in the order of the log
-    std::vector<std::uint8_t> alone_;    // of changes too large to be listed: made before all others
+    std::vector<OctreeChange> changes_;   // in the order of the log
+    std::vector<std::uint8_t> is_large_;  // by change, 1: visits too many units to be listed; applied first
     std::vector<MutableOctree::Visits> listed_;
     std::vector<Entry> entries_;
     std::vector<CellBox> cells_;

@@ -1,7 +1,10 @@
-// ObjectTable: the objects of a scene by index: their boxes, paddings and traits, and which ids are alive.
+// ObjectTable: boxes, paddings, traits and generations of a scene's objects, by index.
 //
-// The arrays that few scenes need (paddings, traits) are there from the first object on that has other than the default.
-// What an index held that is not in use is a valid box that means nothing.
+// Invariants
+//   An index is in use ("alive") if its generation is odd.
+//   Boxes are stored in one precision, that of the scene.
+//   Paddings and traits have arrays only from the first object on that does not have the default value.
+//   The box at an index that is not in use is valid, but has no meaning.
 #pragma once
 
 #include <hwy/cache_control.h>
@@ -19,7 +22,7 @@
 
 namespace octopair {
 
-/// An object at one time.
+/// State of an object at one time.
 struct ObjectState {
     bool exists;
     Box3d box;
@@ -47,64 +50,66 @@ public:
     ObjectState state(std::uint32_t index) const { return {alive(index), box(index), padding(index), traits(index)}; }
     bool any_padding() const { return padded_; }
     bool any_traits() const { return with_traits_; }
-    /// All indices, those not in use too.
+    /// Returns boxes and paddings of all indices, including indices that are not in use.
     Objects objects() const;
-    /// The same; empty if all have the defaults.
+    /// Returns the traits of all indices; empty if all objects have the defaults.
     std::span<const Traits> all_traits() const { return with_traits_ ? traits_.span() : std::span<const Traits>(); }
-    /// Indices not in use; the last is the next to be.
+    /// Returns the indices that are free. create() uses the last element first.
     std::span<const std::uint32_t> free() const { return free_; }
-    /// For what is called here of that object soon.
+    /// Prefetches what other calls read of this object.
     void prefetch(std::uint32_t index) const {
         prefetch_slot(index);
         boxes64_.empty() ? hwy::Prefetch(&boxes32_[index]) : hwy::Prefetch(&boxes64_[index]);
     }
-    /// The same for contains(); any index.
+    /// Prefetches what contains() reads. `index` may be out of range.
     void prefetch_slot(std::uint32_t index) const {
         if (index < slots_.size()) hwy::Prefetch(&slots_[index]);
     }
 
-    /// A new object at a free or a further index. To be reserved for.
+    /// Adds an object at a free index, or at a new index if none is free. Returns its id.
+    /// Requires: reserve() has been called for it.
     template <typename Real>
     ObjectId create(const Box<Real>& box, double padding, const Traits& traits);
-    /// Of the table's precision, or one that it holds exactly.
+    /// Requires: the table has precision float32.
     void set_box(std::uint32_t index, const Box3f& box) { boxes32_[index] = box; }
+    /// Requires: the table's precision represents `box` exactly.
     void set_box(std::uint32_t index, const Box3d& box);
-    /// To be reserved for.
+    /// Requires: reserve() has been called with `with_traits`, unless `traits` are the defaults.
     void set_traits(std::uint32_t index, const Traits& traits) {
         if (with_traits_) traits_[index] = traits;
     }
-    /// It is alive no longer; its index is not free before release().
+    /// Removes an object. Its index becomes free with release().
     void kill(std::uint32_t index) {
         ++slots_[index].generation;
         --size_;
     }
     void release(std::uint32_t index) { free_.push_back(index); }
-    /// Memory for so many calls of release().
+    /// Reserves memory for `more` calls of release().
     void reserve_release(std::size_t more) { reserve_more(free_, more); }
-    /// Memory for so many more, and for what not all objects have where one of them is going to.
+    /// Reserves memory for `more` objects. `with_padding`, `with_traits`: also creates the array, if there is none yet.
     void reserve(std::uint64_t more, bool with_padding, bool with_traits);
 
-    /// A mark that the change log keeps for each object (change_log.hpp); none at first.
+    /// Position of the object in the change log (change_log.hpp); initially `none`.
     std::uint32_t mark(std::uint32_t index) const { return slots_[index].mark; }
     void set_mark(std::uint32_t index, std::uint32_t mark) { slots_[index].mark = mark; }
 
 private:
     struct Slot {
-        std::uint32_t generation;  ///< odd: alive
+        std::uint32_t generation;  ///< odd: the object is alive
         std::uint32_t mark;
     };
 
     std::uint32_t new_index();
 
     Precision precision_;
-    GrowingArray<Box3f> boxes32_;  // empty if the precision is the other one
-    GrowingArray<Box3d> boxes64_;
+    GrowingArray<Box3f> boxes32_;  // used for Precision::float32
+    GrowingArray<Box3d> boxes64_;  // used for Precision::float64
     GrowingArray<Slot> slots_;
     bool padded_ = false, with_traits_ = false;
-    GrowingArray<double> paddings_;  // if padded_
-    GrowingArray<Traits> traits_;    // if with_traits_
+    GrowingArray<double> paddings_;  // empty unless padded_
+    GrowingArray<Traits> traits_;    // empty unless with_traits_
     std::vector<std::uint32_t> free_;
-    std::uint64_t size_ = 0;  // alive
+    std::uint64_t size_ = 0;  // number of objects that are alive
 };
 
 template <typename Real>

@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-/// Goes through the pairs of a list.
+/// Iterates over the pairs of a list.
 class Reader {
 public:
     explicit Reader(const PairList& list) : chunks_(list.chunks()) { next_chunk(); }
@@ -23,9 +23,9 @@ public:
     void next() {
         if (++at_ == end_) next_chunk();
     }
-    /// The pairs from here on in one chunk that come before `key`; goes on behind them.
+    /// Returns the next pairs of this chunk that are less than `key`, and advances behind them.
     std::span<const Pair> run_before(std::uint64_t key) {
-        // Doubling steps: runs are short where much changed.
+        // Galloping search, because runs are short where much has changed.
         const Pair* const begin = at_;
         std::ptrdiff_t step = 1;
         while (step < end_ - at_ && key_of(at_[step]) < key) step *= 2;
@@ -53,7 +53,7 @@ private:
     const Pair* end_ = nullptr;
 };
 
-/// Fills a list, in blocks of the memory that it has.
+/// Fills a list block by block, and reuses its memory.
 class Writer {
 public:
     explicit Writer(PairList& list) : storage_(detail::storage_of(list)) { storage_.reset(); }
@@ -82,7 +82,7 @@ private:
     std::size_t used_ = 0;
 };
 
-/// Takes out of two ascending lists what is in both, as often as it is.
+/// Removes common keys from two ascending lists. Each occurrence in one list removes one occurrence in the other.
 void cancel(std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& second) {
     auto a = first.begin(), b = second.begin();
     auto a_out = a, b_out = b;
@@ -109,7 +109,7 @@ Error wrong_step(const std::string& what) {
             "scene step: " + what + "; nothing was changed, and the next step will search all objects"};
 }
 
-/// The error for a key of a list that does not come after the key before it.
+/// Returns the error for a key that is not greater than the key before it in a list.
 Error out_of_order(const std::string& list, std::uint64_t before, std::uint64_t key) {
     const std::string listed = list + " lists " + name_of(key);
     return wrong_step(key == before ? listed + " twice" : listed + " after " + name_of(before));
@@ -121,7 +121,7 @@ void check_ascending(const char* list, std::span<const Pair> pairs) {
     if (wrong != pairs.end()) throw out_of_order(list, key_of(wrong[0]), key_of(wrong[1]));
 }
 
-/// Goes to the next pair of the list of a full detection.
+/// Advances to the next pair of a full detection. Throws: Error{engine_failed} if it is not greater than the pair before it.
 void next_found(Reader& reader) {
     const std::uint64_t key = key_of(reader.pair());
     reader.next();
@@ -129,14 +129,14 @@ void next_found(Reader& reader) {
     throw out_of_order("full detection", key, key_of(reader.pair()));
 }
 
-/// Goes through ascending keys.
+/// Iterates over ascending keys.
 class KeyReader {
 public:
     explicit KeyReader(std::span<const std::uint64_t> keys) : keys_(keys) {}
 
-    /// The next key, or one above all pairs.
+    /// Returns the current key; at the end, a key that is greater than all pairs.
     std::uint64_t key() const { return keys_.empty() ? ~std::uint64_t(0) : keys_.front(); }
-    /// Goes to the next key that is another one. Returns whether the key was there once.
+    /// Advances to the next different key. Returns whether the current key occurred exactly once.
     bool next() {
         const auto other = std::find_if(keys_.begin(), keys_.end(), [&](std::uint64_t one) { return one != key(); });
         const auto times = other - keys_.begin();
@@ -183,9 +183,9 @@ void PairHistory::take_over(PairChanges& changes) {
     for (; !before.done(); before.next()) note(changes.ended, before.pair());
     for (; !after.done(); next_found(after)) note(changes.began, after.pair());
     std::swap(list_, other_);
-    settled_ = false;
+    other_reserved_ = false;
     size_ = list_.size();
-    doubt_.clear();
+    inconsistency_.clear();
 }
 
 void PairHistory::prepare(bool little) {
@@ -196,23 +196,23 @@ void PairHistory::prepare(bool little) {
     } else if (waiting > 0) {
         count_path(Path::pairs_waited);
     }
-    if (little && !settled_) settle();
+    if (little && !other_reserved_) reserve_other();
 }
 
-/// Takes the memory that merge() will need, before a frame waits for it.
-void PairHistory::settle() {
+/// Fills other_ with a copy of the list, so that a later merge() finds its memory allocated. No frame has to wait for it.
+void PairHistory::reserve_other() {
     Writer writer(other_);
     for (Reader reader(list_); !reader.done();) writer.add(reader.run_before(~std::uint64_t(0)));
     writer.finish();
-    settled_ = true;
+    other_reserved_ = true;
 }
 
 void PairHistory::apply(const PairChanges& changes) {
     check_ascending("the search for pairs that began", changes.began);
     check_ascending("the search for pairs that ended", changes.ended);
     if (changes.ended.size() > size_) {
-        throw wrong_step(std::to_string(changes.ended.size()) + " pairs ended, from " +
-                         name_of(key_of(changes.ended.front())) + " on, but there were " + std::to_string(size_));
+        throw wrong_step(std::to_string(changes.ended.size()) + " pairs ended, the first of them " +
+                         name_of(key_of(changes.ended.front())) + ", but the scene had " + std::to_string(size_));
     }
     reserve_more(began_, changes.began.size());
     reserve_more(ended_, changes.ended.size());
@@ -224,13 +224,13 @@ void PairHistory::apply(const PairChanges& changes) {
 
 const PairList& PairHistory::list() {
     merge();
-    if (is_doubtful()) throw Error(ErrorCode::engine_failed, doubt_);
+    if (is_inconsistent()) throw Error(ErrorCode::engine_failed, inconsistency_);
     return list_;
 }
 
-void PairHistory::doubt(std::uint64_t key, const char* what) {
-    if (is_doubtful()) return;
-    doubt_ =
+void PairHistory::report_inconsistency(std::uint64_t key, const char* what) {
+    if (is_inconsistent()) return;
+    inconsistency_ =
         "scene: " + name_of(key) + " " + what + "; the next step will search all objects and list their pairs anew";
 }
 
@@ -248,10 +248,11 @@ void PairHistory::merge() {
     began_.clear();
     ended_.clear();
     size_ = list_.size();
-    if (is_doubtful()) throw Error(ErrorCode::engine_failed, doubt_);
+    if (is_inconsistent()) throw Error(ErrorCode::engine_failed, inconsistency_);
 }
 
-/// Fills other_ with the list and what changed since. A change that cannot be is noted in doubt_, and left out.
+/// Writes the list with all collected changes to other_. Skips a change that contradicts the list, and reports it in
+/// inconsistency_.
 void PairHistory::write_merged() {
     Reader reader(list_);
     Writer writer(other_);
@@ -262,13 +263,13 @@ void PairHistory::write_merged() {
         if (key == ~std::uint64_t(0)) break;
         const bool listed = !reader.done() && key_of(reader.pair()) == key;
         if (began.key() == key) {
-            if (listed) doubt(key, "began, but had been there before");
+            if (listed) report_inconsistency(key, "began, but was in the list already");
             if (!listed) writer.add(pair_of(key));
-            if (!began.next()) doubt(key, "began twice");
+            if (!began.next()) report_inconsistency(key, "began twice");
         } else {
             if (listed) reader.next();
-            if (!listed) doubt(key, "ended, but had not been there before");
-            if (!ended.next()) doubt(key, "ended twice");
+            if (!listed) report_inconsistency(key, "ended, but was not in the list");
+            if (!ended.next()) report_inconsistency(key, "ended twice");
         }
     }
     writer.finish();

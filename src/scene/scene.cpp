@@ -32,27 +32,27 @@ Scene::~Scene() = default;
 
 void Scene::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
     const FloatingPointScope scope;
-    state_->to_change().add(objects, ids, traits);
+    state_->objects_to_change().add(objects, ids, traits);
 }
 
 void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) {
     const FloatingPointScope scope;
-    state_->to_change().move(ids, boxes, false);
+    state_->objects_to_change().move(ids, boxes, false);
 }
 
 void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
     const FloatingPointScope scope;
-    state_->to_change().move(ids, boxes, true);
+    state_->objects_to_change().move(ids, boxes, true);
 }
 
 void Scene::remove(std::span<const ObjectId> ids) {
     const FloatingPointScope scope;
-    state_->to_change().remove(ids);
+    state_->objects_to_change().remove(ids);
 }
 
 void Scene::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
     const FloatingPointScope scope;
-    state_->to_change().set_traits(ids, traits);
+    state_->objects_to_change().set_traits(ids, traits);
 }
 
 const StepResult& Scene::step(std::stop_token stop) {

@@ -11,7 +11,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t ahead = 24;  // objects of a call that are fetched before their turn
+constexpr std::size_t ahead = 24;  // objects of a call that are prefetched before they are processed
 
 Error fault(std::size_t position, const std::string& what) {
     return {ErrorCode::bad_input, "object " + std::to_string(position) + " of the call: " + what};
@@ -30,7 +30,7 @@ Box3d joined(const Box3d& a, const Box3d& b) {
     return both;
 }
 
-/// None for the defaults, one for all, or one for each.
+/// Returns the traits of object `i`. `traits` is empty (defaults), has one element for all objects, or one for each.
 const Traits& traits_at(std::span<const Traits> traits, std::size_t i) {
     static constexpr Traits defaults{};
     return traits.empty() ? defaults : traits[traits.size() == 1 ? 0 : i];
@@ -75,7 +75,7 @@ void SceneObjects::check_ids(std::span<const ObjectId> ids) const {
         if (i + ahead < ids.size()) table_.prefetch_slot(ids[i + ahead].index);
         if (table_.contains(ids[i])) continue;
         throw fault(i, "id " + std::to_string(ids[i].index) + "." + std::to_string(ids[i].generation) +
-                           " is of no object of the scene");
+                           " names no object of the scene");
     }
 }
 
@@ -106,8 +106,8 @@ void SceneObjects::add(const Objects& objects, std::span<ObjectId> ids, std::spa
     std::visit([&](auto boxes) { add_all(boxes, objects.padding, traits, ids); }, objects.boxes);
 }
 
-/// Memory for changes that are about to be made, so that nothing can fail then.
-void SceneObjects::prepare(std::uint64_t changes) { log_.expect(table_, changes); }
+/// Reserves log memory for changes, so that they cannot fail.
+void SceneObjects::prepare(std::uint64_t changes) { log_.reserve(table_, changes); }
 
 template <typename Real>
 void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings,
@@ -171,7 +171,8 @@ void SceneObjects::check_removal(std::span<const ObjectId> ids) {
     const auto twice = std::adjacent_find(sorted_.begin(), sorted_.end());
     if (twice != sorted_.end()) {
         throw Error(ErrorCode::bad_input, "id " + std::to_string(twice->index) + "." +
-                                              std::to_string(twice->generation) + " is to be removed twice");
+                                              std::to_string(twice->generation) +
+                                              " is listed twice; list each object to remove once");
     }
 }
 
@@ -213,11 +214,11 @@ void SceneObjects::finish_step() {
     for (const std::uint32_t index : removed_) table_.release(index);
     removed_.clear();
     moved_ = 0;
-    settle_swept();
+    finish_sweeps();
 }
 
-/// What was swept is where it came to, from now on.
-void SceneObjects::settle_swept() {
+/// Sets each swept object to the box at the end of its sweep. The log counts this as a change of the next step.
+void SceneObjects::finish_sweeps() {
     if (swept_.empty()) return;
     prepare(swept_.size());
     for (const Swept& swept : swept_) {

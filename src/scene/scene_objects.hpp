@@ -1,6 +1,8 @@
-// SceneObjects: the objects of a scene, and the calls that change them: checked as a whole, recorded, then made.
+// SceneObjects: the objects of a scene and the calls that change them.
 //
-// A call that fails changes nothing. The same calls give the same ids, wherever they are made.
+// Invariants
+//   A call is checked as a whole, then recorded, then applied. A call that fails changes nothing.
+//   Ids are a function of the calls alone: equal sequences of calls on two scenes return equal ids.
 #pragma once
 
 #include <cstdint>
@@ -16,34 +18,34 @@ namespace octopair {
 
 class SceneObjects {
 public:
-    /// Whether what objects were before they changed is kept until the step.
+    /// Whether the previous states of changed objects are logged until the next step.
     enum class Changes : std::uint8_t { kept, forgotten };
-    /// An object that is swept until the next step, and where it is then.
+    /// An object that is swept. Until the next step ends, its box in the table bounds its whole way.
     struct Swept {
-        ObjectId id;  ///< of none if it was moved or removed since
-        Box3d place;
+        ObjectId id;  ///< default-constructed if the object was moved or removed since
+        Box3d place;  ///< box of the object after the next step
     };
 
-    /// Throws Error{bad_input} for options that no scene has.
+    /// Throws: Error{bad_input} if options are invalid.
     explicit SceneObjects(const SceneOptions& options, Changes changes = Changes::kept);
-    /// Told of each call between the checks and the first change; null: nobody is.
+    /// Sets the recorder, which receives each call after its checks and before its first change. Null: no recorder.
     void record_to(CallEncoder* recorder) { recorder_ = recorder; }
 
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits);
     void move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept);
     void remove(std::span<const ObjectId> ids);
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
-    /// A step was made: removed objects' indices are free, and what was swept is where it came to.
+    /// Ends a step: frees the indices of removed objects and sets swept objects to their new boxes.
     void finish_step();
 
     const ObjectTable& table() const { return table_; }
     const ChangeLog& log() const { return log_; }
-    /// Objects, or calls for them, since the last step, beside those added.
+    /// Returns the number of changes of objects since the last step. Added objects do not count.
     std::uint64_t moved() const { return moved_; }
-    /// Indices, since the last step.
+    /// Returns the indices of objects that were removed since the last step.
     std::span<const std::uint32_t> removed() const { return removed_; }
     std::span<const Swept> swept() const { return swept_; }
-    /// Error{bad_input} if there is none.
+    /// Returns the id of the object at `index`. Throws: Error{bad_input} if there is no such object.
     ObjectId id(std::uint32_t index) const;
 
 private:
@@ -60,16 +62,17 @@ private:
     template <typename Real>
     void sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes);
     void drop_swept(std::uint32_t index);
-    void settle_swept();
+    void finish_sweeps();
 
     bool float64_;
     ObjectTable table_;
     ChangeLog log_;
     Changes changes_;
-    std::vector<std::uint32_t> removed_;  // since the last step
-    std::vector<ObjectId> sorted_;        // of a call
+    std::vector<std::uint32_t> removed_;  // indices of objects removed since the last step
+    std::vector<ObjectId> sorted_;        // buffer of check_removal()
     std::vector<Swept> swept_;
-    std::vector<std::uint32_t> swept_at_;  // of an index in swept_, or none; empty before the first
+    /// By object index: position in swept_, or `none`. Empty before the first sweep.
+    std::vector<std::uint32_t> swept_at_;
     std::uint64_t moved_ = 0;
     CallEncoder* recorder_ = nullptr;
 };

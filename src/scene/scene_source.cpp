@@ -60,7 +60,7 @@ void SceneSource::pick(std::span<const std::size_t> positions, std::span<Entry> 
 
 RoundingSlack SceneSource::slack() const {
     if (!table_.any_traits()) return all_.slack();
-    // Nothing is certain before counts() has seen the traits.
+    // No hit is certain before is_pair() has checked the traits.
     constexpr float all = std::numeric_limits<float>::infinity();
     return {{all, all, all}};
 }

@@ -1,4 +1,6 @@
-// SceneSource: the objects of a scene for a full detection: those alive, and the pairs that their traits allow.
+// SceneSource: presents a scene to the full detection: the objects that are alive, and the pairs that traits allow.
+//
+// Positions number the objects that are alive, in ascending order of their indices.
 #pragma once
 
 #include <optional>
@@ -9,14 +11,15 @@
 
 namespace octopair {
 
-/// Each has a bit of the other's groups in its mask, and not both are fixed.
+/// Returns whether objects with these traits may form a pair. Each mask must have a bit of the other object's groups,
+/// and at most one of the two objects may be fixed.
 inline bool compatible(const Traits& a, const Traits& b) {
     return (a.mask & b.groups) != 0 && (b.mask & a.groups) != 0 && !(a.fixed && b.fixed);
 }
 
 class SceneSource final : public EntrySource, public PairRule {
 public:
-    /// Borrows the table, which must not change meanwhile.
+    /// Borrows `table`. Requires: the table does not change while this source exists.
     SceneSource(const ObjectTable& table, double margin);
 
     std::size_t size() const override { return std::size_t(table_.size()); }
@@ -33,18 +36,18 @@ public:
     const BoxSource& boxes() const { return all_; }
 
 private:
-    /// Indices in use, one after the other.
+    /// A run of consecutive indices in use.
     struct Run {
-        std::size_t position;  ///< of its first
-        std::uint32_t index;
+        std::size_t position;  ///< position of its first object
+        std::uint32_t index;   ///< index of its first object
     };
     const Run& run_at(std::size_t position) const;
     std::size_t index_at(std::size_t position) const;
 
     const ObjectTable& table_;
     Objects objects_;
-    BoxSource all_;          // by index
-    std::vector<Run> runs_;  // by position
+    BoxSource all_;          // all indices, including those not in use
+    std::vector<Run> runs_;  // ascending by position
 };
 
 }  // namespace octopair

@@ -1,10 +1,11 @@
-// Scene::State: what is behind a Scene, and how its parts work together.
+// Scene::State: the implementation of Scene. Its parts:
 //
-//   objects    as they are now, and what those that changed since the last step were before
-//   octree     the objects as they were at the last step (`octree_is_current_`), or as they are now (`fresh_`)
-//   search     brings a planted octree up to date, and tells which pairs began and ended
-//   linear     for a step that searches all: where too much has changed, or there is no planted octree
-//   history    the pairs of the last step
+//   objects    current objects, and the previous states of objects that changed since the last step
+//   octree     mutable octree, valid if one of two flags is set. `octree_matches_last_step_`: it holds the objects as they
+//              were at the last step. `octree_matches_now_`: it holds the current objects
+//   search     incremental step: brings `octree` up to date and finds the pairs that began and ended
+//   linear     linear octree of a full step, used if too much has changed or `octree` is not of the last step
+//   history    pairs of the last step
 #pragma once
 
 #include <cstdint>
@@ -29,12 +30,12 @@ namespace octopair {
 
 class Scene::State {
 public:
-    /// Throws Error{bad_input}, or Error{io_failed} for the recording.
+    /// Throws: Error{bad_input} if options are invalid; Error{io_failed} if the recording cannot be created.
     explicit State(const SceneOptions& options);
 
-    /// For a call that changes them: octrees of the objects as they are now are none any more.
-    SceneObjects& to_change() {
-        fresh_ = built_ = false;
+    /// Returns the objects for a call that changes them. Octrees of the current objects become outdated.
+    SceneObjects& objects_to_change() {
+        octree_matches_now_ = linear_matches_now_ = false;
         return objects_;
     }
     const SceneObjects& objects() const { return objects_; }
@@ -42,11 +43,11 @@ public:
     const PairList& pairs() { return history_.list(); }
     const PairList& persisting();
     SceneQueries& queries() { return queries_; }
-    /// For queries about the objects as they are now.
-    SceneQueries::Scene view(std::uint32_t groups);
+    /// Returns what a query of the current objects reads. Builds an octree if there is none to use.
+    SceneQueries::View view(std::uint32_t groups);
 
 private:
-    // scene_step.cpp: the octrees, and what they find.
+    // Defined in scene_step.cpp.
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
@@ -60,21 +61,22 @@ private:
     SceneQueries queries_;
     LinearOctree linear_;
     MutableOctree octree_;
-    unsigned refills_ = tuning().scene.refills;  // of the octants of linear_ since they were made; at most as many
+    /// Number of refills of linear_ since its octants were chosen. At the maximum, the next build chooses them anew.
+    unsigned refills_ = tuning().scene.refills;
     EntryRounding rounding_;
-    bool octree_is_current_ = false;  // octree_ holds the objects as they were at the last step
-    bool fresh_ = false;    // octree_ holds them as they are now
-    bool built_ = false;    // linear_ does
-    bool asked_ = false;    // queries made an octree since all was last searched: they may again
-    double full_seconds_ = 0;
-    double seconds_a_change_ = 0;
+    bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
+    bool octree_matches_now_ = false;        // octree_ holds the current objects
+    bool linear_matches_now_ = false;        // linear_ holds the current objects
+    bool queried_ = false;         // a query has built octree_ since the last full step, so its memory is kept
+    double full_seconds_ = 0;      // time of the last full step
+    double seconds_a_change_ = 0;  // estimated time of an incremental step for each changed object
 
     PairHistory history_;
-    PairChanges changes_;  // of the last step
-    PairChanges found_;    // by one that may fail yet
+    PairChanges changes_;  // changes of the last step
+    PairChanges found_;    // changes of the step under way, which may still fail
     PairList persisting_;
     StepResult result_;
-    std::unique_ptr<Recorder> recorder_;  // null: none
+    std::unique_ptr<Recorder> recorder_;  // null: calls are not recorded
 };
 
 }  // namespace octopair

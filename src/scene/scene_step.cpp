@@ -1,4 +1,5 @@
-// The steps of a scene: around what changed where that is cheaper, and otherwise all.
+// Steps of a scene. A step is incremental (searches around changed objects) if that is expected to be cheaper than a full
+// detection; otherwise it is full (searches all objects).
 #include <algorithm>
 #include <chrono>
 #include <new>
@@ -15,13 +16,14 @@ namespace octopair {
 
 namespace {
 
-// In parts of a full detection, as far as costs are known:
-constexpr double worth_it = 0.9;  // may the search for changes cost
-constexpr double pays = 0.5;      // would the last step's changes have cost, so that an octree for the next ones pays
-constexpr double most_patience = 4;  // may the search take, where it turns out dearer than that
+// Costs in multiples of the time of the last full detection.
+constexpr double max_search_cost = 0.9;   // maximum expected cost of an incremental step
+constexpr double max_rebuild_cost = 0.5;  // an octree is built if this step's changes would have cost at most this
+constexpr double abort_cost = 4;          // an incremental step that takes longer, plus abort_seconds, is aborted
+constexpr double abort_seconds = 0.02;    // allowance for other programs that use the processor meanwhile
 
-constexpr double least_patience = 0.02;  // seconds beside, in which others may have had the processor
-constexpr double guessed_cost = 10;      // of an object that changed, in those of one in a full detection
+/// First estimate of the cost of a changed object, in multiples of the cost of an object in a full step.
+constexpr double initial_change_cost = 10;
 
 /// Returns the choice that measured seconds suggest, unless tuning forces another one.
 bool is_wanted_incremental(bool measured) {
@@ -50,14 +52,16 @@ Scene::State::State(const SceneOptions& options)
 const StepResult& Scene::State::step(const std::stop_token& stop) {
     if (recorder_) recorder_->begin_step();
     const auto begin = std::chrono::steady_clock::now();
-    const double changed = double(objects_.log().formers().size());
+    const double changed = double(objects_.log().previous_states().size());
     const double expected = changed * seconds_a_change_;
     const std::uint64_t before = history_.size();
-    const bool unlike = rounding_.exact && objects_.table().any_padding();  // boxes in the octree have not been widened
-    const bool cheap = is_wanted_incremental(expected <= worth_it * full_seconds_);
-    bool full = !octree_is_current_ || unlike || objects_.log().overflowed() || !cheap || history_.is_doubtful();
+    // Exact entries were not widened by paddings.
+    const bool unlike = rounding_.exact && objects_.table().any_padding();
+    const bool cheap = is_wanted_incremental(expected <= max_search_cost * full_seconds_);
+    bool full =
+        !octree_matches_last_step_ || unlike || objects_.log().overflowed() || !cheap || history_.is_inconsistent();
     try {
-        history_.prepare(octree_is_current_);
+        history_.prepare(octree_matches_last_step_);
         const bool found = !full && find_changes(stop);
         if (!found) find_all(stop);
         count_path(found ? Path::step_incremental : Path::step_full);
@@ -75,17 +79,17 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     return result_;
 }
 
-/// After a search that was wrong: the next one begins with the objects alone.
+/// Discards both octrees after a search with wrong results. The next step builds all from the objects.
 void Scene::State::drop_octrees() {
-    octree_is_current_ = fresh_ = built_ = false;
+    octree_matches_last_step_ = octree_matches_now_ = linear_matches_now_ = false;
     refills_ = tuning().scene.refills;
 }
 
 void Scene::State::find_all(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
-    if (!asked_) octree_.release();
-    asked_ = false;
-    octree_is_current_ = fresh_ = false;
+    if (!queried_) octree_.release();
+    queried_ = false;
+    octree_matches_last_step_ = octree_matches_now_ = false;
     const SceneSource source(objects_.table(), margin_);
     build(source, stop);
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
@@ -94,66 +98,68 @@ void Scene::State::find_all(const std::stop_token& stop) {
     scan(linear_, {source, stop}, ascending, {});
     ascending.append_sorted(stop);
     full_seconds_ = seconds_since(begin);
-    const double guess = guessed_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
-    // What was learned fades, so that it is tried again.
+    const double guess =
+        initial_change_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
+    // The measured estimate decays, so that an incremental step is tried again later.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    const bool build_octree = is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= pays * full_seconds_);
+    const bool build_octree =
+        is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= max_rebuild_cost * full_seconds_);
     if (build_octree) {
         count_path(Path::octree_rebuilt);
         octree_.build(linear_, stop);
         linear_ = {};
         refills_ = tuning().scene.refills;
-        built_ = false;
+        linear_matches_now_ = false;
     }
-    history_.take_over(found_);  // the last step: one that fails before has changed nothing
-    octree_is_current_ = build_octree;
+    history_.take_over(found_);  // last, so that a failure before has changed nothing
+    octree_matches_last_step_ = build_octree;
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
     TeamExecutor executor(team_);
     const EntryRounding rounding{source.boxes().exact(), source.boxes().rounding()};
-    // Where boxes are moved to an origin, it is another one each time.
+    // Rounded boxes are relative to an origin that is chosen anew for each build, so old octants do not fit new entries.
     const bool refill = refills_ < tuning().scene.refills && rounding.exact && rounding_.exact;
     const unsigned refills = refill ? refills_ + 1 : 0;
     refills_ = tuning().scene.refills;
-    built_ = false;
+    linear_matches_now_ = false;
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;
     rounding_ = rounding;
-    built_ = true;
+    linear_matches_now_ = true;
 }
 
-SceneQueries::Scene Scene::State::view(std::uint32_t groups) {
-    const bool follows = octree_is_current_ && !objects_.log().overflowed() && !history_.is_doubtful();
-    if (!follows && !fresh_) {
+SceneQueries::View Scene::State::view(std::uint32_t groups) {
+    const bool follows = octree_matches_last_step_ && !objects_.log().overflowed() && !history_.is_inconsistent();
+    if (!follows && !octree_matches_now_) {
         count_path(Path::octree_for_queries);
-        octree_is_current_ = false;
-        if (!built_) build(SceneSource(objects_.table(), margin_), {});
+        octree_matches_last_step_ = false;
+        if (!linear_matches_now_) build(SceneSource(objects_.table(), margin_), {});
         octree_.build(linear_, {});
-        fresh_ = asked_ = true;
+        octree_matches_now_ = queried_ = true;
     }
     return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
 }
 
-/// False if that is too dear after all.
+/// Runs an incremental step. Returns false if it was aborted because it took too long.
 bool Scene::State::find_changes(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
-    const std::size_t changed = objects_.log().formers().size();
-    const auto patience = std::chrono::duration<double>(most_patience * full_seconds_ + least_patience);
-    const ChangeSearch::Limits limits{begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience),
-                                      objects_.table().size() / 2 + tuning().scene.visits,
-                                      history_.size() + tuning().scene.changed_pairs, stop};
-    octree_is_current_ = false;  // until all of this is done
+    const std::size_t changed = objects_.log().previous_states().size();
+    const auto time_limit = std::chrono::duration<double>(abort_cost * full_seconds_ + abort_seconds);
+    const ChangeSearch::Limits limits{
+        begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(time_limit),
+        objects_.table().size() / 2 + tuning().scene.visits, history_.size() + tuning().scene.changed_pairs, stop};
+    octree_matches_last_step_ = false;  // until everything below has succeeded
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
-    } catch (const ChangeSearch::TooDear&) {
+    } catch (const ChangeSearch::LimitReached&) {
         count_path(Path::step_too_dear);
         seconds_a_change_ = std::max(seconds_a_change_, full_seconds_ / double(changed));
         return false;
     }
     history_.apply(found_);
-    octree_is_current_ = true;
-    constexpr std::size_t enough = 64;  // to tell what one costs
+    octree_matches_last_step_ = true;
+    constexpr std::size_t enough = 64;  // minimum number of changes for a measurement of the cost of one
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
     return true;
 }

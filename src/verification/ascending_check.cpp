@@ -1,4 +1,4 @@
-// Ascending order: rows are compared with those of the second algorithm as soon as they are complete.
+// Check of ascending results: each row is compared with the row of the second algorithm as soon as the row is complete.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t pairs_at_once = 1 << 16;
 
-/// The first difference between the pairs of a row, both ascending. `given` is the beginning of a row if `prefix`.
+/// Returns the first difference between the expected and the given pairs of a row, both ascending. With `prefix`, `given` may
+/// be the beginning of the row.
 ResultFault difference(std::uint32_t a, std::span<const std::uint32_t> expected, std::span<const Pair> given,
                        bool prefix = false) {
     std::size_t i = 0;
@@ -58,7 +59,7 @@ private:
         last_ = pair;
     }
 
-    /// The rows before `end`, of which all pairs were taken.
+    /// Compares the rows before `end`. Requires: all pairs of these rows were taken.
     void compare_rows(std::uint32_t end) {
         const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> expected) {
             const auto [begin, after] = std::equal_range(held_.begin(), held_.end(), Pair{a, 0}, by_row);
@@ -71,7 +72,7 @@ private:
         held_.erase(held_.begin(), std::lower_bound(held_.begin(), held_.end(), Pair{end, 0}, by_row));
     }
 
-    /// The last row of a limited result, and that one more pair exists.
+    /// Compares the last row of a truncated result. Checks that at least one more pair exists.
     void compare_prefix() {
         std::atomic<bool> more = false;
         if (last_) {
@@ -100,7 +101,7 @@ private:
     static bool by_row(const Pair& left, const Pair& right) { return left.a < right.a; }
 
     const RowPass& pass_;
-    std::vector<Pair> held_;  // ascending; of rows from next_row_ on
+    std::vector<Pair> held_;  // pairs of rows from next_row_ on, ascending
     std::uint32_t next_row_ = 0;
     std::optional<Pair> last_;
 };

@@ -30,11 +30,11 @@ bool is_valid(const Box<Real>& box) {
     return true;
 }
 
-/// An order of coordinates that are not numbers would be none.
+/// Throws: Error{engine_failed} unless `valid`. NaN coordinates would break the ordering of boxes.
 void check_valid(bool valid, std::size_t object, const char* what) {
     if (valid) return;
     throw Error(ErrorCode::engine_failed, "verification failed: the " + std::string(what) + " of object " +
-                                              std::to_string(object) + " is not valid, but was not refused");
+                                              std::to_string(object) + " is not valid, but the engine accepted it");
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ public:
         for (double& extent : extent_) extent = std::max(extent, std::numeric_limits<double>::min());
     }
 
-    /// Level by level while a level has too few nodes for all threads, then a subtree a task.
+    /// Builds level by level while a level has too few nodes for all threads. Then each task builds a subtree.
     void build(Team& team) {
         std::vector<Place> level = {{0, 0, (tree_.items_.size() + leaf_boxes - 1) / leaf_boxes}};
         std::vector<Place> above;
@@ -80,8 +80,8 @@ private:
         return children;
     }
 
-    /// The coordinate that separates the boxes of a run best: by its interquartile range in a sample, in units of the mean
-    /// extent of all boxes on its axis. `depth` decides between equal ones.
+    /// Returns the coordinate that separates the boxes of a run best: the one with the largest interquartile range in a sample,
+    /// in units of the mean extent of all boxes on its axis. Among equal coordinates, `depth` decides.
     unsigned best_coordinate(const Place& place, unsigned depth) const {
         const std::size_t begin = tree_.begin_of(place), count = tree_.end_of(place) - begin;
         std::array<double, samples> sample;
@@ -153,7 +153,7 @@ private:
 
     BoxTree& tree_;
     const std::stop_token& stop_;
-    std::array<double, 3> extent_ = {};  // half the mean of all boxes on each axis
+    std::array<double, 3> extent_ = {};  // half the mean extent of all boxes, by axis
 };
 
 template <typename Real>
@@ -179,7 +179,7 @@ std::size_t BoxTree<Real>::end_of(const Place& place) const {
 template <typename Real>
 void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& found) const {
     if (nodes_.empty()) return;
-    // One place a level waits, and each level halves the at most 2^28 leaves.
+    // At most one place of each level waits. Each level halves the number of leaves, which is at most 2^28.
     std::array<Place, 64> waiting;
     std::size_t count = 0;
     waiting[count++] = {0, 0, (nodes_.size() + 1) / 2};
@@ -196,7 +196,8 @@ void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& foun
     }
 }
 
-/// Without a branch on a test's outcome, which no processor can predict: each index is written, and the hits are kept.
+/// Has no branch on the outcome of a test, which the processor could not predict: each index is stored, and only a hit advances
+/// the count.
 template <typename Real>
 void BoxTree<Real>::find_in_leaf(const BoxQuery& query, const Place& leaf, std::vector<std::uint32_t>& found) const {
     std::array<std::uint32_t, leaf_boxes> hits;

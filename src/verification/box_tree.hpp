@@ -1,6 +1,6 @@
 // BoxTree: a k-d tree over boxes as points of six dimensions (min x, y, z, max x, y, z).
 //
-// Result     every box of a set that is within reach of a query box, judged by the rule of objects.hpp in float64, on the
+// Result     every box of a set that is within reach of a query box. The rule of objects.hpp is evaluated in float64, on the
 //            numbers that the caller gave.
 // Invariants 1. A node covers a run of leaves; a leaf covers `leaf_boxes` boxes (the last leaf may have fewer). The left
 //               child covers the first half of the run, and follows its parent. The right child follows the left subtree.
@@ -9,10 +9,10 @@
 //            3. A node is skipped only if the rule fails for its hull. Each operation of the rule is monotone in float64:
 //               hull.max >= b.max gives query.min - hull.max <= query.min - b.max, and likewise b.min - query.max. A
 //               greater padding gives a greater reach. So the rule then fails for each box of the node.
-//            4. A run is halved by the median of the coordinate that separates its boxes best, in units of the mean extent
-//               of all boxes on the axis. So the depth is log2(n / 16) for any boxes, a family of rods is divided across
-//               its length alone, and a flat world on two axes. (With the six coordinates in turn, a query visits
-//               O(n^(5/6) + found) nodes at the worst, but 50 times the nodes on plates and twice on rods.)
+//            4. A run is halved by the median of the coordinate that separates its boxes best. Distances are measured in
+//               units of the mean extent of all boxes on the axis. So the depth is log2(n / 16) for any boxes. A family of
+//               rods is divided across its length alone, and a flat world on two axes. (Cycling through the six coordinates
+//               bounds a query by O(n^(5/6) + found) nodes. But it visits 50 times as many nodes on plates, twice on rods.)
 // Memory     float32: 33 bytes a box; float64: 64 bytes.
 #pragma once
 
@@ -32,10 +32,10 @@ struct BoxQuery {
     Box3d box;
     double padding = 0;
     double margin = 0;
-    std::int64_t above = -1;  ///< only boxes of a larger index are wanted
+    std::int64_t above = -1;  ///< only boxes with a larger index are found
 };
 
-/// The rule of objects.hpp. `padding` is that of `box`.
+/// Returns whether `box` is within reach of the query, by the rule of objects.hpp. `padding`: padding of `box`.
 template <typename Real>
 bool is_within_reach(const BoxQuery& query, const Box<Real>& box, double padding) {
     const double reach = query.margin + (query.padding + padding);
@@ -89,7 +89,7 @@ private:
 
     std::vector<Item> items_;
     std::vector<Node> nodes_;
-    std::span<const double> padding_;  // of the caller, by index
+    std::span<const double> padding_;  // the caller's array, by index
 };
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// The number of pairs, where no pair is at hand.
+// Check of counts: the number of pairs is compared, because a count has no pairs to compare.
 #include <atomic>
 
 #include "verification/pair_fault.hpp"

@@ -16,7 +16,7 @@ using ResultFault = std::optional<std::string>;
 /// Throws: Error{engine_failed} with this message.
 [[noreturn]] void throw_verification_failed(const std::string& message);
 
-/// "pair (12, 40)"
+/// Returns a name such as "pair (12, 40)".
 std::string name_of_pair(const Pair& pair);
 
 /// Returns whether both numbers of a pair name objects: a < rows, b < columns, and a < b within one set.

@@ -15,10 +15,10 @@
 
 namespace octopair {
 
-/// How a call says that it ended.
+/// Result of a call, as its summary reports it.
 struct CallEnd {
-    std::uint64_t pairs = 0;                             ///< as the summary says
-    bool truncated = false;                              ///< as the summary says
+    std::uint64_t pairs = 0;                             ///< number of pairs in the summary
+    bool truncated = false;                              ///< Summary::truncated
     std::span<const std::span<const Pair>> chunks = {};  ///< all pairs once more, where a list has them; else empty
 };
 
@@ -34,18 +34,18 @@ public:
     virtual std::string_view not_checked(const CallEnd& end) const = 0;
 };
 
-/// Ascending order. Exact: each row is compared, pair by pair, once its last pair was taken. Names the first pair in
-/// which the result differs. Memory: 1 MiB and the pairs of one object.
+/// Returns a check of results in ascending order. Exact: each row is compared, pair by pair, once its last pair was taken.
+/// Names the first pair in which the result differs. Memory: 1 MiB and the pairs of one object.
 std::unique_ptr<ResultCheck> make_ascending_check(const RowPass& pass);
 
-/// Any order. Each pair is judged by the pair rule when it is taken, so that one that does not belong is named at once.
-/// For each object the number of its pairs and a sum (mod 2^64) of hashes of their b are compared at the end: pairs that
-/// are missing or were given twice pass unseen with a probability of 2^-128. Of a truncated result an object's pairs
-/// may be fewer, and then those given twice are found if the limit is at most 2^20 or one pair an object: all are kept.
-/// Memory: 12 bytes an object, and what is kept.
+/// Returns a check of results in any order. Each pair is tested by the pair rule when it is taken, so a wrong pair is named at
+/// once. For each object, the number of its pairs and a sum (mod 2^64) of hashes of their b are compared at the end. Missing
+/// and duplicate pairs are overlooked with a probability of 2^-128. In a truncated result an object may have fewer pairs. Then
+/// duplicate pairs are found only if the limit is at most 2^20 or the number of objects: all pairs are kept for that.
+/// Memory: 12 bytes an object, and the kept pairs.
 std::unique_ptr<ResultCheck> make_set_check(const RowPass& pass, std::optional<std::uint64_t> limit);
 
-/// The number of pairs alone. Memory: none.
+/// Returns a check of the number of pairs alone. Memory: none.
 std::unique_ptr<ResultCheck> make_count_check(const RowPass& pass);
 
 }  // namespace octopair

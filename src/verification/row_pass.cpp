@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t block_rows = 256;
 
-/// The fault of the lowest row, out of those that several threads report.
+/// Keeps the fault of the lowest row among the faults that several threads report.
 class LowestFault {
 public:
     void report(std::uint64_t row, std::string fault) {

@@ -1,6 +1,6 @@
 // RowPass: visits rows of the second algorithm on the threads of a team.
 //
-// Result     the lowest row at which a visit reported a difference, so that it does not depend on threads.
+// Result     the difference at the lowest row where a visit reported one, so the result does not depend on threads.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,7 @@ enum class Columns : std::uint8_t { ascending, any };
 
 class RowPass {
 public:
-    /// `progress` may be empty; it receives the share of all rows that lie before the end of what was visited. Borrows
-    /// all but the token.
+    /// `progress` may be empty; it receives the fraction of all rows that are visited, 0 to 1. Borrows all but the token.
     RowPass(const RowSearch& rows, Team& team, std::stop_token stop, const ProgressSink& progress);
 
     const RowSearch& rows() const { return rows_; }
@@ -33,8 +32,8 @@ public:
 
     /// Handles one row. Called on several threads at once.
     using Visit = std::function<ResultFault(std::uint32_t a, std::span<const std::uint32_t> columns)>;
-    /// Visits the rows of a range, each with its columns, in the order asked for. Rows after one with a fault may be left
-    /// out. Returns the fault of the lowest row. Throws: Error{cancelled}.
+    /// Visits the rows of a range, each with its columns in the order `order`. Rows after a row with a fault may be skipped.
+    /// Returns the fault of the lowest row. Throws: Error{cancelled}.
     ResultFault run(const RowRange& range, Columns order, const Visit& visit) const;
 
 private:

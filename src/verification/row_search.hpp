@@ -29,8 +29,8 @@ struct SearchedObjects {
 class RowSearch {
 public:
     /// Borrows the boxes and the padding. Requires: a finite margin >= 0, and a valid `first` in a join.
-    /// Throws: Error{engine_failed} for a box or a padding of the set that is searched that is not valid;
-    /// Error{cancelled}, std::bad_alloc. Complexity: O(n log n) / threads.
+    /// Throws: Error{engine_failed} for an invalid box or padding of the searched set; Error{cancelled}, std::bad_alloc.
+    /// Complexity: O(n log n) / threads.
     RowSearch(const SearchedObjects& objects, Team& team, const std::stop_token& stop = {});
 
     std::uint32_t rows() const { return std::uint32_t(first_.size()); }
@@ -39,12 +39,12 @@ public:
     bool is_join() const { return join_; }
 
     /// Replaces `columns` by the b of all pairs (a, b), ascending. Requires: a < rows(). Thread safety: full.
-    /// Complexity: O(log n + pairs log pairs) where boxes are small, O(sqrt(n)) and more where they are rods that cross.
+    /// Complexity: O(log n + pairs log pairs) for small boxes; O(sqrt(n)) and more for rods that cross.
     void row(std::uint32_t a, std::vector<std::uint32_t>& columns) const;
     /// Like row(), in no particular order.
     void unordered_row(std::uint32_t a, std::vector<std::uint32_t>& columns) const;
 
-    /// Whether (a, b) is a pair. Requires: a < rows(), b < columns(); b > a within one set. Thread safety: full.
+    /// Returns whether (a, b) is a pair. Requires: a < rows(), b < columns(); b > a within one set. Thread safety: full.
     bool is_pair(std::uint32_t a, std::uint32_t b) const;
 
 private:

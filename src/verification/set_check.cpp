@@ -1,5 +1,5 @@
-// Any order: each pair is judged alone. Each object's pairs are counted and hashed, which names what differs; all pairs have
-// a hash of 128 bits, which decides. The hashes are sums, so the order of the pairs does not matter.
+// Check of results in any order. Each pair is tested alone. The pairs of each object are counted and hashed, to name the object
+// that differs. A 128-bit hash of all pairs decides. Hashes are sums, so the order of the pairs does not matter.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -12,8 +12,8 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t pairs_a_task = 1 << 12;
-constexpr std::uint64_t most_kept = 1 << 20;  // or one a row
+constexpr std::size_t pairs_per_task = 1 << 12;
+constexpr std::uint64_t max_kept_pairs = 1 << 20;  // or the number of rows, if larger
 
 /// The finaliser of splitmix64, by Steele, Lea and Flood 2014.
 std::uint64_t mixed(std::uint64_t z) {
@@ -22,7 +22,7 @@ std::uint64_t mixed(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-/// A hash of b whose sums tell sets apart.
+/// Returns a hash of b. Sums of these hashes differ for different sets, with high probability.
 std::uint64_t hash_of(std::uint32_t b) { return mixed((std::uint64_t(b) + 1) * 0x9e3779b97f4a7c15u); }
 
 /// A hash of a set of pairs: two sums mod 2^64 of independent hashes of each pair.
@@ -50,10 +50,10 @@ private:
     std::atomic<std::uint64_t> first_ = 0, second_ = 0;
 };
 
-/// The pairs of an object.
+/// Number and hash of an object's pairs.
 struct RowSum {
     std::uint64_t pairs = 0;
-    std::uint64_t hash = 0;  ///< of all b, mod 2^64
+    std::uint64_t hash = 0;  ///< sum of the hashes of all b, mod 2^64
 
     void add(std::uint32_t b) {
         ++pairs;
@@ -74,17 +74,17 @@ public:
         : pass_(pass),
           pairs_(pass.rows().rows()),
           hashes_(pass.rows().rows()),
-          keeps_(limit && *limit <= std::max<std::uint64_t>(most_kept, pass.rows().rows())) {}
+          keeps_(limit && *limit <= std::max<std::uint64_t>(max_kept_pairs, pass.rows().rows())) {}
 
     void take(std::span<const Pair> pairs) override {
         if (pairs.empty()) return;
         std::atomic<std::size_t> wrong = pairs.size();
-        pass_.team().for_each((pairs.size() + pairs_a_task - 1) / pairs_a_task, [&](std::size_t task, unsigned) {
-            const std::size_t end = std::min(pairs.size(), (task + 1) * pairs_a_task);
+        pass_.team().for_each((pairs.size() + pairs_per_task - 1) / pairs_per_task, [&](std::size_t task, unsigned) {
+            const std::size_t end = std::min(pairs.size(), (task + 1) * pairs_per_task);
             SetSum part;
-            for (std::size_t i = task * pairs_a_task; i < end; ++i) part.add(pairs[i]);
+            for (std::size_t i = task * pairs_per_task; i < end; ++i) part.add(pairs[i]);
             given_.add(part);
-            for (std::size_t i = task * pairs_a_task; i < std::min(end, wrong.load(std::memory_order_relaxed)); ++i) {
+            for (std::size_t i = task * pairs_per_task; i < std::min(end, wrong.load(std::memory_order_relaxed)); ++i) {
                 if (take_one(pairs[i], i > 0 ? pairs[i - 1] : last_)) continue;
                 for (std::size_t least = wrong; i < least && !wrong.compare_exchange_weak(least, i);) {
                 }
@@ -96,7 +96,7 @@ public:
     }
 
     void finish(const CallEnd& end) override {
-        if (end.truncated) find_twice();
+        if (end.truncated) check_kept_pairs();
         std::atomic<std::uint64_t> all = 0;
         SharedSetSum expected_sum;
         const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> columns) -> ResultFault {
@@ -126,14 +126,14 @@ public:
     }
 
 private:
-    /// Finds pairs that were given twice: the sums of an incomplete row do not show them.
-    void find_twice() {
+    /// Throws if a kept pair was given twice. The sums of an incomplete row do not show this.
+    void check_kept_pairs() {
         std::sort(kept_.begin(), kept_.end());
         const auto twice = std::adjacent_find(kept_.begin(), kept_.end());
         if (twice != kept_.end()) throw_verification_failed(name_of_pair(*twice) + " was given twice");
     }
 
-    /// False for a pair that must not be in the result. `before` is the pair that was given before it.
+    /// Adds a pair to the sums. Returns false if the pair must not be in the result. `before`: the previous pair of the result.
     bool take_one(const Pair& pair, const std::optional<Pair>& before) {
         if (!has_position(pass_.rows(), pair) || !pass_.rows().is_pair(pair.a, pair.b) || before == pair) return false;
         std::atomic_ref(pairs_[pair.a]).fetch_add(1, std::memory_order_relaxed);
@@ -164,7 +164,7 @@ private:
         return name_of_pair({a, *missing}) + " is missing";
     }
 
-    /// The pairs are gone: one that is missing, or was given twice, is known by what it lacks or adds to the sum.
+    /// Used if the pairs are not stored. The difference of the sums is the hash of a single missing or duplicate pair.
     std::string fault_by_sums(std::uint32_t a, std::span<const std::uint32_t> expected) const {
         const std::uint64_t lacks = sum_of(expected).hash - hashes_[a];
         for (const std::uint32_t b : expected) {
@@ -184,12 +184,12 @@ private:
     }
 
     const RowPass& pass_;
-    std::vector<std::uint32_t> pairs_;   // given, of each object as a
-    std::vector<std::uint64_t> hashes_;  // of their b, summed up
+    std::vector<std::uint32_t> pairs_;   // number of given pairs, by a
+    std::vector<std::uint64_t> hashes_;  // sum of the hashes of their b, by a
     SharedSetSum given_;
     std::optional<Pair> last_;
     bool keeps_;
-    std::vector<Pair> kept_;  // all, of a result with a small limit
+    std::vector<Pair> kept_;  // all given pairs, if `keeps_`: the limit is small
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ std::unique_ptr<ResultCheck> make_check(const Verifier::Setup& setup, const RowP
 
 }  // namespace
 
-/// Made when the engine has accepted the objects: nothing else may read boxes that could be wrong.
+/// Created with the first pair or at the end. By then the engine has accepted the objects, so their boxes are valid.
 struct Verifier::Parts {
     Parts(const Setup& setup, const ProgressSink& progress)
         : team(setup.threads),
@@ -62,17 +62,17 @@ Verification Verifier::finish(const CallEnd& end) {
     return verification;
 }
 
-/// The summary against the pairs themselves and the limit.
+/// Compares the summary with the number of pairs that were given, and with the limit.
 void Verifier::check_numbers(const CallEnd& end) const {
     const auto fail = [&](const std::string& words) {
         throw_verification_failed("the summary says " + std::to_string(end.pairs) + " pairs, but " + words);
     };
     if (setup_.kind != ResultKind::count && end.pairs != taken_) fail(std::to_string(taken_) + " were given");
-    if (!setup_.limit && end.truncated) fail("it says truncated without a limit");
+    if (!setup_.limit && end.truncated) fail("it is truncated without a limit");
     if (!setup_.limit) return;
     if (end.pairs > *setup_.limit) fail("the limit is " + std::to_string(*setup_.limit));
     if (end.truncated && end.pairs < *setup_.limit) {
-        fail("it says truncated below the limit of " + std::to_string(*setup_.limit));
+        fail("it is truncated below the limit of " + std::to_string(*setup_.limit));
     }
 }
 

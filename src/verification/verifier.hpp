@@ -29,15 +29,15 @@ public:
     };
     explicit Verifier(const Setup& setup) : setup_(setup) {}
 
-    /// Pairs in the order of the result, in pieces of any length. Reads the objects, which the engine must have accepted.
+    /// Takes the next pairs of the result, in pieces of any length. Requires: the engine has accepted the objects.
     /// Throws: Error{engine_failed} that names a pair; Error{cancelled}, std::bad_alloc.
     void take(std::span<const Pair> pairs);
-    /// Call once, after the last pair. Throws as take().
+    /// Checks the rest. Call once, after the last pair. Throws: as take().
     Verification finish(const CallEnd& end);
 
-    /// From now on receives how much of the check is done, 0 to 1. May be empty.
+    /// Sets a function that receives the progress of the check from now on, 0 to 1. May be empty.
     void tell(ProgressSink progress) { progress_ = std::move(progress); }
-    /// Wall clock within these functions.
+    /// Returns the wall-clock time spent in take() and finish().
     double seconds() const { return seconds_; }
 
 private:
@@ -47,7 +47,7 @@ private:
 
     Setup setup_;
     ProgressSink progress_;
-    std::shared_ptr<Parts> parts_;  // none before the first pair
+    std::shared_ptr<Parts> parts_;  // null before the first pair
     std::uint64_t taken_ = 0;
     double seconds_ = 0;
 };

@@ -1,4 +1,4 @@
-// Buffer and GrowingArray: sizes, contents, alignment.
+// Tests Buffer and GrowingArray: sizes, contents and alignment.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// RadixSort against std::stable_sort, for both kinds of key and for sizes on both sides of its threshold.
+// Tests RadixSort against std::stable_sort, for both key types and for sizes on both sides of its threshold.
 #include "base/radix_sort.hpp"
 
 #include <gtest/gtest.h>

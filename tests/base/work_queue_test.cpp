@@ -1,4 +1,4 @@
-// WorkQueue: order, choice, end, and the removal of obsolete items.
+// Tests WorkQueue: order, choice of items, end, and the removal of obsolete items.
 #include "base/work_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ TEST(WorkQueue, ObsoleteItemsAreRemovedBeforeTheQueueDoubles) {
     EXPECT_GE(queue.waiting(), 1000u);
 }
 
-/// An item whose destructor adds another one.
+/// An item whose destructor adds another item.
 struct Chain {
     WorkQueue<std::shared_ptr<Chain>>* queue;
     int left;

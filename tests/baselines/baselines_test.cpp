@@ -1,4 +1,4 @@
-// All baselines agree, pair for pair, with the oracle.
+// Tests that all baselines find exactly the pairs of the oracle.
 #include "baselines/baselines.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST(BaselinesPaper, BothSortsGiveTheSame) {
     }
 }
 
-/// Entries as a slave makes them, of codes on all levels up to `level`.
+/// Makes the entries of a slave, with codes on all levels up to `level`.
 std::vector<PaperEntry> random_entries(unsigned level) {
     samples::RandomStream random(1, level);
     std::vector<PaperEntry> entries;

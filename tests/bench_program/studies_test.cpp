@@ -1,4 +1,4 @@
-// octopair-bench paper: short runs.
+// Tests `octopair-bench paper` with short runs.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"

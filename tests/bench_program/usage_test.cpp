@@ -1,4 +1,4 @@
-// The command line of octopair-bench: wrong options get exit status 2 and one line, and nothing is measured.
+// Tests the command line of octopair-bench: wrong options give exit status 2 and one line, and no measurement starts.
 #include <algorithm>
 
 #include "cli/program.hpp"

@@ -1,4 +1,4 @@
-// Boxes on their way in: every fault is seen, wherever it stands, and rounding goes outward.
+// Tests the input of boxes: every fault is found at every position, and rounding goes outward.
 #include "boxes/box_source.hpp"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(BoxKernel, AgreesWithItsSpecification) {
     EXPECT_GT(seen[1], 1000u);
 }
 
-/// The kernel and the specification on boxes of special and of ordinary numbers.
+/// Compares the kernel with the specification on boxes of special and of ordinary numbers.
 template <typename Real>
 void check_rounding(const OutwardRounding& rounding, bool padded) {
     const Real most = std::numeric_limits<Real>::max();

@@ -1,5 +1,5 @@
-// Real assemblies through the program: nodes and triangles tell the same of who meets whom, and so do all engines and any
-// number of threads.
+// Tests real assemblies with the program. Collisions of nodes and of triangles agree, for all engines and any number of
+// threads.
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -13,7 +13,7 @@ namespace {
 
 #if defined(OCTOPAIR_WITH_MESHES) && defined(OCTOPAIR_WITH_PIPELINE)
 
-/// Names, in order.
+/// Two names, in order.
 using Pairing = std::pair<std::string, std::string>;
 
 class Assemblies : public ProgramTest, public ::testing::WithParamInterface<std::string> {
@@ -33,7 +33,7 @@ protected:
         return rows;
     }
 
-    /// Of two nodes, in alphabetical order.
+    /// Returns the names of two nodes, in alphabetical order.
     static Pairing pairing(const nlohmann::json& row) {
         const std::string a = row["a_name"], b = row["b_name"];
         return std::minmax(a, b);

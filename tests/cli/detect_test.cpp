@@ -1,4 +1,4 @@
-// octopair detect, where all goes well.
+// Tests `octopair detect` on valid input.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// octopair detect --engine: the same bytes from worker processes as from threads, whatever happens to them.
+// Tests `octopair detect --engine`: worker processes write the same bytes as threads, even if workers fail.
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -33,7 +33,7 @@ protected:
         }
     }
 
-    /// The same of a file, and of all files of a moving scene.
+    /// Compares the output for a file, and for all files of a moving scene.
     void compare_files(const std::string& arguments, const std::string& name) const {
         const auto contents = [&](const std::string& options) {
             const Outcome outcome =
@@ -178,14 +178,14 @@ TEST_F(Engines, WhatGoesTogether) {
     save_boxes("a.npy", {0});
     for (const auto& [arguments, message] : std::map<std::string, std::string>{
              {"--engine processes --threads 2",
-              "--threads: --engine processes has a thread a worker; --workers says how many"},
+              "--threads: not with --engine processes; --workers sets the number of worker processes"},
              {"--workers 2", "--workers: the local engine has threads; workers need --engine processes"},
              {"--engine local --workers 2", "--workers: the local engine has threads; workers need --engine processes"},
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
-             {"--engine mpi --workers 2", "--workers: --engine mpi has ranks; mpirun -n says how many"},
+             {"--engine mpi --workers 2", "--workers: not with --engine mpi; mpirun -n sets the number of ranks"},
              {"--engine mpi --events", "--events: not with --engine mpi"},
-             {"--engine threads", "--engine: 'threads' is not known; this version has: local, processes, mpi"}}) {
+             {"--engine threads", "--engine: 'threads' is not a valid value; valid values: local, processes, mpi"}}) {
         const Outcome outcome = run("detect a.npy " + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;
         EXPECT_EQ(outcome.err, "octopair: " + message + "\n");

@@ -1,4 +1,4 @@
-// octopair detect --events: always the difference of what detect finds frame by frame.
+// Tests `octopair detect --events`: events equal the differences between the results of detect on consecutive frames.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 using Rows = std::vector<double>;  // six numbers a box, of any number of frames
 
-/// Lines after the header, as numbers.
+/// Returns the lines after the header, as numbers.
 std::vector<std::vector<std::uint32_t>> csv_rows(const std::string& text) {
     std::vector<std::vector<std::uint32_t>> rows;
     std::istringstream lines(text);
@@ -30,7 +30,7 @@ std::vector<std::vector<std::uint32_t>> csv_rows(const std::string& text) {
     return rows;
 }
 
-/// What --events should write, from what detect writes of the same scene.
+/// Computes the expected output of --events from detect's output for the same scene.
 std::string expected_events(const std::string& detected, std::uint32_t frames) {
     std::map<std::uint32_t, std::set<std::pair<std::uint32_t, std::uint32_t>>> pairs;
     for (const auto& row : csv_rows(detected)) pairs[row[0]].insert({row[1], row[2]});

@@ -1,4 +1,4 @@
-// What goes wrong while it runs: the documented exit status, a clear line, and nothing half-written.
+// Tests failures at run time: the documented exit status, a clear message, and no partial files.
 #include <cmath>
 
 #include "cli/program.hpp"
@@ -18,7 +18,7 @@ protected:
                 .status,
             0);
     }
-    /// 0, or why the disk of 1 MB cannot be made here.
+    /// Returns whether a disk of 1 MB can be mounted here.
     bool can_mount() const {
         return shell("mkdir -p disk && mount -t tmpfs -o size=1m tmpfs disk && umount disk").status == 0;
     }

@@ -1,4 +1,4 @@
-// octopair generate: whole files of every kind, the same every time.
+// Tests `octopair generate`: complete files of every kind, identical on every run.
 #include "cli/program.hpp"
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"

@@ -1,4 +1,4 @@
-// JSON scenes through the program: pairs of the boxes of their shapes.
+// Tests JSON scenes with the program: the result holds the pairs of the boxes of the shapes.
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -38,7 +38,7 @@ TEST_F(JsonSceneProgram, RefusesInOneLine) {
     const Outcome mixed = run("detect s.json b.csv --quiet"), wrong = run("detect wrong.json --quiet");
     EXPECT_EQ(mixed.status, 3);
     EXPECT_EQ(mixed.err,
-              "octopair: b.csv: boxes alone beside shapes in s.json; what is one set has the same of each\n");
+              "octopair: b.csv: has only boxes, but s.json has shapes; the files of one set must have the same\n");
     EXPECT_EQ(wrong.status, 3);
     EXPECT_EQ(wrong.err, "octopair: wrong.json: object 0: shape: radius: -1 is not a number > 0\n");
 }

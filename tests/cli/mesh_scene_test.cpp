@@ -1,4 +1,5 @@
-// Mesh scenes from Debian packages: counts that two independent programs found, and files that importers choke on.
+// Tests mesh scenes from Debian packages. Expected counts come from two independent programs. Some files are known to
+// break importers.
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -8,7 +9,7 @@ namespace fs = std::filesystem;
 
 class MeshScene : public ProgramTest {
 protected:
-    /// The unpacked file, or "" (and the test is skipped) where scripts/data has not been run.
+    /// Returns the path of the unpacked file, or "" (and skips the test) if scripts/data has not been run.
     std::string data(const std::string& name) const {
         const std::string path = std::string(OCTOPAIR_DATA) + "/" + name;
         return fs::exists(path) ? path : "";

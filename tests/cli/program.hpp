@@ -1,4 +1,4 @@
-// Runs the built program as a user would, in a directory of its own.
+// Runs the built program as a user would, in a temporary directory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ protected:
     std::string file(const std::string& name) const { return directory_.file(name); }
     std::string content(const std::string& name) const { return read_file(file(name)); }
 
-    /// Unit boxes at these places on the x axis, as float32.
+    /// Writes unit boxes at the given places on the x axis, as float32.
     void save_boxes(const std::string& name, const std::vector<float>& places) const {
         write_file(file(name), npy_of(io::NpyType::float32, {places.size(), 6}, rows_of(places)));
     }

@@ -1,4 +1,4 @@
-// octopair replay: what it says of a recording, and when it refuses one.
+// Tests `octopair replay`: its output for valid recordings, and the recordings that the program refuses.
 #include "cli/program.hpp"
 #include "octopair/octopair.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 class Replay : public ProgramTest {
 protected:
-    /// Two boxes that meet, part, and meet again.
+    /// Records two boxes that touch, part, and touch again.
     void record(const std::string& name) const {
         const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}};
         const std::vector<Box3f> away = {{{5, 0, 0}, {6, 1, 1}}};
@@ -45,7 +45,7 @@ TEST_F(Replay, ChecksEachStepOnAnyNumberOfThreads) {
     for (const std::string threads : {"0", "1", "2", "3"}) {
         const Outcome outcome = run("replay r.rec --check --threads " + threads);
         EXPECT_EQ(outcome.status, 0);
-        EXPECT_TRUE(outcome.err.ends_with("check       3 steps found what was recorded\n")) << outcome.err;
+        EXPECT_TRUE(outcome.err.ends_with("check       3 steps compared, all equal to the recording\n")) << outcome.err;
     }
 }
 
@@ -57,16 +57,16 @@ TEST_F(Replay, ACutRecordingIsMadeAsFarAsItGoes) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_TRUE(outcome.err.starts_with("steps       2, ")) << outcome.err;
     EXPECT_TRUE(
-        outcome.err.ends_with("check       2 steps found what was recorded\n"
-                              "ending      in the middle of a call, which was left out\n"))
+        outcome.err.ends_with("check       2 steps compared, all equal to the recording\n"
+                              "ending      within a call; the replay left this call out\n"))
         << outcome.err;
     write_file(file("died.rec"), whole.substr(0, whole.size() - 10));  // within the third step's result
     outcome = run("replay died.rec --check");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_TRUE(outcome.err.starts_with("steps       3, ")) << outcome.err;
     EXPECT_TRUE(
-        outcome.err.ends_with("check       2 steps found what was recorded\n"
-                              "ending      within a step, which was made here\n"))
+        outcome.err.ends_with("check       2 steps compared, all equal to the recording\n"
+                              "ending      within a step; the replay completed this step\n"))
         << outcome.err;
 }
 
@@ -99,7 +99,7 @@ TEST_F(Replay, AStepThatFindsSomethingElse) {
     const Outcome outcome = run("replay mixed.rec --check");
     EXPECT_EQ(outcome.status, 6);
     EXPECT_EQ(outcome.err,
-              "octopair: mixed.rec: step 3: 1 began, 0 ended, 0 persisting; recorded were 0 began, 0 ended, 0 "
+              "octopair: mixed.rec: step 3: 1 began, 0 ended, 0 persisting; recorded: 0 began, 0 ended, 0 "
               "persisting\n");
     EXPECT_EQ(run("replay mixed.rec").status, 0);
 }

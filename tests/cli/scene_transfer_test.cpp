@@ -1,4 +1,4 @@
-// Scenes as bytes: all that a scene holds arrives.
+// Tests the serialization of scenes: the transfer preserves every part of a scene.
 #include "cli/input/scene_transfer.hpp"
 
 #include <gtest/gtest.h>

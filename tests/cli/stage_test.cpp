@@ -1,4 +1,4 @@
-// --stage and what goes with it: objects that meet, rules that leave pairs out, and what is said of filters.
+// Tests `--stage` and related options: colliding objects, exclusion rules, and messages about filters.
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -20,7 +20,7 @@ protected:
                    "o through\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\nf 7 8 9\n");
     }
 
-    /// Without what is known of them.
+    /// Returns the rows without their findings.
     std::string rows(const std::string& arguments) const {
         const Outcome outcome =
             shell("\"$P\" detect " + arguments + " --quiet > out; s=$?; cut -d, -f1,2 out; exit $s");
@@ -208,9 +208,9 @@ TEST_F(Stages, ExitStatusIsOfWhatCameOut) {
 TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
     save_boxes("a.npy", {0, 0.5});
     EXPECT_EQ(refusal("a.npy --stage objects"),
-              "octopair: --stage objects: a.npy has boxes, not shapes; --stage pairs is for these\n");
+              "octopair: --stage objects: a.npy has only boxes, no shapes; use --stage pairs\n");
     EXPECT_EQ(refusal("t.obj --against a.npy --stage objects"),
-              "octopair: --stage objects: a.npy has boxes, not shapes; --stage pairs is for these\n");
+              "octopair: --stage objects: a.npy has only boxes, no shapes; use --stage pairs\n");
     EXPECT_EQ(refusal("t.obj --events --stage objects"), "octopair: --stage objects: not with --events\n");
     for (const std::string wrong :
          {"t.obj --adjacent include", "t.obj --objects triangle --stage pairs --adjacent include",
@@ -219,8 +219,9 @@ TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
           "t.obj --objects triangle --same-parent exclude", "t.obj --objects triangle --padding p.npy"}) {
         EXPECT_TRUE(refusal(wrong).starts_with("octopair: --")) << wrong;
     }
-    EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not known"), std::string::npos);
-    EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not known"), std::string::npos);
+    EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not a valid value"),
+              std::string::npos);
+    EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not a valid value"), std::string::npos);
     // Sets of both: their boxes.
     EXPECT_EQ(rows("t.obj a.npy --count-only"), rows("t.obj a.npy --count-only --stage pairs"));
 }

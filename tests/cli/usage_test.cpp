@@ -1,4 +1,4 @@
-// What is asked wrongly: exit status 2, one line, nothing done.
+// Tests invalid command lines: exit status 2, one line of message, and no side effects.
 #include "cli/program.hpp"
 
 namespace octopair::test {

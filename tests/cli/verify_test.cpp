@@ -1,4 +1,4 @@
-// octopair detect --verify: what it says of right results, and where it is refused.
+// Tests `octopair detect --verify`: its output for correct results, and the options that exclude it.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -10,7 +10,7 @@ class DetectVerify : public ProgramTest {
 protected:
     void SetUp() override { ASSERT_EQ(run("generate dense --objects 3000 --seed 2 --output a.npy --quiet").status, 0); }
 
-    /// The line of the summary; empty if there is none.
+    /// Returns the verification line of the summary, empty if there is none.
     std::string verified(const std::string& arguments) const {
         const Outcome outcome = run("detect a.npy --verify --output p.csv " + arguments);
         EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -1,4 +1,4 @@
-// The model of a cluster of several processors on each machine, on measurements that are made up.
+// Tests the model of a cluster with several processors per machine, on invented measurements.
 #include "cluster/machines.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ RankCosts costs_of(double build, double merge, double scan, const Sent& sent) {
     return costs;
 }
 
-/// Three machines of two ranks. Alone, ranks take half as long as together.
+/// Three machines of two ranks. A rank alone takes half as long as two ranks together.
 Measured made(Arrangement arrangement, const EachRank& alone) {
     Measured measured;
     measured.setup = {"uniform", 1'000'000, unsigned(alone.size()), arrangement, 2};

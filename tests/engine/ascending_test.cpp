@@ -1,4 +1,4 @@
-// Pairs into ascending order, whoever found them and however few pages there are.
+// Tests ascending order of pairs, for any distribution of pairs over threads and any number of pages.
 #include "engine/threads/ascending.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the public calls promise beside the pairs: reuse, the short form, summaries, progress, threads.
+// Tests guarantees of the public calls other than the pairs: reuse, the short form, summaries, progress and threads.
 #include <gtest/gtest.h>
 
 #include <thread>

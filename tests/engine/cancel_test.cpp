@@ -1,4 +1,4 @@
-// A stop request ends any call within 200 ms.
+// Tests that a stop request ends any call within 200 ms.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -20,8 +20,8 @@ constexpr milliseconds patience(test::sanitized ? 3000 : 200);
 class Cancel : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
 
-/// Runs `call(stop_token)` and asks it to stop after `delay`: how long it took to end by Error{cancelled}, or nothing if
-/// it finished before it was asked.
+/// Runs `call(stop_token)` and requests a stop after `delay`. Returns the time until Error{cancelled}, or nothing if the
+/// call ended before the request.
 template <typename Call>
 std::optional<Clock::duration> time_to_cancel(const Call& call, milliseconds delay) {
     std::stop_source source;
@@ -44,8 +44,8 @@ std::optional<Clock::duration> time_to_cancel(const Call& call, milliseconds del
     return ended - asked;
 }
 
-/// Expects Error{cancelled} in time, in one of a few attempts: a machine busy with other work delays any thread. A call
-/// may also finish before it is asked, if `may_finish`.
+/// Expects Error{cancelled} in time, in at least one of a few attempts: a machine busy with other work delays any
+/// thread. With `may_finish`, a call may also finish before the request.
 template <typename Call>
 void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
     std::optional<Clock::duration> took;
@@ -60,7 +60,7 @@ void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
     }
 }
 
-/// Every way to ask for the pairs of `boxes`, and an engine that works after each.
+/// Cancels every kind of call for the pairs of `boxes`. Expects an engine that works after each call.
 void expect_all_cancelled(const std::vector<Box3f>& boxes, unsigned threads, milliseconds delay, bool may_finish) {
     const Objects objects{std::span<const Box3f>(boxes)};
     const auto engine = make_local_engine(threads);

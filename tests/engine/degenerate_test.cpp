@@ -1,4 +1,4 @@
-// Cases that break collision detectors, each by name, in both precisions.
+// Tests named cases that are known to break collision detectors, in both precisions.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 using test::same_pairs;
 using Pairs = std::vector<Pair>;
 
-/// What all numbers of threads and both orders find; fails where they or the oracle disagree.
+/// Returns the pairs found with all numbers of threads and both orders. Fails if they or the oracle disagree.
 Pairs found_in(const Objects& objects, double margin = 0) {
     const Pairs expected = baselines::oracle_pairs(objects, margin);
     Options options;
@@ -287,7 +287,7 @@ TEST(DegenerateMixed, JoinOfASetWithItself) {
     EXPECT_EQ(list.size(), 2 * baselines::oracle_pairs(objects).size() + 500);
 }
 
-/// A few boxes on small whole numbers, which RapidCheck makes smaller when they fail.
+/// A few boxes on small whole numbers. RapidCheck shrinks failing cases.
 RC_GTEST_PROP(DegenerateProperty, FewBoxesOnALattice, ()) {
     const auto ends = *rc::gen::container<std::vector<std::array<int, 6>>>(
         rc::gen::container<std::array<int, 6>>(rc::gen::inRange(0, 9)));

@@ -1,4 +1,4 @@
-// Calls that must be refused: the code, the object and the value in the message, and an engine that works afterwards.
+// Tests invalid calls: the error code, the object and value in the message, and that the engine still works afterwards.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ protected:
         EXPECT_EQ(engine_->count_pairs(Objects{std::span<const Box3f>(good_)}), 1u);
     }
 
-    /// Every call refuses `objects`, and leaves the list empty.
+    /// Expects that every call refuses `objects` and leaves the list empty.
     void expect_all_refuse(const Objects& objects, const Options& options, const std::vector<std::string>& words) {
         const Objects good{std::span<const Box3f>(good_)};
         const PairSink sink = [](std::span<const Pair>) { ADD_FAILURE() << "pairs of a bad input"; };

@@ -1,4 +1,4 @@
-// Calls find the same pairs whatever floating-point state the caller has set, and leave it as it was.
+// Tests that calls find the same pairs for any floating-point state of the caller, and leave that state unchanged.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -16,7 +16,7 @@ namespace {
 using test::call_in;
 using test::CallerState;
 
-/// Objects whose pairs depend on roundings, or on subnormal numbers.
+/// Objects whose pairs depend on rounding, or on subnormal numbers.
 struct Asked {
     std::string name;
     std::vector<Box3f> narrow;
@@ -30,7 +30,7 @@ struct Asked {
     }
 };
 
-/// Boxes on a grid, a few steps wide: many are exactly as far apart as the margin is wide, before rounding.
+/// Boxes on a grid, a few steps wide. Before rounding, many gaps are exactly as wide as the margin.
 template <typename Real>
 std::vector<Box<Real>> grid_boxes(Real step) {
     std::vector<Box<Real>> boxes;
@@ -65,7 +65,7 @@ std::vector<Asked> all_asked() {
 
 class EngineFloatingPoint : public ::testing::TestWithParam<CallerState> {};
 
-/// All that engines offer, of one case.
+/// The results of all calls of an engine on one case.
 struct Found {
     std::vector<Pair> ascending, octal, between, streamed, job;
     std::uint64_t counted = 0;

@@ -1,5 +1,5 @@
-// The same bytes always: pinned hashes of the ascending pairs of every kind of scene, and octal pairs that do not depend
-// on the number of threads.
+// Tests reproducibility. The ascending pairs of every kind of scene match pinned hashes. Octal pairs do not depend on
+// the number of threads.
 #include <gtest/gtest.h>
 
 #include "baselines/baselines.hpp"

@@ -1,4 +1,5 @@
-// How jobs end: once, whoever cancels them and whenever, and with nothing of theirs in use any more.
+// Tests the end of jobs. A job ends exactly once, for any time and source of cancellation. An ended job uses none of
+// the caller's data.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -27,7 +28,7 @@ bool has_ended(JobState state) {
     return state == JobState::done || state == JobState::failed || state == JobState::cancelled;
 }
 
-/// A wait that is shorter than a sleep can be.
+/// Waits for a time shorter than the shortest sleep.
 void spin(std::chrono::microseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
     while (std::chrono::steady_clock::now() < end) std::this_thread::yield();
@@ -37,7 +38,7 @@ void wait_until_running(const Job& job) {
     while (job.state() == JobState::queued) std::this_thread::yield();
 }
 
-/// Expects `job` to be cancelled for good.
+/// Expects that `job` stays cancelled.
 void expect_cancelled(Job& job) {
     ASSERT_TRUE(job.wait_for(seconds(30)));
     EXPECT_EQ(job.state(), JobState::cancelled);
@@ -213,7 +214,7 @@ TEST(JobEnds, AnEngineMayGoWhileOthersWaitForItsJobs) {
     }
 }
 
-/// `drop` gets a handle of a running job whose input and sink's object are gone as soon as it returns.
+/// `drop` gets a handle of a running job. The job's input and the object of its sink are destroyed when `drop` returns.
 void expect_let_go(const std::function<void(Job)>& drop) {
     const auto engine = make_local_engine(2);
     for (const int delay : {0, 0, 1, 5, 20}) {
@@ -275,7 +276,7 @@ TEST(JobEnds, ASinkMayOwnItsHandle) {
     EXPECT_EQ(engine->submit(touching_boxes).summary().pairs, 1u);
 }
 
-/// A direct call that runs until it is let go on.
+/// A direct call that runs until the test releases it.
 class HeldCall {
 public:
     explicit HeldCall(Engine& engine)

@@ -1,4 +1,5 @@
-// Jobs find what the direct calls find, in the order of submission; what goes wrong ends them with the right code.
+// Tests that jobs find the pairs of the direct calls, in the order of submission, and that failures give the right
+// error code.
 #include "engine/jobs.hpp"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ void expect_same_summary(const Summary& found, const Summary& expected) {
     EXPECT_EQ(found.entries, expected.entries);
 }
 
-/// Collected and streamed jobs of `objects` give what the direct call does.
+/// Expects that collected and streamed jobs of `objects` give the result of the direct call.
 template <typename Boxes>
 void expect_as_direct(const Boxes& boxes, const std::vector<double>& padding, const Options& options) {
     const auto engine = make_local_engine(2);
@@ -203,7 +204,7 @@ TEST(Jobs, AHandleWithoutAJobIsHarmless) {
     EXPECT_EQ(moved.summary().pairs, 1u);
 }
 
-/// Expects `job` to have ended so, with `words` in its message, and its engine to work.
+/// Expects that `job` ends with `code` and with `words` in its message, and that its engine still works.
 void expect_failed(Engine& engine, Job job, ErrorCode code, const std::string& words) {
     job.wait();
     EXPECT_EQ(job.state(), code == ErrorCode::cancelled ? JobState::cancelled : JobState::failed);
@@ -285,7 +286,7 @@ TEST(Jobs, ASinkMayNotWaitForItsEngine) {
     EXPECT_EQ(next, ErrorCode::usage);
 }
 
-/// Fails in whatever way it is told.
+/// An engine that fails in a selected way.
 class FailingEngine final : public Engine {
 public:
     explicit FailingEngine(std::exception_ptr what) : what_(what) {}

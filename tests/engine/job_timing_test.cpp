@@ -1,4 +1,5 @@
-// What jobs promise about time: submitting takes none, cancelling at most 200 ms, waiting what it was given.
+// Tests time guarantees of jobs: submission does not block, cancellation takes at most 200 ms, and waits respect their
+// timeout.
 #include <chrono>
 #include <functional>
 #include <thread>
@@ -18,8 +19,8 @@ using test::touching_boxes;
 
 constexpr milliseconds answer_time(test::sanitized ? 3000 : 200);
 
-/// Expects `time` to return at most `answer_time`, in one of a few attempts: a machine busy with other work delays any
-/// thread.
+/// Expects `time` to return at most `answer_time`, in at least one of a few attempts: a machine busy with other work
+/// delays any thread.
 void expect_soon(const std::function<Clock::duration()>& time) {
     Clock::duration took{};
     for (int attempt = 0; attempt < 3; ++attempt) {
@@ -143,7 +144,7 @@ TEST(JobDeadlines, AllTheTimeThereIs) {
     }
 }
 
-/// Whether a direct call that comes while a job runs is answered before the next job.
+/// Returns whether a direct call during a job is answered before the next job.
 bool comes_before_the_next_job(Engine& engine) {
     HeldJob held(engine);
     std::binary_semaphore answered(0);

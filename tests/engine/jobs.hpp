@@ -1,4 +1,4 @@
-// What the tests of jobs share.
+// Helpers for the tests of jobs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ inline const std::vector<Box3f> touching_boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1
 
 inline Objects objects_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
 
-/// The code of the Error that `call` throws, or nothing.
+/// Returns the code of the Error that `call` throws, or nothing.
 template <typename Call>
 std::optional<ErrorCode> code_of(const Call& call) {
     try {
@@ -27,7 +27,7 @@ std::optional<ErrorCode> code_of(const Call& call) {
     return std::nullopt;
 }
 
-/// A job that runs until it is let go on. Its sink does not hear of a stop.
+/// A job that runs until the test releases it. Its sink ignores stop requests.
 class HeldJob {
 public:
     /// Returns when the job runs.

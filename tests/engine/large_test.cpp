@@ -1,4 +1,4 @@
-// More pairs than 32 bits count, in memory that does not grow with them.
+// Tests results with more pairs than 32 bits count, in memory that does not grow with the number of pairs.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -47,7 +47,7 @@ TEST(EngineLarge, StreamsInBoundedMemory) {
     }
 }
 
-/// One kind a process, so that the peak of one does not hide that of another.
+/// Tests one kind per process, so that the peak memory of a kind does not hide that of another kind.
 class EngineMemory : public ::testing::TestWithParam<std::string> {};
 
 std::vector<std::string> kinds_to_measure() {

@@ -1,4 +1,4 @@
-// The local engine against the oracle, on random calls of every kind: 300 cases for each of 34 kinds.
+// Tests the local engine against the oracle on random calls: 300 cases for each of 34 kinds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,8 @@ using test::same_pairs;
 constexpr std::uint64_t cases_a_kind = test::scaled(300, 10);
 constexpr std::uint64_t least_buffer = 1 << 20;  // what Options::buffer_bytes is raised to
 
-/// One engine per number of threads, used for all cases: what a call leaves behind must not show in the next.
+/// Returns the engine for a number of threads. It is reused for all cases, so that state left by a call would show in
+/// the next case.
 Engine& engine_of(unsigned threads) {
     static std::map<unsigned, std::unique_ptr<Engine>> engines;
     std::unique_ptr<Engine>& engine = engines[threads];
@@ -107,7 +108,7 @@ void check_count(const Case& a_case, Calls& calls, std::uint64_t pairs) {
     EXPECT_EQ(calls.count(a_case.threads[1], options), std::min(pairs, a_case.limit));
 }
 
-/// Everything an engine can be asked about the objects of one case.
+/// Makes all calls of an engine on the objects of one case.
 void check_case(const Case& a_case) {
     Calls calls(a_case);
     const std::vector<Pair> expected = calls.expected();

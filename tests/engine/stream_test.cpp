@@ -1,4 +1,4 @@
-// Shares of a stream: in order, side by side, and the first failure is the one that is told.
+// Tests the shares of a stream: results in order, concurrent shares, and that the call reports the first failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using std::chrono::seconds;
 
 class Stream : public ::testing::TestWithParam<unsigned> {
 protected:
-    /// What comes of shares that write their number `each` times.
+    /// Returns the output of shares that write their number `each` times.
     std::vector<Pair> stream(std::size_t shares, std::size_t each, std::uint64_t buffer) {
         std::vector<Pair> all;
         StreamExecutor executor(
@@ -36,7 +36,7 @@ protected:
     std::stop_source stop_;
 };
 
-/// Of more than one.
+/// Streams with more than one thread.
 class StreamOfThreads : public Stream {};
 
 std::string threads_of(const ::testing::TestParamInfo<unsigned>& info) { return std::to_string(info.param); }

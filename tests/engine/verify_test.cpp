@@ -1,4 +1,4 @@
-// Options::verify: right results of the local engine pass, and an engine that gives wrong ones fails.
+// Tests Options::verify: correct results of the local engine pass, and an engine with wrong results fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST_P(VerifiedKind, EveryCallPasses) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
-/// Finds pairs by another engine, and then gives one twice, leaves one out, or says a wrong number.
+/// Finds pairs with another engine, then repeats a pair, omits a pair, or reports a wrong number.
 class WrongEngine final : public Engine {
 public:
     enum class Wrong { nothing, twice, missing, counted } wrong = Wrong::nothing;

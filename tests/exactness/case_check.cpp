@@ -16,7 +16,7 @@ std::uint64_t objects_of(const Case& a_case) {
     return a_case.first.view().size() + (a_case.second ? a_case.second->view().size() : 0);
 }
 
-/// One call on the objects of a case.
+/// A call on the objects of a case.
 struct Call {
     const Case& asked;
     Objects first, second;
@@ -52,7 +52,7 @@ struct Call {
     std::uint64_t count(Engine& engine) const { return engine.count_pairs(asked.input(), options); }
 };
 
-/// Goes through the calls on one case; throws the first Finding.
+/// Makes the calls on a case. Throws the first Finding.
 class CaseCheck {
 public:
     CaseCheck(const Case& a_case, const std::vector<Pair>& expected, const EngineFor& engines)

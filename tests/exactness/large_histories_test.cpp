@@ -1,4 +1,4 @@
-// Large scenes of every family that change step by step, against the second algorithm (src/verification).
+// Tests large scenes of every family that change step by step, against the second algorithm (src/verification).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
 }
 
-/// A scene whose full detections once gave pairs twice, so that pairs of what moved away stayed for good.
+/// A scene whose full detections once gave pairs twice, so that pairs of removed objects stayed in the list.
 TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
     const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     Scene scene(SceneOptions{.threads = 2});

@@ -123,7 +123,7 @@ std::optional<Finding> LargeHistory::run() {
 
 /// Compares a step of each scene with the true pairs, and makes the changes for the next step.
 void LargeHistory::make_step(bool last) {
-    const bool read = last || random_.below(3) != 0;  // pairs that nobody reads wait to be merged into the list
+    const bool read = last || random_.below(3) != 0;  // unread pairs wait to be merged into the list
     for (JudgedScene& judged : scenes_) check_step(judged, read);
     before_ = std::move(now_);
     for (auto& object : objects_) {
@@ -183,7 +183,7 @@ std::vector<Pair> LargeHistory::find_pairs() {
     return pairs;
 }
 
-/// Calls call(scene, boxes) with boxes of the scenes' precision.
+/// Calls call(scene, boxes) with boxes in the precision of the scenes.
 template <typename Call>
 void LargeHistory::for_each_scene(const std::vector<Box3d>& boxes, Call&& call) {
     const std::vector<Box3f> narrow = float64_ ? std::vector<Box3f>{} : all_narrowed(boxes);
@@ -257,7 +257,7 @@ LargeHistory::Object& LargeHistory::any_object() {
     }
 }
 
-/// Anywhere, or in a row. Some may be there more than once.
+/// Returns random ids, scattered or consecutive. Some may repeat.
 std::vector<ObjectId> LargeHistory::some_ids(std::uint64_t count) {
     std::vector<ObjectId> ids;
     if (random_.below(2) == 0) {
@@ -271,7 +271,7 @@ std::vector<ObjectId> LargeHistory::some_ids(std::uint64_t count) {
     return ids;
 }
 
-/// Another place of a box. A little: up to its own size away, or just so far that it touches where it was.
+/// Returns a box moved far, or a little: up to its own size, or so that it touches its old place.
 Box3d LargeHistory::moved(const Box3d& box, bool far) {
     const bool touches = random_.below(8) == 0;
     const Box3d other = far ? any_object().place : box;

@@ -1,9 +1,9 @@
-// LargeHistory: a scene of many objects that move, come and go, held step by step against the second algorithm
+// LargeHistory: a scene of many objects that are added, moved and removed. Compares each step with the second algorithm
 // (src/verification).
 //
-// Objects    those of a random call of a family (support/families.hpp); the two sets of a join are one scene.
-// Scenes     with test hooks two scenes get the same calls: one searches around changes where it can, the other one
-//            searches all objects at each step. Without, one scene chooses by itself.
+// Objects    Objects of a random call of a family (support/families.hpp). Both sets of a join form one scene.
+// Scenes     With test hooks, two scenes get identical calls. The first searches around changes where possible, the second
+//            searches all objects at each step. Without test hooks, a single scene chooses by measured times.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,13 @@ public:
     static constexpr int steps = 6;
     static constexpr std::uint64_t most_pairs_an_object = 60;
 
-    /// A pure function of its arguments. `objects`: about how many.
+    /// A pure function of its arguments. `objects`: approximate number of objects.
     LargeHistory(const std::string& family, std::uint64_t objects, std::uint64_t seed);
 
-    /// Whether there are so many pairs that the second algorithm would take too long.
+    /// Returns whether there are so many pairs that the second algorithm would take too long.
     bool has_too_many_pairs() const { return too_many_; }
-    /// Makes all steps, or fewer if there come to be too many pairs. Returns the first finding. Requires: not too many pairs
-    /// at first. To be called once.
+    /// Makes all steps, or stops early if there are too many pairs. Returns the first finding. Requires: not too many
+    /// pairs at the start. Call at most once.
     std::optional<Finding> run();
 
     std::string describe() const;
@@ -63,7 +63,7 @@ private:
     std::vector<ObjectId> some_ids(std::uint64_t count);
     Box3d moved(const Box3d& box, bool far);
 
-    /// All pairs of the objects as they are, ascending, by the second algorithm. Sets too_many_.
+    /// Returns all pairs of the current objects, ascending, by the second algorithm. Sets too_many_.
     std::vector<Pair> find_pairs();
     void make_step(bool last);
     void check_step(JudgedScene& judged, bool read);
@@ -73,7 +73,7 @@ private:
     double margin_ = 0;
     std::vector<std::optional<Object>> objects_;  // by index
     std::vector<JudgedScene> scenes_;
-    std::vector<Pair> before_, now_;  // true pairs of the last step, and of the next one
+    std::vector<Pair> before_, now_;  // true pairs of the last step, and of the next step
     std::uint64_t full_steps_ = 0, partial_steps_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Large scenes: cases of thousands of objects, judged by the second algorithm.
+// Large scenes: cases of thousands of objects, checked against the second algorithm.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace octopair::test {
 
-/// The i-th large case: `least` to 7 times as many objects of a family, with few enough pairs to be judged. A pure
-/// function of its arguments.
+/// Makes the i-th large case: `least` to 7 times as many objects of a family, with few enough pairs for the second
+/// algorithm. A pure function of its arguments.
 Case large_case(std::uint64_t i, std::uint64_t least);
 
-/// Checks a large case; a finding comes with the smallest case that still fails, as text for a test.
+/// Checks a large case. A finding includes the smallest case that still fails, as text for a test.
 std::optional<Finding> check_large_case(const Case& a_case, const EngineFor& engines, Calls calls);
 
-/// Vertices of a cloth against its faces, as a cloth simulation asks.
+/// Makes a join of the vertices of a cloth with its faces, as in a cloth simulation.
 Case cloth_case(std::uint64_t objects, std::uint64_t seed);
 
 }  // namespace octopair::test

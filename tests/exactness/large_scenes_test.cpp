@@ -1,7 +1,7 @@
-// Large scenes on the local engine: against a second algorithm that shares no code with the octree, and beyond its reach
-// against what must stay the same where a scene is permuted, mirrored, scaled or cut in two.
+// Tests large scenes on the local engine against a second algorithm that shares no code with the octree. For larger
+// scenes, compares results before and after the scene is permuted, mirrored, scaled or split in two.
 //
-// OCTOPAIR_TEST_LARGE_SCENES=N checks N scenes instead of the usual number.
+// OCTOPAIR_TEST_LARGE_SCENES=N checks N scenes instead of the default number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST(ClothScenes, GiveEachPairOnce) {
     }
 }
 
-/// Stands for a set of pairs, whatever their order: how many, and a sum of mixed pairs.
+/// Represents a set of pairs in any order: their number, and a sum of mixed pairs.
 struct SetOfPairs {
     std::uint64_t count = 0, sum = 0;
     bool operator==(const SetOfPairs&) const = default;
@@ -75,7 +75,7 @@ struct SetOfPairs {
     }
 };
 
-/// The pairs of boxes whose names are `names`; `offset`: what is added to b, of a join.
+/// Returns the pairs of boxes, renamed by `names`. `offset`: added to b in a join.
 template <typename Find>
 SetOfPairs pairs_of(const std::vector<std::uint32_t>& names, std::uint32_t offset, Find&& find) {
     SetOfPairs pairs;
@@ -91,7 +91,7 @@ protected:
 
     Metamorphic() : boxes_(objects), names_(objects) {
         std::iota(names_.begin(), names_.end(), 0u);
-        // Of a family: the first of its scenes that is one set of float32 boxes with few pairs.
+        // Use the first scene of the family that is a single set of float32 boxes with few pairs.
         for (std::uint64_t seed = 1;; ++seed) {
             Case a_case = test::make_family_case(GetParam(), objects, seed);
             if (a_case.second || a_case.first.boxes.index() != 0) continue;
@@ -125,7 +125,7 @@ TEST_P(Metamorphic, PermutedMirroredScaledAndCut) {
     EXPECT_EQ(pairs_of_all(other, order), expected) << "permuted";
 
     for (std::size_t i = 0; i < other.size(); ++i) {
-        // Mirrored on y, x and z exchanged, and a quarter as large: exact in float32, but for denormals.
+        // Mirrored on y, x and z exchanged, and scaled by a quarter: exact in float32, except for denormals.
         const Box3f& box = boxes_[i];
         other[i] = {{box.min[2] / 4, -box.max[1] / 4, box.min[0] / 4},
                     {box.max[2] / 4, -box.min[1] / 4, box.max[0] / 4}};

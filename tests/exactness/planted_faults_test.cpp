@@ -1,5 +1,5 @@
-// Faults that are planted on purpose: each must be found by the checks of small scenes. The test says by which, and after
-// how many scenes.
+// Tests that the checks of small scenes find every planted fault. Prints the check that found the fault and the number
+// of scenes needed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -57,7 +57,7 @@ constexpr auto planted_here = std::to_array<Planted>({
     {"sweep_repeats_block", Fault::sweep_repeats_block},
     {"part_joined_twice", Fault::part_joined_twice},
 });
-// Beside these, tests/mpi plants the fault of a rank, and the first value is no fault.
+// All other faults: tests/mpi plants the fault of a rank, and the first value is no fault.
 static_assert(planted_here.size() + 2 == fault_count);
 
 INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), planted_name_of);

@@ -1,5 +1,5 @@
-// Scenes whose searches answer wrongly, by planted faults: a step that can be seen to be wrong throws and changes nothing,
-// and the next full step without the fault is right again.
+// Tests scenes whose searches give wrong results because of planted faults. A detectably wrong step throws and changes
+// nothing. The next full step without the fault is correct.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ Box3f random_box(samples::RandomStream& random) {
     return box;
 }
 
-/// A scene of random boxes, with the pairs that it should have.
+/// A scene of random boxes with its expected pairs.
 class TestScene {
 public:
     explicit TestScene(std::uint64_t seed) : random_(seed, 0), ids_(objects), scene_({.threads = 1}) {
@@ -41,7 +41,7 @@ public:
         for (std::uint64_t i = 0; i < count; ++i) boxes_[random_.below(objects)] = random_box(random_);
         scene_.move(ids_, Boxes(std::span<const Box3f>(boxes_)));
     }
-    /// Moves one object beyond all others.
+    /// Moves an object beyond all others.
     void move_away(std::uint32_t object) {
         boxes_[object] = {{1000, 1000, 1000}, {1001, 1001, 1001}};
         scene_.move(std::span(&ids_[object], 1), Boxes(std::span<const Box3f>(&boxes_[object], 1)));
@@ -55,7 +55,7 @@ public:
         return model.pairs();
     }
 
-    /// Checks a step against the pairs of the last step that did not throw.
+    /// Compares a step with the pairs of the last step that did not throw.
     void check_step() {
         const StepResult& result = scene_.step();
         const std::vector<Pair> now = true_pairs();
@@ -70,7 +70,7 @@ public:
         last_ = now;
     }
 
-    /// Makes a step with a fault and reads its pairs. Returns the message that this throws; empty if the fault does not show.
+    /// Makes a step with a fault and reads its pairs. Returns the message of the thrown error, empty if no error was thrown.
     std::string faulty_step(Fault fault) {
         const test::FaultScope planted(fault);
         try {
@@ -149,7 +149,7 @@ TEST(MissingPairs, OfAFullStepComeBackWithTheNext) {
     EXPECT_GT(missing, 5);
 }
 
-/// A pair of `all` that is not in `some`.
+/// Returns a pair of `all` that is missing in `some`.
 const Pair* first_missing(const std::vector<Pair>& some, const std::vector<Pair>& all) {
     for (const Pair& pair : all) {
         if (!std::binary_search(some.begin(), some.end(), pair)) return &pair;

@@ -9,7 +9,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Objects [begin, begin + count) are left out.
+/// Leaves out the objects [begin, begin + count).
 struct Cut {
     std::size_t begin, count;
 };
@@ -26,7 +26,7 @@ OwnedObjects without(const OwnedObjects& all, const Cut& cut) {
     return left;
 }
 
-/// Tries to leave out parts of one set, larger ones first.
+/// Tries to leave out parts of a set, larger parts first.
 template <typename Set>
 void shrink_set(Case& a_case, const Set& set_of, const Fails& fails, Clock::time_point end) {
     for (std::size_t part = set_of(a_case).view().size() / 2; part > 0; part /= 2) {

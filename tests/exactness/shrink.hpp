@@ -1,4 +1,4 @@
-// Shrinking: from a failing case to a small one that still fails, and its text for a test.
+// Shrinking: reduces a failing case to a small case that still fails, and prints that case as text for a test.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,11 @@ namespace octopair::test {
 
 using Fails = std::function<bool(const Case&)>;
 
-/// Leaves out objects of a failing case, half of them, a quarter and so on, as long as it still fails; stops after
+/// Leaves out objects of a failing case, half of them, a quarter and so on, while the case still fails. Stops after
 /// `patience`. Requires: fails(a_case).
 Case shrunk(Case a_case, const Fails& fails, std::chrono::seconds patience);
 
-/// The boxes and options of a case as C++ that a test can hold; of a case with many objects only a description.
+/// Returns the boxes and options of a case as C++ code for a test. For many objects, returns only a description.
 std::string as_test(const Case& a_case);
 
 }  // namespace octopair::test

@@ -1,4 +1,5 @@
-// Small histories of scenes with tiny tuning, against brute force: every path of scene steps and of octrees that change.
+// Tests small histories of scenes with tiny tuning against brute force: every path of scene steps and of mutable
+// octrees.
 #include <gtest/gtest.h>
 
 #include <exception>
@@ -19,21 +20,21 @@ constexpr std::uint64_t history_parts = 4;  // of the histories, so that several
 
 class SmallHistories : public ::testing::TestWithParam<std::uint64_t> {};
 
-/// Three of four names are of families.
+/// Returns the name of a family with probability 3/4, otherwise of a kind.
 std::string history_name(samples::RandomStream& random) {
     static const auto families = test::family_names(), kinds = test::all_kind_names();
     const auto& names = random.below(4) != 0 ? families : kinds;
     return names[random.below(names.size())];
 }
 
-/// Mostly few objects: brute force and nested octrees take long for many.
+/// Returns mostly few objects: brute force and nested octrees take long for many.
 test::HistorySize history_size(samples::RandomStream& random) {
     const std::uint64_t size = random.below(100);
     return {size < 50 ? 20u : size < 95 ? 70u : 300u, 12};
 }
 
 TEST_P(SmallHistories, AreWhatBruteForceFinds) {
-    // As many more than usual as there are small scenes, unless the environment asks for a number of cases.
+    // Scale the number of histories with the number of small scenes, unless the environment sets a number of cases.
     const std::uint64_t scenes = test::scene_range(test::SceneSize::small, 10'000).size();
     const std::uint64_t count = test::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
     const test::SceneRange part = test::SceneRange{0, count}.part(GetParam(), history_parts);

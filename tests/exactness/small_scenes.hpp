@@ -1,4 +1,4 @@
-// Small scenes with tiny tuning: the cases, and which paths they must have taken.
+// Small scenes with tiny tuning: makes the cases and reports the paths that they took.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace octopair::test {
 
-/// The i-th small case: 2 to 300 objects of a family, or of a kind with degenerate scenes. A pure function of `seed`.
+/// Makes the i-th small case: 2 to 300 objects of a family, or of a kind with degenerate scenes. A pure function of `seed`.
 Case small_case(std::uint64_t seed);
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-/// Sets the tuning of tests, and resets it at the end.
+/// Sets the tuning of tests in its constructor, and resets the tuning in its destructor.
 class TuningScope {
 public:
     explicit TuningScope(const Tuning& tuning) { test_hooks().tuning = tuning; }
@@ -24,7 +24,7 @@ public:
     TuningScope& operator=(const TuningScope&) = delete;
 };
 
-/// Plants a fault, and takes it out at the end.
+/// Plants a fault in its constructor, and removes the fault in its destructor.
 class FaultScope {
 public:
     explicit FaultScope(Fault fault) { test_hooks().fault = fault; }
@@ -33,13 +33,13 @@ public:
     FaultScope& operator=(const FaultScope&) = delete;
 };
 
-/// Checks small cases with their tunings; returns the first finding, with what replays it.
+/// Checks small cases with their tunings. Returns the first finding, with its replay command.
 std::optional<Finding> check_small_cases(const SceneRange& seeds, const EngineFor& engines);
 
-/// Counters of paths from 0 on, the usual tuning, no fault: also of processes that share a file.
+/// Resets the counters of paths, the tuning and the fault, for all processes that share the file of the hooks.
 void reset_test_hooks();
 
-/// The names of those of these paths that were never taken. Prints how often each was.
+/// Returns the names of the given paths that were never taken. Prints how often each path was taken.
 std::string paths_not_taken(std::initializer_list<Path> paths);
 
 #endif

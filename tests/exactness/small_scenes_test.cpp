@@ -1,4 +1,5 @@
-// Small scenes with tiny tuning on the local engine, against brute force: every path of crowded scenes, in a few boxes.
+// Tests small scenes with tiny tuning on the local engine against brute force. A few boxes take every path of crowded
+// scenes.
 #include <gtest/gtest.h>
 
 #include "exactness/small_scenes.hpp"
@@ -20,7 +21,8 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
     const auto finding = test::check_small_cases(seeds, test::local_engines());
     ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     if (test::sanitized || seeds.size() < usual_small_scenes / small_parts) return;
-    // All paths but keys_wide, whose keys of more than 32 bits need many objects: tests/engine/ascending_test.cpp has them.
+    // All paths except keys_wide, whose keys of more than 32 bits need many objects: tests/engine/ascending_test.cpp
+    // tests them.
     using enum Path;
     EXPECT_EQ(test::paths_not_taken({octant_divided,
                                      octant_too_small,

@@ -9,7 +9,7 @@ namespace octopair::test {
 
 namespace {
 
-/// Replaces constants by one of some small values each.
+/// Replaces constants by random small values.
 class Shrinker {
 public:
     explicit Shrinker(std::uint64_t seed)
@@ -138,7 +138,7 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
     to.one_of<std::size_t>(scene.share_queries, {1, 2});
 }
 
-/// Hardly any sweep is good enough, and samples see little: octants are crowded, and octrees nest in them.
+/// Accepts hardly any sweep, and takes small samples: octants count as crowded, and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
     tuning.scan.crowded_octant = 1;

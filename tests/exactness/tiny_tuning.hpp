@@ -7,7 +7,7 @@
 
 namespace octopair::test {
 
-/// A pure function of the seed. Some constants stay as they are, others are 1 to a few.
+/// Makes a tuning. Some constants keep their usual values, others are 1 to a few. A pure function of `seed`.
 Tuning tiny_tuning(std::uint64_t seed);
 
 }  // namespace octopair::test

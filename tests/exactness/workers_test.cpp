@@ -1,5 +1,5 @@
-// Worker processes, on small scenes with tiny tuning against brute force, and on large ones against the second algorithm.
-// Workers read the tuning from memory that they share with this process, and count paths there.
+// Tests worker processes on small scenes with tiny tuning against brute force, and on large scenes against the second
+// algorithm. Workers read the tuning from memory that they share with this process, and count paths there.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
 namespace octopair::test {
 namespace {
 
-/// Before the hooks are used: memory that has a name for workers as long as this process lives.
+/// Makes named memory for the hooks before their first use. Workers share it during the life of this process.
 const int shared_hooks = [] {
     const int file = ::memfd_create("octopair test hooks", MFD_CLOEXEC);
     const std::string name = "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file);
@@ -25,7 +25,7 @@ const int shared_hooks = [] {
     return file;
 }();
 
-/// For 1 thread this process, for more as many worker processes: so octal order is compared between them.
+/// Returns this process for 1 thread, otherwise as many worker processes. So the test compares octal order between both.
 test::EngineFor workers(Arrangement arrangement) {
     std::shared_ptr<Engine> local = make_local_engine(2);
     std::shared_ptr<Engine> two = make_process_engine({.workers = 2, .arrangement = arrangement});
@@ -50,7 +50,7 @@ constexpr std::uint64_t usual = test::scaled(300, 10);
 
 class SmallScenesOnWorkers : public ::testing::Test {
 protected:
-    /// Fewer than of one process, by as much whatever is asked for.
+    /// Returns fewer scenes than the tests of a single process, by a constant factor.
     static test::SceneRange seeds(std::uint64_t scenes) {
         const test::SceneRange all = test::scene_range(test::SceneSize::small, 10'000);
         return all.size() == 1 ? all : all.part(0, 10'000 / scenes);

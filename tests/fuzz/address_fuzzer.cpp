@@ -1,4 +1,4 @@
-// Feeds any text to the reader of addresses: what it accepts is written as it reads again.
+// Fuzzes the parser of addresses. An accepted address, written as text, parses to the same address.
 #include <cstdint>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// Feeds any text to the reader of older results. Its rows are all gone where no collision is new, or one line says what is
-// wrong.
+// Fuzzes the reader of older results. If no collision is new, all rows count as gone. Otherwise one line describes the
+// error.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

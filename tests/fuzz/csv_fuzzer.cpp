@@ -1,4 +1,4 @@
-// Feeds any text to the .csv reader. It gives at most a box a line, or one line that says what is wrong.
+// Fuzzes the .csv reader. The reader returns at most one box per line, or one line that describes the error.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-// Feeds any messages to what a client makes a result of, once into a list and once to a sink: both get the same pairs, and an
-// answer that is not whole is refused. The input is messages one after another, each behind its length in two bytes, of which
-// the highest bit begins another attempt.
+// Fuzzes the client's reader of results, once into a list and once into a sink. Both get the same pairs, and an
+// incomplete answer is refused. The input is a sequence of messages, each after its length in two bytes. The highest
+// bit of the length starts another attempt.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -22,7 +22,7 @@ void require(bool holds) {
     if (!holds) std::abort();
 }
 
-/// A message as the network may deliver it, in pieces.
+/// Splits a message into pieces, as the network may deliver it.
 grpc::ByteBuffer in_pieces(std::string_view bytes) {
     std::vector<grpc::Slice> slices;
     for (std::size_t length = 1; !bytes.empty(); length = 3 * length + 1) {
@@ -33,7 +33,7 @@ grpc::ByteBuffer in_pieces(std::string_view bytes) {
     return {slices.data(), slices.size()};
 }
 
-/// The pairs that came before the answer was refused; what it summed up, if it was whole.
+/// The pairs that arrived before a refusal, and the summary if the answer was complete.
 struct Outcome {
     std::vector<Pair> pairs;
     std::optional<std::uint64_t> summed;

@@ -1,4 +1,4 @@
-// Feeds any text to the reader of exclusion rules. It gives rules, or one line that says what is wrong.
+// Fuzzes the reader of exclusion rules. The reader returns rules, or one line that describes the error.
 #include <cstdint>
 #include <cstdlib>
 

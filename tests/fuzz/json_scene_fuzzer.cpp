@@ -1,5 +1,5 @@
-// Feeds any text to the reader of JSON scenes. It gives a scene whose arrays fit together, or one line that says what is
-// wrong.
+// Fuzzes the reader of JSON scenes. The reader returns a scene with consistent arrays, or one line that describes the
+// error.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Feeds any bytes to the .npy reader. What it accepts must be exactly as long as its shape says, and must be the same
-// array when its header is written anew.
+// Fuzzes the .npy reader. An accepted array has exactly the length of its shape, and stays the same when its header is
+// written again.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>

@@ -1,5 +1,5 @@
-// Feeds any bytes to the reader of recordings, and what it accepts to a scene. Random bytes have no right checksums: so the
-// same bytes are tried as they are, and with their checksums put right, which leads on to the payloads.
+// Fuzzes the reader of recordings, and applies accepted calls to a scene. Random bytes have no valid checksums. The
+// fuzzer tries the bytes unchanged and with corrected checksums, so that payloads are reached.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>

@@ -1,4 +1,4 @@
-// Random bytes have no right checksums: a fuzzer puts them right to get on to what lies behind them.
+// Corrects the checksums of random bytes, so that a fuzzer reaches the data after the checksum.
 #pragma once
 
 #include <cstring>
@@ -16,7 +16,7 @@ Head head_at(const std::string& bytes, std::size_t at) {
     return head;
 }
 
-/// With all checks and checksums as they should be.
+/// Returns `bytes` with all checks and checksums corrected.
 inline std::string put_right(std::string bytes) {
     if (bytes.size() < sizeof(RecordingHead)) return bytes;
     auto first = head_at<RecordingHead>(bytes, 0);

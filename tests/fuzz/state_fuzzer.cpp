@@ -1,5 +1,5 @@
-// Feeds any bytes to the readers of the state folder's files. What they accept must be the same when it is written anew. Random
-// bytes have no right checksums: so the same bytes are tried as they are, and as parts of files whose checksums are right.
+// Fuzzes the readers of the state folder's files. Accepted content stays the same when it is written again. Random
+// bytes have no valid checksums. The fuzzer tries the bytes unchanged and as parts of files with valid checksums.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -54,7 +54,7 @@ void try_result(const std::string& bytes) {
     });
 }
 
-/// A whole file of a job whose owner is any text, and its end damaged by more of it.
+/// Reads a complete file of a job whose owner is `text`, then with more of the text as damage at its end.
 void try_whole_job(const std::string& text) {
     StoredSpec stored;
     stored.owner = text.substr(0, text.size() / 2);
@@ -69,7 +69,7 @@ void try_whole_job(const std::string& text) {
     try_job(text + file);
 }
 
-/// A whole result with any pairs, of which the report's text is any, too.
+/// Reads a complete result with arbitrary pairs and an arbitrary report text.
 void try_whole_result(const std::string& text) {
     StoredResult result;
     result.hash = std::string(16, 'h');

@@ -1,5 +1,5 @@
-// Feeds any messages to what the server makes a job of: what it accepts is run, and its download must read back whole.
-// The input is messages one after another, each behind its length in two bytes.
+// Fuzzes the server's reader of jobs. An accepted job is run, and its download must be complete and readable. The input
+// is a sequence of messages, each after its length in two bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -24,14 +24,14 @@ void require(bool holds) {
 
 struct Limits {
     Budget memory{"memory_bytes", "bytes of memory", std::uint64_t(64) << 20};
-    ClientCounts places{10, 10};
+    JobQuota job_quota{10, 10};
 };
 
 std::shared_ptr<ServerJob> begin(Limits& limits, Engine& engine, v1::JobSpec spec) {
     check(spec);
     if (object_count(spec) > 500) throw LimitError("objects", 500, "a job of more than 500 objects");
     ServerJob::Parts parts;
-    parts.place = limits.places.enter("local");
+    parts.slot = limits.job_quota.take_slot("local");
     parts.memory = limits.memory.take(input_bytes(spec));
     parts.input = std::make_unique<UploadedInput>(spec, engine);
     parts.pairs = std::make_unique<PairsInMemory>(limits.memory, 0);
@@ -79,7 +79,7 @@ void feed(std::string_view input, Engine& engine) {
         require(job->ended());
         read_back(job);
     }
-    require(limits.memory.taken() == 0 && limits.places.count() == 0);
+    require(limits.memory.taken() == 0 && limits.job_quota.count() == 0);
 }
 
 }  // namespace

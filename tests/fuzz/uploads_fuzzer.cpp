@@ -1,6 +1,6 @@
-// Feeds any bytes, in any pieces, to the reader of a scene's calls on the server, and what it accepts to a scene. The same
-// bytes are tried as they are, and with their checksums put right; each time the calls must be those of a recording with
-// these bytes.
+// Fuzzes the server's reader of scene calls, with any bytes in any pieces, and applies accepted calls to a scene. The
+// fuzzer tries the bytes unchanged and with corrected checksums. Each time the calls must equal those of a recording
+// with the tried bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -42,7 +42,7 @@ void make(Scene& scene, const RecordedCall& call) {
     }
 }
 
-/// The kinds of the calls, and why there are no more.
+/// The kinds of the calls, and the reason for the end of the calls.
 struct Outcome {
     std::vector<RecordKind> kinds;
     std::string refusal;

@@ -1,4 +1,4 @@
-// Outward rounding, against exact integers and at the ends of float32.
+// Tests outward rounding against exact integers and at the ends of the range of float32.
 #include "geometry/rounding.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Result files appear whole or not at all, and nothing else is left in their directory.
+// Tests that result files appear complete or not at all, and that no other files stay in their directory.
 #include "io/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ protected:
     std::string path_ = directory_.file("result.csv");
 };
 
-/// No file of this process may grow beyond `bytes`, while it lives; what writes more gets an error.
+/// Limits the size of files of this process to `bytes` until destruction. Larger writes get an error.
 class FileSizeLimit {
 public:
     explicit FileSizeLimit(rlim_t bytes) {

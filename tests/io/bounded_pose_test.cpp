@@ -1,4 +1,4 @@
-// Poses with bounds: exact where arithmetic is, and else with bounds that hold the exact result.
+// Tests poses with error bounds: exact where the arithmetic is exact, otherwise the bounds contain the exact result.
 #include "io/meshes/bounded_pose.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Result files of collisions, and how they stand to older ones.
+// Tests result files of collisions and their comparison with older result files.
 #include "io/results/collision_writer.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::vector<Finding> findings() {
     return findings;
 }
 
-/// What a file of that ending has after all rows, and the gone ones.
+/// Returns the content of a file with this ending after all rows, including the gone rows.
 std::string written(const std::string& ending, const CollisionForm& form, const io::CollisionRows& rows,
                     const std::vector<std::string_view>& gone = {}) {
     const TemporaryDirectory directory;
@@ -84,7 +84,7 @@ TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
 
 TEST(CollisionWriter, NpyHoldsPairsAlone) {
     EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)io::make_collision_file_writer("c.npy", {}); }),
-              "c.npy: .npy holds pairs alone; collisions go to .csv or .jsonl");
+              "c.npy: .npy can hold only pairs; write collisions to .csv or .jsonl");
 }
 
 TEST(CollisionWriter, OldRowsThatAreGone) {

@@ -1,4 +1,4 @@
-// Boxes of .csv files.
+// Tests the reader of boxes in .csv files.
 #include "io/boxes/csv.hpp"
 
 #include <fmt/format.h>
@@ -56,7 +56,7 @@ TEST(Csv, NamesTheLine) {
     EXPECT_EQ(csv_refusal("0,0,,1,1,1\n"), "f.csv: line 1: field 3 is not a number: ''");
     EXPECT_EQ(csv_refusal("\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
     EXPECT_EQ(csv_refusal("a,b,c,d,e,f\na,b,c,d,e,f\n"), "f.csv: line 2: field 1 is not a number: 'a'");
-    EXPECT_EQ(csv_refusal("0,0,0,1,1,1e999\n"), "f.csv: line 1: field 6 is beyond float64: '1e999'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1e999\n"), "f.csv: line 1: field 6 is outside the range of float64: '1e999'");
     EXPECT_EQ(csv_refusal("0,0,0,1,1,0x10\n"), "f.csv: line 1: field 6 is not a number: '0x10'");
     EXPECT_EQ(csv_refusal("0,0,0,1,1,+-1\n"), "f.csv: line 1: field 6 is not a number: '+-1'");
     EXPECT_EQ(csv_refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers");

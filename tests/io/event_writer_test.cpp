@@ -1,4 +1,4 @@
-// Result files of events.
+// Tests result files of events.
 #include "io/results/event_writer.hpp"
 
 #include <gtest/gtest.h>

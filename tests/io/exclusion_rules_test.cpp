@@ -1,4 +1,4 @@
-// Rules of .json files.
+// Tests the reader of exclusion rules in .json files.
 #include "io/json/exclusion_rules.hpp"
 
 #include <gtest/gtest.h>
@@ -39,21 +39,21 @@ TEST(ExclusionRules, MayBeLeftOut) {
 TEST(ExclusionRules, NameThePlace) {
     EXPECT_EQ(rules_refusal("[]"), "r.json: an array, not an object");
     EXPECT_EQ(rules_refusal(R"({"excludes": []})"),
-              "r.json: the key 'excludes' is not known here; these are: exclude, ignored_pairs, same_parent");
+              "r.json: unknown key 'excludes'; known keys: exclude, ignored_pairs, same_parent");
     EXPECT_EQ(rules_refusal(R"({"exclude": {}})"), "r.json: exclude: an object, not an array");
     EXPECT_EQ(rules_refusal(R"({"exclude": ["*"]})"), "r.json: exclude[0]: a string, not an object");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"),
               "r.json: exclude[1]: the key 'b' is missing");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0]: a: a number, not a string");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
-              "r.json: exclude[0]: the key 'c' is not known here; these are: a, b");
+              "r.json: exclude[0]: unknown key 'c'; known keys: a, b");
     EXPECT_EQ(rules_refusal(R"({"ignored_pairs": [["a"]]})"),
               "r.json: ignored_pairs[0]: an array of 1, not of two names");
     EXPECT_EQ(rules_refusal(R"({"ignored_pairs": ["a"]})"), "r.json: ignored_pairs[0]: a string, not an array");
     EXPECT_EQ(rules_refusal(R"({"ignored_pairs": [["a", null]]})"), "r.json: ignored_pairs[0][1]: null, not a string");
     EXPECT_EQ(rules_refusal(R"({"same_parent": 1})"), "r.json: same_parent: a number, not true or false");
     EXPECT_EQ(rules_refusal(R"({"same_parent": true, "same_parent": false})"),
-              "r.json: the key 'same_parent' stands twice in one object");
+              "r.json: the key 'same_parent' occurs twice in one object");
 }
 
 TEST(ExclusionRules, MustBeJson) {

@@ -1,4 +1,4 @@
-// Which format a file has, by the ending of its name.
+// Tests that the extension of a file name selects the format.
 #include "io/formats.hpp"
 
 #include <gtest/gtest.h>
@@ -33,10 +33,10 @@ TEST(Formats, OfScenes) {
 }
 
 TEST(Formats, SomeScenesHaveFurtherFiles) {
-    EXPECT_TRUE(io::has_parts("a.gltf"));
-    EXPECT_TRUE(io::has_parts("a.GLTF"));
-    EXPECT_TRUE(io::has_parts("a.json"));
-    EXPECT_FALSE(io::has_parts("a.glb"));
+    EXPECT_TRUE(io::may_name_files("a.gltf"));
+    EXPECT_TRUE(io::may_name_files("a.GLTF"));
+    EXPECT_TRUE(io::may_name_files("a.json"));
+    EXPECT_FALSE(io::may_name_files("a.glb"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The report: one page, whose data is what was written, and whose names are text.
+// Tests the HTML report: a single page that holds the written data and shows all names as plain text.
 #include "io/results/html_report.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ std::size_t count(const std::string& text, std::string_view what) {
     return found;
 }
 
-/// What a script of the page holds.
+/// Returns the data in a script element of the page.
 json data_of(const std::string& page, const std::string& id) {
     const std::string begin = "<script type=\"application/json\" id=\"" + id + "\">";
     const std::size_t at = page.find(begin) + begin.size();
@@ -44,7 +44,7 @@ json data_of(const std::string& page, const std::string& id) {
 
 class HtmlReport : public ::testing::Test {
 protected:
-    /// The page of some rows.
+    /// Returns the page for the given rows.
     std::string page(const io::ReportScene& scene, const io::CollisionRows& rows,
                      const std::vector<std::string_view>& gone = {}) const {
         io::HtmlReport report(std::make_unique<io::AtomicFile>(directory_.file("r.html")), scene);
@@ -108,14 +108,14 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
 
 TEST_F(HtmlReport, SaysWhatItLeavesOut) {
     const std::vector<Box3f> many(50'000);
-    const std::vector<Pair> rows(io::HtmlReport::most_rows + 1, Pair{0, 1});
+    const std::vector<Pair> rows(io::HtmlReport::max_rows + 1, Pair{0, 1});
     const std::string text = page({"t", {}, std::span(many), {}}, {rows, {}, {}});
-    EXPECT_EQ(data_of(text, "rows").size(), io::HtmlReport::most_rows);
+    EXPECT_EQ(data_of(text, "rows").size(), io::HtmlReport::max_rows);
     EXPECT_EQ(data_of(text, "others").size(), 16'666u);
     const json summary = data_of(text, "summary");
     EXPECT_EQ(summary["facts"][0][1], "200001");
     EXPECT_EQ(summary["notes"], json::parse(R"(["The table has the first 200000 rows of 200001.",
-        "Of 49998 objects that the table does not name, 16666 are drawn."])"));
+        "The picture shows 16666 of the 49998 objects that are not in the table."])"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Mesh scenes: names, poses, boxes, triangles.
+// Tests the reader of mesh scenes: names, poses, boxes and triangles.
 #include "io/meshes/mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST_F(Mesh, FacesWithMoreCornersAreCut) {
     EXPECT_EQ(read("q.obj", obj, MeshObjects::triangle).objects, 2u);
 }
 
-/// A unit triangle that four nodes show: as it is, moved, mirrored in a child of the moved one, and without a name.
+/// A unit triangle in four nodes: unchanged, moved, mirrored in a child of the moved node, and in a node without a name.
 const std::string instances_gltf = R"({
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
   "nodes": [
@@ -167,7 +167,7 @@ TEST_F(Mesh, RefusesVerticesThatAreNowhere) {
         const std::string words =
             error_of(ErrorCode::bad_input, [&] { (void)read("i.gltf", instances_gltf, objects); });
         // The file's own number, not what posing makes of it: -infinity times 0 is not a number.
-        EXPECT_NE(words.find("vertex 2 is at -inf, not at a finite place"), std::string::npos) << words;
+        EXPECT_NE(words.find("vertex 2 has the coordinate -inf, which is not finite"), std::string::npos) << words;
     }
 }
 

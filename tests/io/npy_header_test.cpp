@@ -1,4 +1,4 @@
-// The header of .npy files: what is accepted, what is refused and how, and that no damage passes.
+// Tests the header of .npy files: accepted headers, refused headers and their messages. No damaged header is accepted.
 #include "io/boxes/npy_header.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::string header_refusal(const std::string& file) {
     return error_of(ErrorCode::bad_input, [&] { (void)parsed_header(file); });
 }
 
-/// A file of version `major` with the dict literal `dict`, padded, and `data_bytes` of data.
+/// Returns a file of version `major` with the dict literal `dict`, padded, and `data_bytes` of data.
 std::string file_of(const std::string& dict, std::size_t data_bytes, char major = 1) {
     std::string text = dict;
     while ((text.size() + 1 + (major == 1 ? 10 : 12)) % 64 != 0) text += ' ';
@@ -64,7 +64,7 @@ TEST(NpyHeader, SaysWhatItFound) {
     EXPECT_EQ(header_refusal(""), "f.npy: not an npy file: it is empty");
     EXPECT_EQ(header_refusal("PK\x03\x04 something"), "f.npy: not an npy file: it begins with 'PK\\x03\\x04 s'");
     EXPECT_EQ(header_refusal(file_of(boxes_dict, 72, 4)),
-              "f.npy: npy format version 4.0; versions 1.0, 2.0 and 3.0 are known");
+              "f.npy: npy format version 4.0; versions 1.0, 2.0 and 3.0 are supported");
     EXPECT_EQ(header_refusal(file_of(dict("<f4", "True", "(3, 6)"), 72)),
               "f.npy: its array is in Fortran order; C order is needed");
     EXPECT_EQ(header_refusal(file_of(dict(">f4", "False", "(3, 6)"), 72)),

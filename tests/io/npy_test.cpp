@@ -1,4 +1,4 @@
-// Arrays as scenes and paddings.
+// Tests .npy arrays as scenes and paddings.
 #include "io/boxes/npy.hpp"
 
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST_F(Npy, RefusesSpheresThatAreNone) {
               "object 0: centre y is nan, not a finite number");
     const float huge = std::numeric_limits<float>::max();
     EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1, 4}, {0, 0, huge, huge})),
-              "object 0: its box is beyond the file's precision");
+              "object 0: its box is outside the range of the file's number type");
 }
 
 TEST_F(Npy, RefusesOtherShapesAndTypes) {
@@ -135,7 +135,7 @@ TEST_F(Npy, RefusesOtherShapesAndTypes) {
     EXPECT_EQ(refusal(npy_of<std::uint32_t>(NpyType::uint32, {1, 6}, std::vector<std::uint32_t>(6))),
               "its array is of type '<u4'; '<f4' or '<f8' is needed");
     EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1ull << 60, 0, 6}, {})),
-              "1152921504606846976 frames; at most 1000000 are known");
+              "1152921504606846976 frames; the maximum is 1000000");
 }
 
 TEST_F(Npy, RefusesWhatIsNoFile) {

@@ -1,4 +1,4 @@
-// Result files of pairs in each format.
+// Tests result files of pairs in each format.
 #include "io/results/pair_writer.hpp"
 
 #include <gtest/gtest.h>

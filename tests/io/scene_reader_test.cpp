@@ -1,4 +1,4 @@
-// Scene files of any kind, several as one set, and the search for what is not a box.
+// Tests scene files of every kind, several files as one set, and the search for invalid boxes.
 #include "io/scene_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -146,7 +146,7 @@ TEST(SceneReader, RefusesShapesBesideBoxesAlone) {
                        [&] {
                            (void)io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
                        }),
-              "b: boxes alone beside shapes in a; what is one set has the same of each");
+              "b: has only boxes, but a has shapes; the files of one set must have the same");
 }
 
 TEST(SceneReader, RefusesFramesThatDoNotAgree) {
@@ -157,7 +157,7 @@ TEST(SceneReader, RefusesFramesThatDoNotAgree) {
                        [&] {
                            (void)io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
                        }),
-              "b: 1 frames beside the 2 of a; one set needs the same number of each");
+              "b: has 1 frames, but a has 2; the files of one set must have the same number");
 }
 
 TEST(SceneReader, FindsWhatIsNoBox) {

@@ -1,4 +1,4 @@
-// Boxes of spheres: outward, and no further than needed, judged by exact integers.
+// Tests the boxes of spheres against exact integers: rounded outward, and no larger than necessary.
 #include "io/boxes/spheres.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// value / 2^exponent, which must be whole and below 2^127.
+/// Returns value / 2^exponent. Requires: the result is a whole number below 2^127.
 Wide scaled(double value, int exponent) {
     const double whole = std::ldexp(value, -exponent);
     EXPECT_EQ(whole, std::trunc(whole));

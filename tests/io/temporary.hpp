@@ -1,4 +1,4 @@
-// What tests of files share: a directory of their own, file contents, and the message of a refusal.
+// Helpers for tests of files: a temporary directory, file contents, and the message of a refusal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ public:
 
     std::string file(const std::string& name) const { return (path_ / name).string(); }
     std::string path() const { return path_.string(); }
-    /// The names in it, sorted.
+    /// Returns the names in the directory, sorted.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
         for (const auto& entry : std::filesystem::directory_iterator(path_)) found.push_back(entry.path().filename());
@@ -67,13 +67,13 @@ std::string bytes_of(const std::vector<T>& values) {
     return bytes;
 }
 
-/// The bytes of a whole .npy file.
+/// Returns the bytes of a complete .npy file.
 template <typename T>
 std::string npy_of(io::NpyType type, const std::vector<std::uint64_t>& shape, const std::vector<T>& values) {
     return io::make_npy_header(type, shape) + bytes_of(values);
 }
 
-/// What the Error says that `call` throws; fails if it throws none, or of another code.
+/// Returns the message of the Error that `call` throws. Fails if `call` throws no Error, or an Error with another code.
 template <typename Call>
 std::string error_of(ErrorCode code, const Call& call) {
     try {

@@ -1,4 +1,4 @@
-// Exchanges in as many messages as it takes, and failures that all ranks learn of.
+// Tests exchanges that need several messages, and failures that are reported on all ranks.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -11,7 +11,7 @@
 namespace octopair::test {
 namespace {
 
-/// Rank `from` sends rank `to` so many values.
+/// Returns the number of values that rank `from` sends to rank `to`.
 std::uint64_t count_between(unsigned from, unsigned to) {
     return (from * 7 + to * 13) % 5 == 0 ? 0 : 100 * from + 37 * to;
 }

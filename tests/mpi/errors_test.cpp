@@ -1,4 +1,4 @@
-// What goes wrong on one rank ends the call on all, with the same Error, and leaves the engine usable.
+// Tests that an error on one rank ends the call on all ranks with the same Error, and that the engine stays usable.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -19,7 +19,7 @@ using test::rank_count;
 class RankErrors : public ::testing::Test {
 protected:
     Objects own() const { return {std::span<const Box3f>(own_), {}}; }
-    /// What a call throws on this rank; none if nothing.
+    /// Returns the Error that a call throws on this rank, or nothing.
     template <typename Call>
     static std::optional<Error> error_of(const Call& call) {
         try {
@@ -53,7 +53,7 @@ protected:
 TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
     const std::size_t begin = test::own_slice(boxes_.size(), test::Spread::even).begin;
     std::vector<Box3f> bad = own_;
-    // Two on each rank; the first of all stands on the first.
+    // Two bad boxes on each rank. The first of all is on rank 0.
     bad[17].max[1] = std::numeric_limits<float>::quiet_NaN();
     bad[12].min[0] = bad[12].max[0] + 1;
     PairList list;
@@ -61,22 +61,23 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
         (void)engine_->find_pairs({std::span<const Box3f>(bad), {}}, list);
     });
     EXPECT_EQ(list.size(), 0u);
-    // On the last rank alone: its number is that among all.
+    // Bad boxes on the last rank only: the message has the global index.
     const std::vector<Box3f>& some = last() ? bad : own_;
     const std::size_t of_last = std::size_t(test::largest(last() ? begin + 12 : 0));
     expect_on_all(ErrorCode::bad_input, "object " + std::to_string(of_last) + ": min x", [&] {
         (void)engine_->count_pairs({std::span<const Box3f>(some), {}});
     });
-    expect_on_all(ErrorCode::bad_input, "of the second set object " + std::to_string(of_last) + ": min x", [&] {
+    expect_on_all(ErrorCode::bad_input, "second set: object " + std::to_string(of_last) + ": min x", [&] {
         (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
     });
 }
 
 TEST_F(RankErrors, RefuseToVerify) {
     Options verifying;
-    verifying.verify = last();  // one rank alone asks for it
+    verifying.verify = last();  // on a single rank
     PairList list;
-    expect_on_all(ErrorCode::usage, "verify: not on ranks", [&] { (void)engine_->find_pairs(own(), list, verifying); });
+    expect_on_all(ErrorCode::usage, "verify: the MPI engine cannot",
+                  [&] { (void)engine_->find_pairs(own(), list, verifying); });
 }
 
 TEST_F(RankErrors, TellOfPaddingsThatOneRankGaveWrongly) {
@@ -100,10 +101,10 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
     options = {};
     if (last()) options.buffer_bytes = 1 << 20;
     expect_on_all(ErrorCode::usage, "the size of the buffer", [&] { (void)engine_->count_pairs(own(), options); });
-    expect_on_all(ErrorCode::usage, "a second set", [&] {
+    expect_on_all(ErrorCode::usage, "the number of sets", [&] {
         last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs(Join{own(), own()});
     });
-    expect_on_all(ErrorCode::usage, "counted, listed or streamed", [&] {
+    expect_on_all(ErrorCode::usage, "count, list or stream", [&] {
         PairList list;
         last() ? (void)engine_->count_pairs(own()) : (void)engine_->find_pairs(own(), list);
     });
@@ -112,7 +113,7 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
         (void)engine_->count_pairs(last() ? Objects{std::span<const Box3d>(wide), {}} : own());
     });
     const std::vector<double> padding(own_.size(), 0.1);
-    expect_on_all(ErrorCode::usage, "a padding", [&] {
+    expect_on_all(ErrorCode::usage, "the use of padding", [&] {
         (void)engine_->count_pairs(last() ? Objects{std::span<const Box3f>(own_), padding} : own());
     });
 }
@@ -139,7 +140,7 @@ TEST_F(RankErrors, CancelAllWhereOneIsStopped) {
     expect_on_all(ErrorCode::cancelled, "cancelled", [&] { (void)engine_->count_pairs(own(), {}, stop.get_token()); });
 }
 
-/// While they search what would take many seconds.
+/// Cancels a search that would take many seconds.
 TEST_F(RankErrors, CancelAllWhereOneIsStoppedMeanwhile) {
     const std::vector<Box3f> many(60'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     for (const Order order : {Order::octal, Order::ascending}) {
@@ -186,7 +187,7 @@ TEST(RankEngine, RefusesNoCommunicator) {
         Error);
 }
 
-/// Each half of the ranks has a scene of its own.
+/// Each half of the ranks has its own scene.
 TEST(RankEngine, WorksOnPartOfTheRanks) {
     MPI_Comm half = MPI_COMM_NULL;
     const int colour = int(own_rank() % 2);

@@ -1,5 +1,5 @@
-// Ranks, on small scenes with tiny tuning against brute force, and on large ones against the second algorithm. The ranks of
-// a test share the memory of the test hooks.
+// Tests the MPI engine on small scenes with tiny tuning against brute force, and on large scenes against the second
+// algorithm. The ranks of a test share the memory of the test hooks.
 #include "exactness/small_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -34,14 +34,14 @@ TEST(RankExactness, GivesEachPairOnceInLargeScenes) {
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-/// Fewer than of one process, by as much whatever is asked for.
+/// Returns fewer scenes than the tests of a single process, by a constant factor.
 test::SceneRange seeds() {
     const test::SceneRange all = test::scene_range(test::SceneSize::small, test::scaled(10'000, 20));
     return all.size() == 1 ? all : all.part(0, 50 * test::rank_count());
 }
 bool are_enough() { return !test::sanitized && test::rank_count() > 1 && seeds().size() >= 200; }
 
-/// All ranks make the calls on their slices of a case; the first one sets the tuning, before and after which they wait.
+/// All ranks make the calls on their slices of a case. Rank 0 sets the tuning. The ranks wait before and after.
 class MpiSmallScenes : public ::testing::Test {
 protected:
     void set_tuning(const Tuning& tuning) {
@@ -56,7 +56,7 @@ protected:
             const Order order = (way & 1) != 0 ? Order::octal : Order::ascending;
             const AnyCall asked{own, order, (way & 2) != 0, (way & 4) != 0};
             const std::vector<Pair> found = test::all_pieces(asked.made_by(*ranks_));
-            // One process finds the same bytes, and brute force the same set.
+            // A single process finds the same bytes, and brute force the same set.
             const AnyCall alone{whole, order, false, asked.limited};
             EXPECT_TRUE(test::same_bytes(found, alone.made_by(*local_)));
             if (!asked.limited && order == Order::ascending) {
@@ -85,7 +85,7 @@ TEST_F(MpiSmallScenes, OfSlices) {
     EXPECT_EQ(test::paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once}), "");
 }
 
-/// On rank 0 makes calls of an engine; the other ranks follow it.
+/// Makes calls of an engine on rank 0. Other ranks follow it.
 template <typename Calls>
 void lead_engines(const Calls& calls) {
     if (test::own_rank() != 0) return follow(MPI_COMM_WORLD);

@@ -1,4 +1,5 @@
-// The same bytes from ranks as from threads: every kind of scene, however its objects lie with the ranks.
+// Tests that ranks give the same bytes as threads, for every kind of scene and every distribution of objects over
+// ranks.
 #include <gtest/gtest.h>
 
 #include "mpi/ranks.hpp"
@@ -80,7 +81,7 @@ TEST(Ranks, ShareTheWork) {
     }
 }
 
-/// With a buffer that the pairs of a rank do not fit into: in windows, up to any limit.
+/// Uses a buffer too small for the pairs of a rank: pairs are sent in windows, up to any limit.
 TEST(Ranks, StreamManyPairsInBoundedMemory) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", test::scaled(300'000, 2), 1);
     const std::vector<Box3f> own = test::slice(boxes, Spread::even);
@@ -110,7 +111,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
             EXPECT_TRUE(test::same_bytes(found, {wanted.begin(), wanted.end()}));
             EXPECT_LE(most * sizeof(Pair), options.buffer_bytes);
         }
-        // And afterwards all again.
+        // Then all pairs again, without a limit.
         options.limit.reset();
         PairList list;
         (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
@@ -118,7 +119,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
     }
 }
 
-/// The pairs of one rank alone do not fit: all go through windows.
+/// The pairs of a single rank do not fit: all pairs are sent in windows.
 TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
     std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     boxes.insert(boxes.end(), 500, boxes.front());

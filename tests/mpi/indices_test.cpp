@@ -1,5 +1,5 @@
-// Indices of the caller's own, beyond 32 bits, on objects that lie with the ranks in any order: the pairs are those of the
-// local engine for the same objects in the order of their indices.
+// Tests caller-defined indices of more than 32 bits, on objects that are distributed over the ranks in any order. The
+// pairs equal those of the local engine for the same objects in the order of their indices.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,14 +21,14 @@ using test::own_rank;
 using test::OwnedObjects;
 using test::Spread;
 
-/// Objects as they are given, and what they are called.
+/// Objects and their caller-defined indices.
 struct Called {
     OwnedObjects objects;
     std::vector<std::uint64_t> indices;
     IndexedObjects view() const { return {objects.view(), indices}; }
 };
 
-/// Element i of a set in order is called so.
+/// Returns the index of element i of an ordered set.
 std::uint64_t index_of(std::uint32_t i) { return (std::uint64_t(1) << 35) + 7 * std::uint64_t(i); }
 
 template <typename Element>
@@ -40,7 +40,7 @@ std::vector<Element> in_order(const std::vector<Element>& elements, const std::v
     return chosen;
 }
 
-/// The objects of a set in a random order, this rank's part of them.
+/// Returns this rank's part of a set in a random order.
 Called scattered(const OwnedObjects& set, Spread spread, std::uint64_t seed) {
     std::vector<std::uint32_t> order(set.view().size());
     std::iota(order.begin(), order.end(), 0u);
@@ -129,7 +129,7 @@ TEST_F(RankIndices, AreRefusedOnAllRanks) {
     const bool last = own_rank() + 1 == test::rank_count();
     expect_refused(ErrorCode::bad_input, "3 indices for", last ? std::span(indices).first(3) : std::span(indices));
     if (test::rank_count() > 1) {
-        expect_refused(ErrorCode::usage, "this one gives none", last ? std::span(indices).first(0) : indices);
+        expect_refused(ErrorCode::usage, "other ranks give indices", last ? std::span(indices).first(0) : indices);
         // Each rank began with the same.
         expect_refused(ErrorCode::bad_input, "is given to two objects", indices);
     }

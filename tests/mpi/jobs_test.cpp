@@ -1,4 +1,4 @@
-// Jobs of the MPI engine: submitted alike on all ranks, cancelled on any.
+// Tests jobs of the MPI engine: submitted on all ranks, cancelled on any rank.
 #include <gtest/gtest.h>
 
 #include "mpi/ranks.hpp"
@@ -17,7 +17,7 @@ protected:
         PairList pairs = job.take_pairs();
         EXPECT_TRUE(test::same_bytes(test::all_pieces(pairs.to_vector()), expected_));
     }
-    /// Takes seconds.
+    /// Returns objects whose detection takes seconds.
     JobObjects slow() const { return borrowed({std::span<const Box3f>(many_), {}}); }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
@@ -39,7 +39,7 @@ TEST_F(RankJobs, RunInTurnWithCalls) {
     for (Job& job : jobs) expect_right(job);
 }
 
-/// On one rank alone: the running one, one that waits; the others' go with them.
+/// One rank cancels a running and a waiting job. Both end on all ranks.
 TEST_F(RankJobs, EndOnAllWhereOneRankCancels) {
     Job running = engine_->submit(slow());
     Job waiting = engine_->submit(own());

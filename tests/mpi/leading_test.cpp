@@ -1,4 +1,4 @@
-// The engine of rank 0 that other ranks follow: to its caller an engine like any other.
+// Tests the engine of rank 0 that other ranks follow. Its caller uses the common Engine interface.
 #include "engine/mpi/leading/leading.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 using test::AnyCall;
 using test::Case;
 
-/// On rank 0 makes calls of an engine; the other ranks follow it.
+/// Makes calls of an engine on rank 0. Other ranks follow it.
 template <typename Calls>
 void lead(const Calls& calls, unsigned threads = 1) {
     if (test::own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
@@ -32,7 +32,7 @@ void lead(const Calls& calls, unsigned threads = 1) {
 
 class RankLeadingProperty : public ::testing::TestWithParam<std::string> {};
 
-/// All calls on one engine, which keeps what it dealt out before.
+/// Makes all calls on one engine, which reuses the objects that it distributed before.
 TEST_P(RankLeadingProperty, AgreesWithThreads) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
@@ -67,13 +67,14 @@ protected:
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
-    /// Takes seconds.
+    /// Boxes whose detection takes seconds.
     const std::vector<Box3f> many_{60'000, Box3f{{0, 0, 0}, {1, 1, 1}}};
 };
 
-/// Far more pairs than the buffer holds: in the order of the tree some ranks' are found twice, ascending they come in windows.
+/// Streams far more pairs than the buffer holds. In octal order, some ranks find pairs twice. In ascending order, pairs
+/// are sent in windows.
 TEST_F(RankLeading, StreamsInBoundedMemory) {
-    // All at one place, which is one rank's, beside a crowd that all ranks have a part of.
+    // All these boxes are at one place, which a single rank owns. The crowd is distributed over all ranks.
     std::vector<Box3f> boxes = samples::make_scene("coincident", test::scaled(1'000, 1), 1);
     for (std::size_t i = 0; i < test::scaled(6'000, 2); ++i) {
         Box3f& box = boxes.emplace_back();
@@ -158,7 +159,7 @@ TEST_F(RankLeading, PassesOnWhatTheCallersFunctionsThrow) {
                 };
             };
             EXPECT_THROW((void)engine.stream_pairs(objects(), full_after(0), options), Full);
-            taken = 0;  // with the last ones, which are another rank's
+            taken = 0;  // together with the last pairs, which another rank found
             EXPECT_THROW((void)engine.stream_pairs(objects(), full_after(expected_.size() - 1), options), Full);
             EXPECT_THROW(
                 (void)engine.stream_pairs(

@@ -1,4 +1,5 @@
-// The tests of the MPI engine: every rank runs all of them; the first one prints, the others what fails.
+// Main program of the tests of the MPI engine. Every rank runs all tests. Rank 0 prints all results, other ranks print
+// failures only.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -20,7 +21,7 @@ class Failures final : public ::testing::EmptyTestEventListener {
 
 int run(int argc, char** argv) {
 #ifdef OCTOPAIR_TEST_HOOKS
-    if (own_rank() == 0) reset_test_hooks();  // makes their file
+    if (own_rank() == 0) reset_test_hooks();  // creates the file of the hooks
     (void)on_all(true);
 #endif
     ::testing::InitGoogleTest(&argc, argv);

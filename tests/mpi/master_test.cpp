@@ -1,4 +1,5 @@
-// The paper's arrangement on ranks: the master finds what threads find, and the others take part in it.
+// Tests the paper's master-worker arrangement on ranks: the master finds the pairs that threads find, and other ranks
+// take part.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -35,7 +36,7 @@ std::unique_ptr<Engine> make_paper_engine(unsigned ranks_per_machine = 2, unsign
 
 Objects view(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes), {}}; }
 
-/// All is on the master, which alone finds out what to expect. Ranks go on alike, whatever comes of it.
+/// All objects are on the master, and only the master computes the expected result. All ranks continue, whatever the result.
 void expect_at_master(const std::vector<Pair>& own, const std::function<std::vector<Pair>()>& expected) {
     if (own_rank() == 0) {
         EXPECT_TRUE(test::same_bytes(own, expected()));
@@ -72,7 +73,7 @@ TEST(RankMaster, HasTheHashesOfThreads) {
     }
 }
 
-/// Joins, paddings, margins, precisions, limits, streams.
+/// Tests joins, paddings, margins, precisions, limits and streams.
 TEST(RankMaster, AgreesWithThreadsOnAnyCall) {
     const auto local = make_local_engine(1);
     const auto engine = make_paper_engine();
@@ -139,7 +140,7 @@ TEST(RankMaster, IsOneOfTheRanksThatBuildLists) {
     EXPECT_EQ(costs.objects_received, master ? 0 : run);
     EXPECT_GT(costs.build, 0);
     EXPECT_EQ(costs.scan > 0, master);
-    if (master) {  // sends boxes, and no entries
+    if (master) {  // the master sends boxes, but no entries
         EXPECT_GE(costs.bytes_sent, (objects - run) * sizeof(Box3f));
         EXPECT_LT(costs.bytes_sent, objects * sizeof(Box3f) * 5 / 4);
     } else {
@@ -152,13 +153,13 @@ TEST(RankMaster, IsOneOfTheRanksThatBuildLists) {
     }
 }
 
-/// Whoever has it in its run finds it, and all say what the local engine would.
+/// The rank with the bad box in its run finds it, and all ranks report the local engine's message.
 TEST(RankMaster, NamesTheFirstBadBox) {
     std::vector<Box3f> boxes = samples::make_scene("dense", 5'000, 1);
     const std::vector<Box3f> good = boxes;
     const auto engine = make_paper_engine();
     for (const std::size_t bad : {std::size_t(4'987), std::size_t(2'500), std::size_t(12)}) {
-        boxes[bad].max[1] = std::numeric_limits<float>::quiet_NaN();  // and those of the rounds before
+        boxes[bad].max[1] = std::numeric_limits<float>::quiet_NaN();  // keeps the bad boxes of the rounds before
         const std::vector<Box3f> own = test::slice(boxes, Spread::lopsided);
         const std::vector<Box3f> well = test::slice(good, Spread::even);
         PairList list;
@@ -190,7 +191,7 @@ TEST(RankMaster, EndsOnAllWhereItsReceiverFails) {
     expect_at_master(listed(*engine, view(own), Order::ascending), [&] { return find_pairs(boxes); });
 }
 
-/// While the master scans what would take many seconds, and the others wait.
+/// Stops a master's scan that would take many seconds while the other ranks wait.
 TEST(RankMaster, IsStoppedByAnotherRank) {
     const auto engine = make_paper_engine();
     const std::vector<Box3f> many(60'000, Box3f{{0, 0, 0}, {1, 1, 1}});
@@ -224,13 +225,14 @@ TEST(RankMaster, HasFewObjectsOrNone) {
 }
 
 TEST(RankMaster, NeedsTheSameArrangementOnAllRanks) {
-    EXPECT_EQ(test::message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }), "machines of no ranks");
+    EXPECT_EQ(test::message_of(ErrorCode::usage, [] { (void)make_paper_engine(0); }),
+              "ranks_per_machine is 0; it must be at least 1");
     if (rank_count() == 1) GTEST_SKIP() << "one rank cannot differ";
     EXPECT_EQ(test::message_of(ErrorCode::usage, [] { (void)make_paper_engine(own_rank() == 0 ? 1 : 2); }),
-              "the arrangements of the ranks' engines differ");
+              "the ranks' engines differ in arrangement or ranks_per_machine");
     EXPECT_EQ(test::message_of(ErrorCode::usage,
                                [] { (void)(own_rank() == 0 ? make_paper_engine() : make_mpi_engine(MPI_COMM_WORLD)); }),
-              "the arrangements of the ranks' engines differ");
+              "the ranks' engines differ in arrangement or ranks_per_machine");
 }
 
 }  // namespace

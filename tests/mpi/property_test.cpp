@@ -1,4 +1,4 @@
-// Ranks against threads, on random calls about random and degenerate scenes: joins, paddings, margins, limits.
+// Tests ranks against threads on random calls with random and degenerate scenes: joins, paddings, margins and limits.
 #include <gtest/gtest.h>
 
 #include "mpi/ranks.hpp"
@@ -44,7 +44,7 @@ TEST_P(RankProperty, AgreesWithThreads) {
     }
 }
 
-/// With more objects, so that every rank has octants of its own.
+/// Uses more objects, so that every rank owns octants.
 TEST_P(RankProperty, AgreesWithThreadsOnLargerScenes) {
     if (GetParam() == "denormals" || GetParam() == "largest") GTEST_SKIP() << "seconds a call, for any engine";
     Case whole;

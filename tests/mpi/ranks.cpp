@@ -8,7 +8,7 @@ SliceBounds own_slice(std::size_t objects, Spread spread) {
     const std::size_t ranks = rank_count(), rank = own_rank();
     if (spread == Spread::even) return {objects * rank / ranks, objects * (rank + 1) / ranks};
     if (spread == Spread::all_on_last) return {rank + 1 == ranks ? 0 : objects, objects};
-    // Half on the first, none on the second, and so on with what is left.
+    // Half of the objects on rank 0, none on rank 1, and so on with the remaining objects.
     std::size_t begin = 0, end = 0;
     for (std::size_t r = 0; r <= rank; ++r) {
         begin = end;

@@ -1,4 +1,4 @@
-// What the tests of the MPI engine share: they run on all ranks alike, each with its slice of the same scene.
+// Helpers for the tests of the MPI engine. Each test runs on all ranks, and each rank has a slice of the same scene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ inline unsigned rank_count() {
     return unsigned(size);
 }
 
-/// How objects lie with the ranks.
+/// Distribution of objects over ranks.
 enum class Spread : std::uint8_t { even, all_on_last, lopsided };
 inline constexpr Spread spreads[] = {Spread::even, Spread::all_on_last, Spread::lopsided};
 inline std::string name_of(Spread spread) {
     return spread == Spread::even ? "even" : spread == Spread::lopsided ? "lopsided" : "all on the last rank";
 }
 
-/// The objects [begin, end) are this rank's.
+/// This rank owns the objects [begin, end).
 struct SliceBounds {
     std::size_t begin, end;
 };
@@ -48,11 +48,11 @@ std::vector<Element> slice(const std::vector<Element>& all, Spread spread) {
     const SliceBounds own = own_slice(all.size(), spread);
     return {all.begin() + std::ptrdiff_t(own.begin), all.begin() + std::ptrdiff_t(own.end)};
 }
-/// This rank's part of a case.
+/// Returns this rank's part of a case.
 Case slice(const Case& whole, Spread spread);
 
 std::vector<std::byte> all_bytes(std::span<const std::byte> own);
-/// What all ranks found, one after another, on every rank.
+/// Returns the results of all ranks, in the order of ranks, on every rank.
 template <typename AnyPair>
 std::vector<AnyPair> all_pieces(const std::vector<AnyPair>& own) {
     const std::vector<std::byte> bytes = all_bytes(std::as_bytes(std::span(own)));
@@ -60,7 +60,7 @@ std::vector<AnyPair> all_pieces(const std::vector<AnyPair>& own) {
     std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(all)).begin());
     return all;
 }
-/// What the Error says that `call` throws; fails if it throws none, or of another code.
+/// Returns the message of the Error that `call` throws. Fails if `call` throws no Error, or an Error with another code.
 template <typename Call>
 std::string message_of(ErrorCode code, const Call& call) {
     try {
@@ -73,9 +73,9 @@ std::string message_of(ErrorCode code, const Call& call) {
     return {};
 }
 
-/// True on all ranks if on all.
+/// Returns true on all ranks if `own` is true on all ranks.
 bool on_all(bool own);
-/// The largest of all ranks'.
+/// Returns the largest value of all ranks.
 std::uint64_t largest(std::uint64_t own);
 
 }  // namespace octopair::test

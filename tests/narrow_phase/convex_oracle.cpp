@@ -46,7 +46,7 @@ bool in_tetrahedron(const std::array<Point3d, 4>& corners, const Point3d& at) {
     return true;
 }
 
-/// Across the rim of a circle of this radius around the z axis, and at that height.
+/// Returns the point on a circle around the z axis with the given radius and height, in the direction of `at`.
 Point3d towards(const Point3d& at, double radius, double height) {
     const double across = std::hypot(at[0], at[1]);
     return across > 0 ? Point3d{at[0] * radius / across, at[1] * radius / across, height} : Point3d{radius, 0, height};

@@ -1,4 +1,4 @@
-// Convex shapes judged by what points are in them, and nothing else: an oracle that knows no support functions.
+// Oracle for convex shapes. Decides by membership of points only, without support functions.
 #pragma once
 
 #include "geometry/vector.hpp"
@@ -6,7 +6,7 @@
 
 namespace octopair::test {
 
-/// The shape's point that is nearest to another one.
+/// Returns the shape's point that is nearest to `to`.
 Point3d nearest_in(const shape::Any& shape, const Point3d& to);
 
 struct PosedShape {
@@ -15,8 +15,8 @@ struct PosedShape {
 };
 Point3d nearest_in(const PosedShape& posed, const Point3d& to);
 
-/// At least the distance of two shapes, by going from each to the other's nearest point so many times; it comes close to
-/// the distance.
+/// Returns an upper bound of the distance of two shapes, close to the distance. Moves alternately to the nearest point
+/// of each shape, for a given number of turns.
 double distance_by_turns(const PosedShape& a, const PosedShape& b, int times);
 
 }  // namespace octopair::test

@@ -1,4 +1,4 @@
-// Convex things against each other: random ones by the oracle, and what solvers are known to get wrong.
+// Tests pairs of convex shapes: random shapes against the oracle, and cases that are known to break solvers.
 #include "narrow_phase/convex/convex_pair.hpp"
 
 #include <gtest/gtest.h>

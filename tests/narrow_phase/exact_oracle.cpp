@@ -11,7 +11,7 @@ namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
 using Place = std::array<Rational, 3>;
-/// Corners of a convex set, in order; one or two of them are a point or a segment.
+/// Corners of a convex set, in order. One corner is a point, two corners are a segment.
 using Convex = std::vector<Place>;
 
 Place exactly(const Point3d& point) { return {Rational(point[0]), Rational(point[1]), Rational(point[2])}; }
@@ -25,7 +25,7 @@ Place cross(const Place& a, const Place& b) {
 }
 bool is_zero(const Place& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
 
-/// normal * (x - place) >= 0.
+/// The half space of all x with normal * (x - place) >= 0.
 struct HalfSpace {
     Place place, normal;
     Rational height(const Place& x) const { return dot(normal, x - place); }
@@ -52,7 +52,7 @@ void add_plane(std::vector<HalfSpace>& to, const Place& place, const Place& norm
     to.push_back({place, Place{} - normal});
 }
 
-/// All that a segment or a point is between.
+/// Returns the half spaces whose intersection is a segment or a point.
 std::vector<HalfSpace> halves_of(const Place& begin, const Place& end) {
     std::vector<HalfSpace> halves;
     const Place way = end - begin;
@@ -143,7 +143,7 @@ TrianglePair grid_pair(unsigned most, std::mt19937& random) {
     return pair;
 }
 
-/// Corners drawn from a few places, so that most are shared and some are a triangle's twice.
+/// Returns triangles with corners drawn from a few places. Most corners are shared, and some triangles have a corner twice.
 TrianglePair neighbours(unsigned places, std::mt19937& random) {
     std::vector<Point3d> from(places);
     for (Point3d& place : from) place = grid_point(3, random);
@@ -154,7 +154,7 @@ TrianglePair neighbours(unsigned places, std::mt19937& random) {
     return pair;
 }
 
-/// Corners are rounded combinations of three places: coplanar but for the rounding, or for its absence.
+/// Returns triangles whose corners are rounded combinations of three places: coplanar except for rounding errors.
 TrianglePair almost_coplanar(std::mt19937& random) {
     std::uniform_real_distribution<double> at(-1, 1);
     std::array<Point3d, 3> base;

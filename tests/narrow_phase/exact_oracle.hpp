@@ -1,6 +1,6 @@
-// What the exact tests of triangles are held against: the same answers from rational numbers, by other ways. And where
-// both are tried: triangles with small integer corners, which are often degenerate, coplanar, touching or adjacent, the
-// same at all scales, and such as lie almost in one plane.
+// Oracle for the exact tests of triangles: computes the same results in rational numbers by different methods. Also
+// makes the test triangles. The triangles have small integer corners and are often degenerate, coplanar, touching or
+// adjacent. Some triangles are copied to all scales, and some lie almost in a common plane.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace octopair::test {
 
-/// Of the determinant of b - a, c - a, d - a.
+/// Returns the sign of the determinant of b - a, c - a, d - a.
 int oracle_plane_side(const std::array<Point3d, 4>& corners);
 
-/// One triangle's corners are cut by the half spaces and planes whose intersection the other one is: whether any are left.
+/// Returns whether two triangles intersect. Clips one triangle by the half spaces and planes whose intersection is the other.
 bool oracle_meet(const Triangle3d& a, const Triangle3d& b);
-/// Whether any of them are left outside of the shared corner, edge or edges.
+/// Returns whether the triangles intersect outside of the shared corner, edge or edges.
 bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b);
-/// What they have in common.
+/// The intersection of two triangles.
 struct OracleContact {
     std::size_t corners;  ///< different ones
     bool area;            ///< it is more than a segment

@@ -1,4 +1,4 @@
-// Two posed meshes: what the hierarchies say is what testing all pairs of triangles says.
+// Tests pairs of posed meshes: the hierarchies give the result of a test of all pairs of triangles.
 #include "narrow_phase/mesh/mesh_pair.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Triangle3d triangle_of(const shape::Mesh& mesh, const Pose& pose, std::size_t i)
             vector::posed(pose, mesh.vertices[c])};
 }
 
-/// Two meshes with their trees, and poses to be set.
+/// Two meshes with their trees and adjustable poses.
 struct Couple {
     Couple(shape::Mesh first, shape::Mesh second)
         : mesh_a(std::move(first)),
@@ -40,7 +40,7 @@ struct Couple {
     PosedMesh a() const { return {*tree_a, pose_a}; }
     PosedMesh b() const { return {*tree_b, pose_b}; }
 
-    /// All pairs of triangles that meet, by testing all.
+    /// Returns all pairs of triangles that intersect, from a test of all pairs.
     Numbers all_meeting() const {
         Numbers meeting;
         for (std::uint32_t i = 0; i < mesh_a.triangles.size(); ++i) {
@@ -183,7 +183,7 @@ TEST(MeshPair, HugeAndTinyNumbers) {
     }
 }
 
-/// Whether `outer` encloses places at so many distances from the origin along a diagonal.
+/// Returns whether `outer` encloses each of the places at the given distances from the origin along a diagonal.
 std::vector<bool> enclosed(const shape::Mesh& outer, const Pose& pose, std::initializer_list<double> distances) {
     const auto tree = make_mesh_tree(outer);
     std::vector<bool> inside;
@@ -241,17 +241,17 @@ TEST(MeshInside, CornersOfTriangleSoupsCloseThem) {
 TEST(MeshInside, WhatIsHeldIsWhole) {
     const auto cube = [](double half) { return box_mesh({-half, -half, -half}, {half, half, half}); };
     Couple boxes(cube(2), cube(1));
-    EXPECT_TRUE(holds_whole(boxes.a(), boxes.b()));
-    EXPECT_FALSE(holds_whole(boxes.b(), boxes.a()));
+    EXPECT_TRUE(contains_mesh(boxes.a(), boxes.b()));
+    EXPECT_FALSE(contains_mesh(boxes.b(), boxes.a()));
     // In the wall of a hollow one, all around the hollow.
     shape::Mesh hollow = cube(1.5);
     for (auto& corners : hollow.triangles) std::swap(corners[0], corners[1]);
     Couple around(joined(cube(2), hollow), cube(1.75));
     EXPECT_TRUE(encloses_part(around.a(), around.b()));
-    EXPECT_FALSE(holds_whole(around.a(), around.b()));
-    EXPECT_FALSE(holds_whole(around.b(), around.a()));
+    EXPECT_FALSE(contains_mesh(around.a(), around.b()));
+    EXPECT_FALSE(contains_mesh(around.b(), around.a()));
     Couple nothing(cube(2), {});
-    EXPECT_FALSE(holds_whole(nothing.a(), nothing.b()));
+    EXPECT_FALSE(contains_mesh(nothing.a(), nothing.b()));
 }
 
 TEST(MeshInside, PartsAreJudgedOneByOne) {
@@ -260,10 +260,10 @@ TEST(MeshInside, PartsAreJudgedOneByOne) {
     EXPECT_FALSE(surfaces_meet(couple.a(), couple.b()));
     EXPECT_TRUE(encloses_part(couple.a(), couple.b()));
     EXPECT_FALSE(encloses_part(couple.b(), couple.a()));
-    EXPECT_FALSE(holds_whole(couple.a(), couple.b()));
+    EXPECT_FALSE(contains_mesh(couple.a(), couple.b()));
     couple.pose_b.rows[0][3] = 7;
     EXPECT_FALSE(encloses_part(couple.a(), couple.b()));
-    EXPECT_FALSE(holds_whole(couple.a(), couple.b()));
+    EXPECT_FALSE(contains_mesh(couple.a(), couple.b()));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Rays through edges and corners of closed meshes count rightly, and points know whether they are on a triangle.
+// Tests that rays through edges and corners of closed meshes count crossings correctly, and that points on a triangle
+// are detected.
 #include "narrow_phase/exact/ray_parity.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ std::array<Triangle3d, 4> faces_of(const Tetrahedron& corners) {
     return {Triangle3d{a, b, c}, Triangle3d{a, b, d}, Triangle3d{a, c, d}, Triangle3d{b, c, d}};
 }
 
-/// On the same side of each face as the corner opposite to it.
+/// Returns whether `place` is on the same side of each face as the opposite corner.
 bool is_inside(const Tetrahedron& corners, const Point3d& place) {
     for (std::size_t i = 0; i < 4; ++i) {
         Tetrahedron face = corners;

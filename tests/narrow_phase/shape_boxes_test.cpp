@@ -1,4 +1,4 @@
-// Boxes of shaped objects hold what they must, are no larger than need be, and bad objects are refused.
+// Tests the boxes of shapes: they contain the shape, are no larger than necessary, and invalid objects are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>

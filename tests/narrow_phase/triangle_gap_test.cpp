@@ -1,4 +1,4 @@
-// How far apart triangles are, and where, how and how deep they meet.
+// Tests the distance of triangles, and the place, kind and depth of their contacts.
 #include "narrow_phase/exact/triangle_gap.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ double off_triangle(const Point3d& place, const Triangle3d& triangle) {
     return excess;
 }
 
-/// Kinds of pairs with numbers around 1.
+/// Kinds of pairs whose coordinates are around 1.
 constexpr std::array<unsigned, 4> near_kinds = {0, 1, 2, 3};
 
 TEST(TriangleGap, APointIsATriangleOfOneCorner) {

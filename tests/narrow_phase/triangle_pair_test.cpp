@@ -1,4 +1,5 @@
-// Triangles against triangles, without error: held against rational numbers, and against what must not change anything.
+// Tests pairs of triangles without tolerance, against rational numbers and against transformations that must not change
+// the result.
 #include "narrow_phase/exact/triangle_pair.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double huge = 1.7e308;
 
-/// What float64 alone says.
+/// Returns the side computed in float64 only.
 int rounded_plane_side(const std::array<Point3d, 4>& at) {
     std::array<Point3d, 3> to;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -74,7 +75,7 @@ TEST(TrianglePair, MeetsWhereRationalNumbersDo) {
     for (const unsigned some : {seen[0], seen[1], beyond[0], beyond[1]}) EXPECT_GT(some, test::scaled(90, 10));
 }
 
-TEST(PairLook, SaysNothingWrongAndTheSameOfOneAsOfMany) {
+TEST(TrianglePrefilter, SaysNothingWrongAndTheSameOfOneAsOfMany) {
     std::mt19937 random(10);
     std::vector<Triangle3d> first, second;
     std::vector<Pair> pairs;
@@ -86,20 +87,20 @@ TEST(PairLook, SaysNothingWrongAndTheSameOfOneAsOfMany) {
     }
     std::shuffle(pairs.begin(), pairs.end(), random);
     for (Pair& pair : pairs) pair.b = pair.a;
-    std::vector<std::uint8_t> looks(pairs.size());
-    look_at({first, second, pairs}, looks);
+    std::vector<std::uint8_t> flags(pairs.size());
+    prefilter_pairs({first, second, pairs}, flags);
     std::array<std::size_t, 4> seen = {};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Triangle3d &a = first[pairs[i].a], &b = second[pairs[i].b];
-        ASSERT_EQ(looks[i], look_at(a, b)) << text({a, b});
-        ASSERT_EQ((looks[i] & look_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
-        ASSERT_FALSE((looks[i] & look_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
-        ++seen[looks[i]];
+        ASSERT_EQ(flags[i], prefilter_pair(a, b)) << text({a, b});
+        ASSERT_EQ((flags[i] & prefilter_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
+        ASSERT_FALSE((flags[i] & prefilter_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
+        ++seen[flags[i]];
     }
     for (const std::size_t some : seen) EXPECT_GT(some, pairs.size() / 50);
 }
 
-TEST(PairLook, SaysNothingWrongWhereProductsOverflowOrVanish) {
+TEST(TrianglePrefilter, SaysNothingWrongWhereProductsOverflowOrVanish) {
     std::mt19937 random(11);
     for (const int exponent : {-1070, -700, -360, -300, 300, 336, 339, 342, 500, 508, 512, 700, 1015}) {
         for (std::uint32_t i = 0; i < test::scaled(2000, 20); ++i) {
@@ -109,14 +110,14 @@ TEST(PairLook, SaysNothingWrongWhereProductsOverflowOrVanish) {
                     for (double& at : corner) at = std::clamp(std::ldexp(at, exponent), -DBL_MAX, DBL_MAX);
                 }
             }
-            const std::uint8_t look = look_at(a, b);
-            ASSERT_EQ((look & look_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
-            ASSERT_FALSE((look & look_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
+            const std::uint8_t flags = prefilter_pair(a, b);
+            ASSERT_EQ((flags & prefilter_shared) != 0, shared_corners(a, b) != 0) << text({a, b});
+            ASSERT_FALSE((flags & prefilter_apart) != 0 && meet_beyond_shared(a, b)) << text({a, b});
         }
     }
 }
 
-/// The same triangles with their corners and axes in another order, turned over, and mirrored.
+/// Returns the triangles with corners and axes in another order, turned over, and mirrored.
 TrianglePair rearranged(TrianglePair pair, std::mt19937& random) {
     std::array<std::size_t, 3> axes = {0, 1, 2};
     std::shuffle(axes.begin(), axes.end(), random);

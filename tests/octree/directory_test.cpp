@@ -1,4 +1,4 @@
-// Directory: octants from the flags of which octants are split, and the leaf of each cell.
+// Tests Directory: octants computed from split flags, and the leaf of each cell.
 #include "octree/directory.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,7 @@
-// The linear octree's invariants, on every kind of scene: the tree tiles its space, each box has an entry wherever it
-// must, at most eight of them, and all of it is the same however the work is shared out.
+// Tests the invariants of the linear octree on every kind of scene:
+// - The octants tile the space of the tree.
+// - Each box has an entry in every required octant, at most eight in total.
+// - The octree is the same for any distribution of the work.
 
 #include "octree/linear_octree.hpp"
 
@@ -17,7 +19,7 @@
 namespace octopair::test {
 namespace {
 
-/// Pretends to be many threads, and runs the shares last to first.
+/// Simulates many threads, and runs the shares in reverse order.
 class BackwardExecutor final : public Executor {
 public:
     explicit BackwardExecutor(unsigned width) : width_(width) {}
@@ -136,13 +138,13 @@ std::vector<std::string> kinds() {
     return names;
 }
 
-/// The entries of some objects, sorted, and what was found of them.
+/// The sorted entries of some objects, and their statistics.
 struct OwnedList {
     std::vector<Entry> entries;
     std::vector<std::uint64_t> home_begins, ghost_begins;
 };
 
-/// Of objects [begin, end), as a worker of the paper's arrangement makes it.
+/// Returns the list of objects [begin, end), made by the steps of a worker in the paper's arrangement.
 OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, ObjectBlock objects) {
     BuildMemory memory(own_pages(), own_pages());
     memory.resize(source.size(), 1, layout.directory.octants().size(), 1);
@@ -164,7 +166,7 @@ OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, Obj
     return list;
 }
 
-/// As the first rank of a machine merges those of the machine's.
+/// Merges the lists of a machine, like the first rank of the machine.
 OwnedList merged_list(std::span<const SortedList> lists) {
     OwnedList merged;
     std::size_t entries = 0;

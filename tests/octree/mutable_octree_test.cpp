@@ -1,4 +1,4 @@
-// The octree that changes against brute force over cells: nothing that overlaps is missed, and nothing comes twice.
+// Tests the mutable octree against brute force over cells: it finds every overlap exactly once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ LinearOctree linear_octree_of(const std::vector<Box3f>& boxes) {
     return octree;
 }
 
-/// An octree, and the cells of what is in it.
+/// An octree, and the cells of its objects.
 class Changing {
 public:
     explicit Changing(const std::vector<Box3f>& boxes) {
@@ -112,7 +112,7 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
-/// Takes every object.
+/// Accepts every object.
 class TakeAll final : public NearestVisitor {
 public:
     double at_least(const Box3d&) const override { return 0; }

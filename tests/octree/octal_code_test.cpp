@@ -1,4 +1,4 @@
-// Octal codes against the paper's own examples, and against plain vectors of digits.
+// Tests octal codes against the examples of the paper and against plain vectors of digits.
 #include "octopair/octal_code.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ rc::Gen<Digits> any_digits() {
     });
 }
 
-/// Two paths that have something in common more often than chance would have it.
+/// Generates two paths with a common prefix, more often than random paths have.
 rc::Gen<std::pair<Digits, Digits>> related_digits() {
     return rc::gen::apply(
         [](Digits a, const Digits& b, std::size_t common) {
@@ -37,7 +37,7 @@ bool is_prefix(const Digits& a, const Digits& b) {
     return a.size() <= b.size() && std::equal(a.begin(), a.end(), b.begin());
 }
 
-/// The code of the refusal, or nothing if the call succeeded.
+/// Returns the code of the refusal, or nothing if the call succeeded.
 template <typename Call>
 std::optional<ErrorCode> refusal(const Call& call) {
     try {

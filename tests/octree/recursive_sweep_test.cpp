@@ -1,4 +1,4 @@
-// The sweeps of large and crowded sets, each against testing all pairs of boxes.
+// Tests the sweeps of large and crowded sets against a test of all pairs of boxes.
 #include "octree/sweep/recursive_sweep.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace octopair::test {
 namespace {
 
-/// Overlapping entries are pairs; those of two sets only across the sets.
+/// Overlapping entries are pairs. Entries of two sets are pairs only across the sets.
 class PlainRule final : public PairRule {
 public:
     explicit PlainRule(std::uint32_t second_begin) : second_begin_(second_begin) {}

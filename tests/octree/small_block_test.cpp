@@ -1,4 +1,5 @@
-// The kernel that searches a block against its specification; and boxes in the numbers of a unit.
+// Tests the kernel that searches a block against its specification, and the conversion of boxes to the numbers of a
+// unit.
 #include "octree/dynamic/small_block.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +43,8 @@ TEST(SmallBlock, KernelFindsWhatTheSpecificationDoes) {
     EXPECT_GT(found, 1000u);
 }
 
-/// Units of all sizes: what overlaps in cells does in their numbers, and the cells of the numbers hold the box.
+/// Tests units of all sizes: boxes that overlap in cells overlap in the unit's numbers, and the cells of the numbers
+/// contain the box.
 TEST(Unit, NumbersLoseNothing) {
     std::mt19937 random(2);
     for (int round = 0; round < 20000; ++round) {

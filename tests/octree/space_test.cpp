@@ -1,4 +1,4 @@
-// Space: the map from coordinates to cells, and its kernel.
+// Tests Space: the map from coordinates to cells, and its kernel.
 #include "octree/space.hpp"
 
 #include <gtest/gtest.h>

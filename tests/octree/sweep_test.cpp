@@ -1,4 +1,4 @@
-// The sweep's SIMD kernel against its scalar specification, and both against testing all boxes.
+// Tests the sweep's SIMD kernel against its scalar specification, and both against a test of all boxes.
 
 #include "octree/sweep/sweep.hpp"
 
@@ -50,7 +50,7 @@ void for_each_bit(const HitMask& hit, Body&& body) {
     }
 }
 
-/// All hits, by way of a queue of `room` masks.
+/// Returns all hits, collected through a queue of `room` masks.
 Hits run(Kernel kernel, const Sweep& sweep, std::size_t room) {
     Hits hits;
     std::vector<HitMask> queue(room);
@@ -64,7 +64,7 @@ Hits run(Kernel kernel, const Sweep& sweep, std::size_t room) {
     return hits;
 }
 
-/// By the rule of sweep.hpp: blocks of rows, columns, rows.
+/// Returns the hits by the rule of sweep.hpp: blocks of rows, columns, rows.
 Hits brute(const SweepSet& rows, const SweepSet& columns, SweepKind kind) {
     Hits hits;
     for (std::size_t first = 0; first < rows.size(); first += block_size) {

@@ -1,4 +1,4 @@
-// Least squares on curves that are known.
+// Tests the least-squares fit on known curves.
 #include "paper/fit.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a study measures; not how long it takes.
+// Tests the counts that a study measures, but not its times.
 #include "paper/study.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The arithmetic of the tables, held against what the paper printed.
+// Tests the arithmetic of the tables against the printed values of the paper.
 #include "paper/tables.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace octopair::paper {
 namespace {
 
-/// As printed in tables 1 and 2.
+/// Values printed in tables 1 and 2.
 struct Printed {
     double speedup;
     double percent;
@@ -40,7 +40,7 @@ TEST(Tables, PublishedTimesByObjects) {
     EXPECT_TRUE(published_times(1'500'000).empty());
 }
 
-/// Octopair takes a microsecond an object on one processor; whoever is slower by `slower`.
+/// Makes a study in which octopair takes a microsecond per object on one processor. All other programs are slower by `slower`.
 Study made_study(const std::vector<std::uint64_t>& objects, unsigned threads) {
     Study study{{"uniform", objects, threads, 1, 20}, {}};
     for (const Setup& setup : setups(threads)) {

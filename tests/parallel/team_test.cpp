@@ -1,4 +1,4 @@
-// Team: every index once, workers apart, exceptions, helpers.
+// Tests Team: every index runs once, workers have separate numbers, exceptions propagate, helpers take part.
 #include "parallel/team.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Bounding spheres and oriented boxes leave out much, and nothing that counts.
+// Tests that bounding spheres and oriented boxes reject many pairs, and never a colliding pair.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 using samples::random_pose;
 using samples::RandomStream;
 
-/// Long and short things, many of which are near each other.
+/// Long and short objects, many of which are near each other.
 struct Crowd {
     std::vector<Geometry> geometries;
     std::vector<std::uint32_t> geometry;

@@ -1,4 +1,4 @@
-// Calls that end before their time: what filters and sinks throw, and stop requests.
+// Tests calls that end early: exceptions of filters and sinks, and stop requests.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(, Endings,
                                            Ending{7, Order::octal}),
                          ending_name_of);
 
-/// What comes out before does not depend on threads.
+/// Tests that the output before an exception does not depend on threads.
 TEST_P(Endings, FiltersThrowWhereTheirPairIs) {
     Options asked = options();
     const std::vector<Pair> pairs = find_pairs(boxes_, asked);
@@ -101,7 +101,7 @@ TEST_P(Endings, WhatTheEngineThrowsReachesTheCaller) {
     }
 }
 
-/// In the midst of a call; how soon it ends, timing_test.cpp asks.
+/// Tests stop requests during a call. timing_test.cpp tests how soon the call ends.
 TEST_P(Endings, RequestsDuringACallHold) {
     std::stop_source source;
     Pipeline pipeline(GetParam().threads);

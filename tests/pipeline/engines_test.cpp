@@ -1,4 +1,4 @@
-// The same bytes from every engine.
+// Tests that every engine gives the same bytes.
 #include <gtest/gtest.h>
 
 #include "octopair/octopair.hpp"

@@ -1,5 +1,5 @@
-// Exact stages for objects: what comes out of the pipeline is what testing all pairs of objects says; and cases that other
-// libraries are known to get wrong.
+// Tests exact stages for objects. The pipeline gives the result of a test of all pairs of objects. Also tests cases
+// that other libraries are known to get wrong.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using samples::box_mesh;
 using samples::random_pose;
 using samples::RandomStream;
 
-/// Objects that own what ShapedObjects borrows.
+/// Owns the objects that ShapedObjects borrows.
 struct Scene {
     std::vector<Geometry> geometries;
     std::vector<std::uint32_t> geometry;
@@ -70,7 +70,7 @@ std::vector<Pair> pairs_of(const std::vector<Collision>& collisions) {
     return pairs;
 }
 
-/// The one collision of two objects.
+/// Returns the only collision of two objects.
 Finding collision_of(const Scene& scene, const ExactOptions& options = {}) {
     const std::vector<Collision> collisions = find(scene, options);
     EXPECT_EQ(collisions.size(), 1u);
@@ -159,7 +159,7 @@ TEST(ExactFilters, DistancesAreThoseOfTheNearestPoints) {
     EXPECT_GT(apart, 20u);
 }
 
-/// Two boxes of triangles, the one at `place`.
+/// Makes two boxes of triangles, the second at `place`.
 Scene two_boxes(const Point3d& size_a, const Point3d& size_b, const Point3d& place) {
     Scene scene;
     scene.add(box_mesh({0, 0, 0}, size_a));

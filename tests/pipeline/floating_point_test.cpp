@@ -1,4 +1,5 @@
-// Shapes, their boxes and the exact filters say the same whatever floating-point state the caller has set.
+// Tests that shapes, their boxes and the exact filters give the same results for any floating-point state of the
+// caller.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +18,7 @@ namespace {
 
 class PipelineFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
 
-/// What objects are made of, before anything is computed of it.
+/// The input of objects, before any computation.
 struct Raw {
     std::vector<shape::Any> shapes;
     std::vector<std::uint32_t> geometry;

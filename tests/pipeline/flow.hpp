@@ -1,4 +1,4 @@
-// What tests of pipelines share: a scene, filters that leave a trace, and what comes out.
+// Helpers for tests of pipelines: a scene, filters that leave a trace, and the output of a pipeline.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace octopair::test {
 
-/// A number that looks drawn by lot, of a pair alone.
+/// Returns a pseudo-random number that depends on the pair only.
 inline std::uint64_t lot(Pair pair) {
     const std::uint64_t mixed = (std::uint64_t(pair.a) << 32 | pair.b) * 0x9E3779B97F4A7C15u;
     return mixed ^ mixed >> 29;
 }
 
-/// Keeps every pair whose lot is not divisible by `divisor`, and learns its lot.
+/// Keeps every pair whose lot is not divisible by `divisor`, and records its lot.
 class LotFilter final : public Filter {
 public:
     explicit LotFilter(std::uint64_t divisor) : divisor_(divisor) {}
@@ -37,7 +37,7 @@ private:
     std::uint64_t divisor_;
 };
 
-/// Pairs and what was learned of them, as they came out.
+/// Pairs and their findings, in the order of output.
 struct Outcome {
     std::vector<Pair> pairs;
     std::vector<std::uint64_t> notes;

@@ -1,4 +1,4 @@
-// Memory is bounded by the batch, not by the number of candidate pairs.
+// Tests that the size of a batch bounds memory, not the number of candidate pairs.
 #include <gtest/gtest.h>
 
 #include "octopair/octopair.hpp"
@@ -9,7 +9,7 @@
 namespace octopair::test {
 namespace {
 
-/// In a process of its own, so that the peak of one does not hide that of another.
+/// Runs in a separate process, so that the peak memory of a test does not hide that of another test.
 class PipelineMemory : public ::testing::TestWithParam<Order> {};
 INSTANTIATE_TEST_SUITE_P(, PipelineMemory, ::testing::Values(Order::octal, Order::ascending),
                          [](const auto& drawn) { return drawn.param == Order::octal ? "Octal" : "Ascending"; });

@@ -1,4 +1,4 @@
-// Pipelines against plain loops over all pairs: what comes out, its order, its limit and what is counted.
+// Tests pipelines against plain loops over all pairs: output, order, limit and counters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::vector<Pair> engine_pairs(const std::vector<Box3f>& boxes, Order order) {
     return find_pairs(boxes, options);
 }
 
-/// What two filters leave of the engine's pairs.
+/// Returns the expected output of two filters for the engine's pairs.
 Outcome expected_of(const std::vector<Pair>& pairs) {
     Outcome outcome;
     for (const Pair pair : pairs) {
@@ -268,7 +268,7 @@ TEST(Pipeline, SinkIsCalledOnTheCallingThread) {
     EXPECT_EQ(callers, std::set{std::this_thread::get_id()});
 }
 
-/// Holds each pair until so many are held at once, or for long.
+/// Holds each pair until a given number of pairs is held at the same time, or until a timeout.
 class Meeting final : public Filter {
 public:
     explicit Meeting(unsigned threads) : threads_(threads) {}
@@ -293,7 +293,7 @@ private:
     mutable bool met_ = false, alone_ = false;
 };
 
-/// While an engine's threads are blocked in its search, behind a sink that takes its time, too.
+/// Filters run on all threads while an engine's threads are blocked in its search behind a slow sink.
 TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
     const auto boxes = samples::make_scene("dense", 30'000, 1);
     for (const Order order : {Order::octal, Order::ascending}) {

@@ -1,4 +1,4 @@
-// Filters that ask no geometry, against plain loops.
+// Tests filters that need no geometry, against plain loops.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using Names = std::vector<std::string>;
 
 constexpr std::uint32_t objects = 40;
 
-/// Every pair of `objects`, or of a join every a and b.
+/// Returns every pair of `objects`, or every a and b of a join.
 std::vector<Pair> all_pairs(bool join) {
     std::vector<Pair> pairs;
     for (std::uint32_t a = 0; a < objects; ++a) {
@@ -53,7 +53,7 @@ protected:
         return drawn;
     }
     std::uint32_t draw(std::uint32_t below) { return std::uint32_t(random_() % below); }
-    /// Of few letters, so that many fit.
+    /// Returns random text of few letters, so that many patterns match.
     std::string text(const std::string& letters) {
         std::string drawn(draw(6), ' ');
         for (char& c : drawn) c = letters[draw(std::uint32_t(letters.size()))];
@@ -104,7 +104,7 @@ TEST_P(SimpleFilters, ParentsDiffer) {
     EXPECT_EQ(through(*filter, join()), kept(join(), [&](Pair pair) { return parents[pair.a] != parents_b[pair.b]; }));
 }
 
-/// What a pattern means, said in another way.
+/// Returns whether a pattern matches a name, by another algorithm.
 bool fits_plainly(std::string_view name, std::string_view pattern) {
     if (pattern.empty()) return name.empty();
     if (pattern[0] == '*') {
@@ -137,22 +137,23 @@ TEST_P(SimpleFilters, NameRulesLeaveOutEitherWayRound) {
 TEST_P(SimpleFilters, PatternsMeanWhatTheySay) {
     for (int i = 0; i < 20'000; ++i) {
         const std::string name = text("ab"), pattern = text("ab*?*");
-        EXPECT_EQ(fits(name, pattern), fits_plainly(name, pattern)) << '"' << name << "\" \"" << pattern << '"';
+        EXPECT_EQ(matches_pattern(name, pattern), fits_plainly(name, pattern))
+            << '"' << name << "\" \"" << pattern << '"';
     }
 }
 
 TEST(NamePatterns, CountCharacters) {
-    EXPECT_TRUE(fits("Tür", "T?r"));
-    EXPECT_TRUE(fits("Tür/größe", "T?r/*?e"));
-    EXPECT_FALSE(fits("Tür", "T??r"));
-    EXPECT_TRUE(fits("\xFF\xFE", "??"));
-    EXPECT_TRUE(fits("frame/bolt 7", "*/bolt*"));
-    EXPECT_FALSE(fits("bolt 7", "*/bolt*"));
-    EXPECT_FALSE(fits("Frame", "frame"));
-    EXPECT_TRUE(fits("", "*"));
-    EXPECT_FALSE(fits("", "?"));
+    EXPECT_TRUE(matches_pattern("Tür", "T?r"));
+    EXPECT_TRUE(matches_pattern("Tür/größe", "T?r/*?e"));
+    EXPECT_FALSE(matches_pattern("Tür", "T??r"));
+    EXPECT_TRUE(matches_pattern("\xFF\xFE", "??"));
+    EXPECT_TRUE(matches_pattern("frame/bolt 7", "*/bolt*"));
+    EXPECT_FALSE(matches_pattern("bolt 7", "*/bolt*"));
+    EXPECT_FALSE(matches_pattern("Frame", "frame"));
+    EXPECT_TRUE(matches_pattern("", "*"));
+    EXPECT_FALSE(matches_pattern("", "?"));
     // No pattern takes more than |name| * |pattern| steps.
-    EXPECT_FALSE(fits(std::string(20'000, 'a'), std::string("*a*a*a*a*a*a*a*a*a*a") + "b"));
+    EXPECT_FALSE(matches_pattern(std::string(20'000, 'a'), std::string("*a*a*a*a*a*a*a*a*a*a") + "b"));
 }
 
 TEST(SimpleFilterErrors, SizesAgree) {
@@ -163,7 +164,7 @@ TEST(SimpleFilterErrors, SizesAgree) {
     EXPECT_THROW((void)make_filter("none", {}), Error);
 }
 
-/// A filter of other objects than the engine's.
+/// Tests a filter whose objects are not the engine's objects.
 TEST(SimpleFilterErrors, ObjectsWithoutValuesAreRefused) {
     const auto boxes = samples::make_scene("coincident", 5, 1);
     const Numbers three{1, 2, 3};
@@ -182,9 +183,9 @@ TEST(SimpleFilterErrors, ObjectsWithoutValuesAreRefused) {
             EXPECT_EQ(error.what(), message);
         }
     };
-    refused(make_parent_filter(three), "object 3 has no parent: there are 3");
-    refused(make_group_filter({three, three}), "object 3 has no group: there are 3");
-    refused(make_name_filter(names, {}), "object 3 has no name: there are 3");
+    refused(make_parent_filter(three), "object 3 has no parent: values were given for 3 objects");
+    refused(make_group_filter({three, three}), "object 3 has no group: values were given for 3 objects");
+    refused(make_name_filter(names, {}), "object 3 has no name: values were given for 3 objects");
 }
 
 }  // namespace

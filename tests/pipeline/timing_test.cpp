@@ -1,4 +1,4 @@
-// How soon calls with filters end after a stop request.
+// Tests how soon calls with filters end after a stop request.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds patience(test::sanitized ? 3000 : 200);
 
-/// How long after a stop request a call ends.
+/// Returns the time from a stop request to the end of a call.
 Clock::duration time_to_cancel(const std::function<void(std::stop_token)>& call) {
     std::stop_source source;
     Clock::time_point asked;
@@ -36,7 +36,7 @@ Clock::duration time_to_cancel(const std::function<void(std::stop_token)>& call)
     return ended - asked;
 }
 
-/// Takes its time over every pair: busy for short ones, asleep for long ones.
+/// Returns a filter that takes a given time for every pair: it spins for short times and sleeps for long times.
 std::unique_ptr<Filter> slow_filter(Clock::duration of_a_pair) {
     return make_filter("slow", [of_a_pair](Pair) {
         const auto end = Clock::now() + of_a_pair;

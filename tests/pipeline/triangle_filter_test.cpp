@@ -1,4 +1,5 @@
-// Triangles as objects: engine and filter find what all pairs of triangles hold, and say how these meet.
+// Tests triangles as objects: engine and filter find the colliding pairs of triangles and report how each pair
+// collides.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@
 namespace octopair::test {
 namespace {
 
-/// On a grid, so that many touch, overlap and share corners; of several owners.
+/// Triangles of several owners on a grid. Many touch, overlap and share corners.
 struct Soup {
     std::vector<Triangle3d> triangles;
     std::vector<std::uint32_t> owners;
@@ -200,7 +201,8 @@ TEST(TriangleFilter, NamesWhatIsWrong) {
     EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}, options); }),
               "the margin must be finite and not below 0");
     std::vector<Box3f> room(2);
-    EXPECT_EQ(message_of([&] { boxes_of(triangles, std::span(room)); }), "room for 2 boxes of 3 triangles");
+    EXPECT_EQ(message_of([&] { boxes_of(triangles, std::span(room)); }),
+              "boxes_of: the output has 2 boxes for 3 triangles");
     for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const std::size_t i : {1U, 2U}) {
             auto some = triangles;

@@ -1,5 +1,5 @@
-// An application that ends badly, for tests: it makes an engine, prints the ids of its workers, and then does what it is
-// told to, until it is killed.
+// A test application that is killed while it uses an engine. Makes an engine, prints the ids of its workers, and then
+// does what its arguments say.
 #include <signal.h>
 #include <unistd.h>
 
@@ -27,7 +27,8 @@ void print_workers() {
     print_workers();
     if (how == "exit") std::exit(0);
     if (how == "fork" && ::fork() == 0) {
-        // A child that keeps the sockets open, longer than the application lives; what tests read from is not its to keep.
+        // A child that keeps the sockets open, longer than the application lives. The child must close the output that
+        // tests read.
         (void)::close(1);
         (void)::close(2);
         (void)::sleep(20);

@@ -1,5 +1,5 @@
-// What an application may do beside its calls: ignore its children or wait for them, take signals all the time, throw from
-// its sinks, ask for what cannot be.
+// Tests unusual applications: they ignore or wait for all children, receive signals all the time, throw from sinks, or
+// request the impossible.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/time.h>
@@ -27,7 +27,7 @@ using test::Scene;
 
 class Applications : public test::Processes {
 protected:
-    /// Calls that all kinds of faults happen to.
+    /// Makes calls with all kinds of faults.
     void call_with_faults() {
         test::MappedPlan plan;
         {
@@ -55,7 +55,7 @@ TEST_F(Applications, MayIgnoreTheirChildren) {
     (void)::signal(SIGCHLD, before);
 }
 
-/// Waits for all children of the process, as they end, until it is destroyed.
+/// Waits for all children of the process, as they end, until the Waiter is destroyed.
 class Waiter {
 public:
     explicit Waiter(int options)
@@ -84,7 +84,7 @@ TEST_F(Applications, MayWaitForStoppedChildrenToo) {
 
 std::atomic<std::uint64_t> timer_signals = 0;
 
-/// A signal every millisecond, which interrupts whatever is under way.
+/// Sends a signal every millisecond, which interrupts system calls.
 class Interrupter {
 public:
     Interrupter() {
@@ -107,7 +107,7 @@ private:
 };
 
 TEST_F(Applications, MayBeInterruptedAllTheTime) {
-    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // whose copy takes a while to make room for
+    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // allocation of its copy takes a while
     const Interrupter interrupter;
     call_with_faults();
     const auto engine = make_process_engine(2);

@@ -20,7 +20,7 @@ Options options_of(const Asked& asked) {
     return options;
 }
 
-/// Clusters, all of them in a part of the world that is smaller than the smallest octant.
+/// Makes clusters within a part of the world that is smaller than the smallest octant.
 std::vector<Box3f> tiny_clusters(std::uint64_t objects, std::uint64_t seed) {
     constexpr float part = 0x1p-27F;
     std::vector<Box3f> boxes = make_boxes("clustered", objects, seed);

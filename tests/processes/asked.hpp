@@ -1,4 +1,4 @@
-// Calls of every kind, as data: what tests ask an engine, and what it answers.
+// Calls of every kind as data: the arguments of a call and its answer.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace octopair::test {
 
 enum class How { list, stream, count };
 
-/// One call.
+/// The arguments of a call.
 struct Asked {
     How how = How::list;
     Order order = Order::octal;
@@ -26,15 +26,15 @@ struct Asked {
     std::string describe() const;
 };
 
-/// Objects that calls are about; `second` is the other set of a join.
+/// The objects of calls. `second` is the second set of a join.
 struct Scene {
     std::string kind;
     std::vector<Box3f> first, second;
     std::vector<Box3d> wide_first, wide_second;
     std::vector<double> padding;
 
-    /// `kind`: of samples; "crowd", where one of 40 objects is in one place; or "speck", where 7 of 8 objects are in one
-    /// octant, which is large enough from 38,000 objects on for workers to share its nested octree.
+    /// `kind`: a kind of samples, "crowd" or "speck". "crowd": one object in 40 is at the same place. "speck": 7 of 8
+    /// objects are in the same octant. From 38,000 objects on, workers share the nested octree of that octant.
     Scene(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
     Objects objects(const Asked& asked) const;
     Objects others(const Asked& asked) const;
@@ -48,18 +48,18 @@ struct Answer {
     bool operator==(const Answer&) const = default;
 };
 
-/// Throws what the call does.
+/// Makes the call. Throws: the call's Error.
 Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_token stop = {});
 
-/// Expects the same pairs in the same order, and all else the same.
+/// Expects the same pairs in the same order, and an otherwise equal answer.
 void expect_same(const Answer& found, const Answer& expected);
-/// Expects that the engine answers what a local one does. Throws what the call does.
+/// Expects that the engine answers as a local engine does. Throws: the call's Error.
 void expect_right(Engine& engine, const Scene& scene, const Asked& asked);
 
-/// All ways to ask: list, stream and count, both orders.
+/// Returns all kinds of calls: list, stream and count, in both orders.
 std::vector<Asked> all_ways();
 
-/// Some call, drawn from `seed`.
+/// Returns a random call, drawn from `seed`.
 Asked random_call(std::uint64_t seed);
 
 }  // namespace octopair::test

@@ -15,7 +15,7 @@ namespace octopair::test {
 
 namespace {
 
-/// Where the control block is mapped in this process.
+/// Returns the address of the control block in this process.
 std::byte* find_desk() {
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
@@ -31,7 +31,7 @@ std::byte* find_desk() {
 class Damage final : public ShareObserver {
 public:
     Damage(std::uint64_t seed, unsigned slot) : random_(seed, slot), slot_(slot) {
-        // One that takes over does something else than the one before.
+        // A replacement process continues with other random numbers than its predecessor.
         for (auto i = std::uint64_t(::getpid()) % 64; i > 0; --i) (void)random_.below(2);
     }
 
@@ -66,7 +66,7 @@ private:
         }
     }
 
-    /// Overwrites a word of [offset, offset + size), or a few.
+    /// Overwrites one or a few words of [offset, offset + size).
     void scribble(std::uint64_t offset, std::uint64_t size) {
         const std::uint64_t words = random_.below(3) == 0 ? 4 : 1;
         for (std::uint64_t i = 0; i < words; ++i) {

@@ -1,4 +1,4 @@
-// Nonsense in the memory that a worker shares with the client.
+// Writes random bytes into the memory that a worker shares with the client.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace octopair::test {
 
-/// Writes random bytes into the tables of the control block, now and then while shares are under way. A function of the seed, the
-/// slot, the process and of when shares come.
+/// Returns an observer that writes random bytes into the tables of the control block, at times while shares run. The
+/// writes depend on the seed, the slot, the process and the times of the shares.
 std::unique_ptr<ShareObserver> make_damage(std::uint64_t seed, unsigned slot);
 
 }  // namespace octopair::test

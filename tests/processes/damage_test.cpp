@@ -1,7 +1,7 @@
-// Workers that write nonsense into the shared tables: the application neither crashes nor hangs, and with sound workers
-// the same engine finds the right pairs again.
+// Tests workers that write random bytes into the shared tables. The application neither crashes nor hangs. With sound
+// workers the same engine then finds the right pairs again.
 //
-// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>; what is written when depends on the machine as well.
+// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>. The time and place of each write also depend on the machine.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace {
 using test::Asked;
 using test::Scene;
 
-/// Asks to stop after a while, by when whatever can be done is done.
+/// Requests a stop after a while, long enough for all possible work.
 class Deadline {
 public:
     explicit Deadline(std::chrono::seconds most)

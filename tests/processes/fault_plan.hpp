@@ -1,8 +1,7 @@
-// A plan of faults for worker processes, in memory that a test shares with the workers that follow it
-// (faulty_worker.cpp).
+// A plan of faults for worker processes, in memory that a test shares with its workers (faulty_worker.cpp).
 //
-// A fault waits for its step: the next worker that begins a share of it, after some that it lets pass, takes it and lets
-// it happen at its moment. Faults are taken one after another.
+// A fault belongs to a step. After a given number of workers, the next worker that begins a share of the step takes the
+// fault. The fault happens at its planned moment. Faults are taken one after another.
 #pragma once
 
 #include <sys/mman.h>
@@ -18,7 +17,7 @@
 
 namespace octopair::test {
 
-/// `mute`: the worker fails and does not say why; it lives on, so that this is no loss and not counted.
+/// `mute`: the worker fails without a message and stays alive. This is not counted as a loss.
 enum class FaultKind : std::uint32_t { kill, crash, stop, mute };
 enum class Moment : std::uint32_t { begin, tick, end };
 
@@ -30,7 +29,7 @@ struct Fault {
     std::uint32_t pass_by = 0;  ///< shares of the step to let pass
 };
 
-/// How many workers were lost, by step and kind.
+/// Number of lost workers, by step and kind.
 using FaultCounts = std::array<std::array<std::uint64_t, 3>, step_names.size()>;
 
 struct FaultPlan {
@@ -41,15 +40,15 @@ struct FaultPlan {
     std::array<std::array<std::atomic<std::uint64_t>, 3>, step_names.size()> happened;
 };
 
-inline constexpr const char* plan_variable = "OCTOPAIR_TEST_FAULTS";    // in the environment: the plan's file
-inline constexpr const char* damage_variable = "OCTOPAIR_TEST_DAMAGE";  // a seed: what to write where
+inline constexpr const char* plan_variable = "OCTOPAIR_TEST_FAULTS";    // environment variable: the file of the plan
+inline constexpr const char* damage_variable = "OCTOPAIR_TEST_DAMAGE";  // environment variable: the seed of the damage
 
-/// The plan, mapped.
+/// Maps the plan into memory.
 class MappedPlan {
 public:
-    /// An empty plan, which the environment of this process names as long as it lives.
+    /// Makes an empty plan, and names its file in the environment of this process until destruction.
     MappedPlan();
-    /// The one that the environment names; operator-> must not be used if there is none.
+    /// Selects the plan that the environment names. operator-> must not be used if there is no such plan.
     struct Named {};
     explicit MappedPlan(Named named);
     ~MappedPlan();
@@ -59,9 +58,9 @@ public:
     FaultPlan* operator->() const { return plan_; }
     explicit operator bool() const { return plan_ != nullptr; }
 
-    /// Replaces what is left of the faults.
+    /// Replaces the remaining faults.
     void set(std::span<const Fault> faults);
-    /// Whether all have been taken.
+    /// Returns whether all faults have been taken.
     bool empty() const { return plan_->next.load() >= plan_->end.load(); }
     FaultCounts happened() const;
 

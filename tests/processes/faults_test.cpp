@@ -1,5 +1,5 @@
-// A thousand and more faults, at every step of every kind of call: the pairs are those of the local engine, and the
-// engine's account of its workers is that of the plan, fault by fault.
+// Tests more than a thousand faults, at every step of every kind of call. The pairs equal those of the local engine,
+// and the engine's count of lost workers equals that of the plan, fault by fault.
 //
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>, with the same test.
 #include <gtest/gtest.h>
@@ -26,10 +26,10 @@ using test::Moment;
 
 constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
 constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
-constexpr unsigned most_of_a_step = 2;  // in one call: the third of a share would end it
+constexpr unsigned most_of_a_step = 2;  // in a call: a third fault in a share would end the call
 constexpr unsigned most_tries = 20;
 
-/// What is asked in one case, and of what.
+/// The calls and objects of a case.
 struct FaultCase {
     const char* name;
     const char* scene;
@@ -52,7 +52,7 @@ Fault random_fault(Step step, RandomStream& random) {
     return fault;
 }
 
-/// Faults for one call, in the order of the steps.
+/// Returns faults for a call, in the order of the steps.
 std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
     std::vector<Fault> faults;
     for (const Step step : fault_steps) {
@@ -64,7 +64,7 @@ std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
 
 class Faults : public test::Processes, public ::testing::WithParamInterface<FaultCase> {
 protected:
-    /// Makes one call until all faults that were planned for it have been taken.
+    /// Makes a call repeatedly until all faults that were planned for it have been taken.
     void fail_within(Engine& engine, const Asked& asked, std::span<const Fault> faults) {
         const auto local = make_local_engine(2);
         const Answer expected = test::ask(*local, scene_, asked);
@@ -75,7 +75,7 @@ protected:
         plan_.set({});
     }
 
-    /// What happened must be all that the engine counted.
+    /// Expects that the engine counted exactly the faults that happened.
     void expect_accounted(const Engine& engine) {
         const test::FaultCounts happened = plan_.happened();
         const WorkerFaults counted = worker_faults(engine);
@@ -90,7 +90,7 @@ protected:
         EXPECT_EQ(counted.stopped, stopped);
     }
 
-    /// Every step that the call has, by every kind of fault.
+    /// Tests every step of the call with every kind of fault.
     void expect_all_kinds(bool ordered) {
         if (test::sanitized) return;
         const test::FaultCounts happened = plan_.happened();

@@ -1,5 +1,5 @@
-// A worker that fails: octopair-worker, with faults that a plan asks for (fault_plan.hpp) and damage to the memory that
-// it shares with the client (damage.hpp).
+// A worker that fails: octopair-worker, with planned faults (fault_plan.hpp) and damage to the memory that the worker
+// shares with the client (damage.hpp).
 #include <signal.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace octopair::test {
 namespace {
 
 [[noreturn]] void end_by(int signal) {
-    // Also where a sanitizer handles it.
+    // Also if a sanitizer handles the signal.
     (void)::signal(signal, SIG_DFL);
     (void)::raise(signal);
     ::_exit(99);
@@ -30,7 +30,7 @@ public:
 
     void begin(Step step) override {
         step_ = step;
-        // One whose pass was given up before its moment is dropped.
+        // Drop a fault whose pass was given up before its moment.
         fault_ = take(step);
         ticks_ = 0;
         if (fault_ && fault_->moment == Moment::begin) happen();

@@ -1,4 +1,4 @@
-// Worker processes find the same pairs whatever floating-point state the caller has set.
+// Tests that worker processes find the same pairs for any floating-point state of the caller.
 #include <gtest/gtest.h>
 
 #include <cfloat>

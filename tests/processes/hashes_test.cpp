@@ -1,4 +1,5 @@
-// The same bytes from workers as from threads: pinned hashes of every kind of scene, for several numbers of workers.
+// Tests that workers give the same bytes as threads: pinned hashes of every kind of scene, for several numbers of
+// workers.
 #include <gtest/gtest.h>
 
 #include "octopair/octopair.hpp"

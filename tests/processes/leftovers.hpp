@@ -1,4 +1,4 @@
-// What an engine must not leave behind: child processes, open descriptors, shared memory with a name.
+// Finds resources that an engine must not leave behind: child processes, open descriptors, named shared memory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,16 +20,16 @@ struct ProcessStatus {
     std::string name;
 };
 
-/// All processes of the machine that may be seen.
+/// Returns all visible processes of the machine.
 std::vector<ProcessStatus> all_processes();
-/// Those that a process started, ended ones included.
+/// Returns the children of a process, including ended children.
 std::vector<pid_t> children_of(pid_t parent);
 bool process_lives(pid_t id);  ///< and is no zombie
 
-/// Looks every few milliseconds until `condition` holds, `most` at most; whether it came to hold.
+/// Polls every few milliseconds, for `most` at most, until `condition` holds. Returns whether it held.
 bool comes_true(const std::function<bool()>& condition, std::chrono::milliseconds most);
 
-/// What there is of all that now.
+/// The current child processes, descriptors and named shared memory.
 struct Belongings {
     std::vector<pid_t> children;
     std::size_t descriptors = 0;
@@ -38,7 +38,7 @@ struct Belongings {
     static Belongings now();
 };
 
-/// Tests that leave nothing behind; engines and pair lists must be gone by their end.
+/// Fixture for tests that must leave nothing behind. Engines and pair lists must be destroyed before the end of a test.
 class Processes : public ::testing::Test {
 protected:
     void SetUp() override;
@@ -48,10 +48,10 @@ private:
     Belongings before_;
 };
 
-/// An engine whose workers are the faulty ones.
+/// Makes an engine with faulty workers.
 std::unique_ptr<Engine> make_faulty_engine(unsigned workers, Arrangement arrangement = Arrangement::shared);
 
-/// A seed that OCTOPAIR_TEST_SEED overrides, to replay a failure.
+/// Returns `usual`, or OCTOPAIR_TEST_SEED if set, to replay a failure.
 std::uint64_t test_seed(std::uint64_t usual);
 
 }  // namespace octopair::test

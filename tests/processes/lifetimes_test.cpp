@@ -1,5 +1,5 @@
-// What outlives what: lists beside their engine's later calls, boxes beside the calls that read them, and a process that
-// was forked beside the one whose engine it has a copy of.
+// Tests lifetimes. Lists survive later calls of their engine, and boxes survive the calls that read them. A forked
+// process holds a copy of its parent's engine.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,5 +1,4 @@
-// Too few descriptors, too little memory, files that may not grow: typed errors, never a signal, and an engine that goes
-// on to work.
+// Tests limits on descriptors, memory and file sizes: typed errors, no signals, and an engine that works afterwards.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -21,7 +20,7 @@ using test::expect_right;
 using test::How;
 using test::Scene;
 
-/// Lowers a limit of this process, and of what it starts, while it lives.
+/// Lowers a limit of this process and its children until destruction.
 class Lowered {
 public:
     Lowered(decltype(RLIMIT_AS) resource, rlim_t to) : resource_(resource) {
@@ -41,7 +40,7 @@ private:
 class WorkerLimits : public test::Processes {
 protected:
     enum class End { right, refused };
-    /// The right answer, or an Error of the resources or of the engine.
+    /// Expects the right answer, or an Error of the resources or of the engine.
     End right_or_refused(Engine& engine, const Scene& scene, const Asked& asked) {
         const Answer expected = test::ask(*local_, scene, asked);
         try {
@@ -154,7 +153,7 @@ TEST_F(WorkerLimits, OfAddressSpace) {
     EXPECT_GT(refused, 1u);
 }
 
-/// What a child that may start no more processes exits with. The super-user may start any number; nobody else.
+/// Returns the exit status of a child that may start no more processes. The super-user has no such limit.
 int fail_without_processes() {
     if (::getuid() == 0 && ::setuid(65534) != 0) return 0;
     const rlimit none{1, 1};

@@ -1,5 +1,4 @@
-// Workers that are lost outside of any plan: between calls, all at once, at random times, and again and again at the same
-// work.
+// Tests unplanned losses of workers: between calls, all together, at random times, and repeatedly during the same work.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -31,7 +30,7 @@ using test::Scene;
 
 class WorkerLosses : public test::Processes {};
 
-/// Ends or stops workers of this process; whether it found any.
+/// Ends or stops workers of this process. Returns whether there were any workers.
 bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {
     const auto workers = test::children_of(::getpid());
     for (std::size_t i = 0; i < std::min(most, workers.size()); ++i) {
@@ -96,7 +95,7 @@ TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
             ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            EXPECT_STREQ(error.what(), "a worker process failed and did not say why");
+            EXPECT_STREQ(error.what(), "a worker process failed without an error message");
         }
         expect_right(*engine, scene, {});
     }
@@ -115,8 +114,8 @@ TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     }
 }
 
-/// Signals workers from another thread at random times, but in each call fewer times than a share may handle_lost_worker its worker: on a busy
-/// machine one share can last for several pauses.
+/// Signals workers from another thread at random times. Sends fewer signals in a call than the number of workers that a
+/// share may lose. On a busy machine a share can last for several pauses.
 class Disturber {
 public:
     Disturber(int signal, std::size_t at_once, milliseconds pause, std::uint64_t seed)
@@ -158,7 +157,8 @@ protected:
                 const Scene& scene = scenes[i % scenes.size()];
                 Asked asked = test::random_call(seed + i);
                 if (scene.kind == "speck") {
-                    // Any clearance joins the whole speck, and a share would take longer than workers live.
+                    // Any clearance joins the whole speck, and a share would take longer than the workers' lifetime in
+                    // this test.
                     asked.margin = 0;
                     asked.padded = false;
                 }

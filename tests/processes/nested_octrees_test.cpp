@@ -1,5 +1,5 @@
-// Nested octrees of large octants, which workers build together: the pairs are those of the local engine, also where
-// workers are lost while they build one.
+// Tests nested octrees of large octants, which workers build together. The pairs equal those of the local engine, even
+// if workers are lost during a build.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -74,7 +74,7 @@ TEST_F(NestedOctrees, OfClustersWithinClustersAreThoseOfThreads) {
     }
 }
 
-/// Faults that leave the outermost octree alone: they happen in steps of nested ones.
+/// Returns faults in steps of nested octrees, but not of the outermost octree.
 std::vector<Fault> nested_faults() {
     std::vector<Fault> faults;
     for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
@@ -102,7 +102,7 @@ TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
     for (const Asked& asked : calls) expected.push_back(test::ask(*local, scene, asked));
     const std::vector<Fault> faults = nested_faults();
     for (std::size_t i = 0; i < faults.size(); ++i) {
-        // Every second time, the next worker that begins a share of that step is lost as well.
+        // Every second time, the next worker that begins a share of that step is also lost.
         std::vector<Fault> planned(1 + i % 2, faults[i]);
         if (planned.size() > 1) planned[1].pass_by = 0;
         plan.set(planned);

@@ -1,4 +1,4 @@
-// Programs that are no workers: typed errors that name the program, and nothing left behind.
+// Tests worker programs that are not workers: typed errors name the program, and no resources are left behind.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ protected:
         return path;
     }
 
-    /// Neither the construction nor a call may work.
+    /// Expects that the construction or every call fails.
     void expect_failed(const std::string& program, int calls = 2) {
         try {
             const auto engine = make_process_engine({.workers = 2, .worker_program = program});

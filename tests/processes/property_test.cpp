@@ -1,4 +1,4 @@
-// Workers against threads, on random calls about random and degenerate scenes.
+// Tests workers against threads on random calls with random and degenerate scenes.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 using test::AnyCall;
 using test::Case;
 
-/// Kept from case to case: what a call leaves behind must not show in the next.
+/// Engines that are reused for all cases, so that state left by a call would show in the next case.
 class Engines {
 public:
     Engine& local() { return *local_; }
@@ -64,7 +64,7 @@ TEST(WorkerProperty, AgreesWithThreads) {
 
 constexpr std::uint64_t most_counted_pairs = test::scaled(1'000'000, 8);
 
-/// The kinds with more objects, so that several workers take part.
+/// Tests the kinds with more objects, so that several workers take part.
 TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
     Engines engines;
     std::uint64_t seed = test::test_seed(1);

@@ -1,4 +1,4 @@
-// What must be done in time: stops that are noticed, cancellation, and the end of workers whose application is gone.
+// Tests deadlines: detection of stopped workers, cancellation, and the exit of workers whose application has ended.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -50,7 +50,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
 
 constexpr milliseconds cancel_patience(test::sanitized ? 3000 : 200);
 
-/// How long a call took to end after it was asked to stop; nothing if it was done before.
+/// Returns the time from a stop request to the end of the call, or nothing if the call ended before the request.
 std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked,
                                               milliseconds delay) {
     std::stop_source source;
@@ -107,7 +107,7 @@ TEST_P(WorkerCancel, IsSoonDone) {
 INSTANTIATE_TEST_SUITE_P(, WorkerCancel, ::testing::Values("dense", "rods", "coincident"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-/// The helper that ends badly (application.cpp), and the ids of its workers.
+/// The test application (application.cpp) and the ids of its workers.
 struct Application {
     explicit Application(const char* how) {
         int ends[2];

@@ -1,4 +1,4 @@
-// Scenes are the same everywhere, in every batch, and have the pairs that docs/scenes.md says.
+// Tests that scenes are identical on every machine and in every batch, and have the pairs that docs/scenes.md states.
 #include "samples/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::vector<std::string> kind_names() {
     return {kinds.begin(), kinds.end()};
 }
 
-/// The message of the usage error that `spec` meets.
+/// Returns the message of the usage error for `spec`.
 std::string refusal(const SceneSpec& spec) {
     try {
         generate_scene(spec, [](auto) { ADD_FAILURE() << "a batch of a refused scene"; });

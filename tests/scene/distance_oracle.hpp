@@ -1,4 +1,4 @@
-// Distances between boxes from integers of any size: what the rules of queries.hpp are held against.
+// Oracle for distances between boxes in integers of any size, for tests of the rules of queries.hpp.
 //
 // Every finite float64 is an integer times 2^-1074, so squared distances are integers times 2^-2148.
 #pragma once
@@ -14,7 +14,7 @@ namespace octopair::test {
 
 using Integer = boost::multiprecision::cpp_int;
 
-/// value * 2^1074.
+/// Returns value * 2^1074.
 inline Integer exact(double value) {
     int exponent = 0;
     const double part = std::frexp(value, &exponent);
@@ -24,7 +24,7 @@ inline Integer exact(double value) {
                       : Integer(mantissa / (std::int64_t(1) << -shift));
 }
 
-/// The squared distance between two boxes, times 2^2148.
+/// Returns the squared distance between two boxes, times 2^2148.
 inline Integer exact_squared_distance(const Box3d& a, const Box3d& b) {
     Integer sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -43,7 +43,7 @@ inline bool exactly_touches(const Sphere& sphere, const Box3d& box) {
     return exact_squared_distance(point_box(sphere.centre), box) <= radius * radius;
 }
 
-/// The float64 nearest to the distance, the even one of two; infinite beyond float64.
+/// Returns the float64 nearest to the distance, rounded to even, or infinity beyond the range of float64.
 inline double rounded_distance(const Integer& squared) {
     if (squared == 0) return 0;
     // 64 more bits of the root than those of the smallest float64.

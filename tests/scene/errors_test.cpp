@@ -1,4 +1,4 @@
-// What a scene refuses, and that it is the same afterwards.
+// Tests the calls that a scene refuses, and that a refused call leaves the scene unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr Box3f unit = {{0, 0, 0}, {1, 1, 1}};
 
 Boxes boxes_of(const std::vector<Box3f>& boxes) { return std::span<const Box3f>(boxes); }
 
-/// Two unit boxes at one place, of a step already made.
+/// Two unit boxes at the same place, after a step.
 class SceneErrors : public ::testing::Test {
 protected:
     SceneErrors() {
@@ -50,8 +50,8 @@ TEST_F(SceneErrors, IdsThatAreNotOfTheScene) {
         [&] {
             scene_.move(std::vector{ids_[0], ObjectId{7, 1}}, boxes_of({{{9, 9, 9}, {9, 9, 9}}, unit}));
         },
-        "object 1 of the call: id 7.1 is of no object");
-    expect_refused([&] { scene_.remove(std::vector{ObjectId{}}); }, "is of no object");
+        "object 1 of the call: id 7.1 names no object");
+    expect_refused([&] { scene_.remove(std::vector{ObjectId{}}); }, "names no object");
     expect_refused([&] { scene_.set_traits(std::vector{ObjectId{0, 3}}, std::vector<Traits>(1)); }, "0.3");
 }
 
@@ -67,7 +67,7 @@ TEST_F(SceneErrors, AnIdOfARemovedObjectIsNotThatOfItsSuccessor) {
     EXPECT_FALSE(scene_.contains(third[0]));
     EXPECT_EQ(scene_.id(fourth[0].index), fourth[0]);
     scene_.remove(fourth);
-    expect_refused([&] { scene_.move(third, boxes_of({unit})); }, "is of no object");
+    expect_refused([&] { scene_.move(third, boxes_of({unit})); }, "names no object");
 }
 
 TEST_F(SceneErrors, AnIndexIsNotGivenAgainBeforeTheNextStep) {
@@ -146,7 +146,7 @@ TEST(Scene, AStepThatWasStoppedCanBeRepeated) {
     EXPECT_EQ(step.began[0], (Pair{0, 1}));
 }
 
-/// As a SceneOptions::room_for_pairs.
+/// A memory resource for SceneOptions::room_for_pairs.
 class Room {
 public:
     explicit Room(std::uint64_t bytes) : left(bytes) {}

@@ -1,4 +1,5 @@
-// A scene's steps and queries find the same whatever floating-point state the caller has set, and leave it as it was.
+// Tests that a scene's steps and queries give the same results for any floating-point state of the caller, and leave it
+// unchanged.
 #include <gtest/gtest.h>
 
 #include <cfloat>

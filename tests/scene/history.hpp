@@ -1,5 +1,5 @@
-// Random histories of a scene: additions, moves, sweeps, removals and new traits, with brute force as the judge of each step,
-// and of queries between them where the scene answers any. Boxes are of a kind (kinds.hpp) or a family (families.hpp).
+// Random histories of a scene: additions, moves, sweeps, removals and new traits. Brute force checks each step, and the
+// queries between steps if the scene answers queries. Boxes are of a kind (kinds.hpp) or a family (families.hpp).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,10 +19,10 @@
 
 namespace octopair::test {
 
-/// The boxes of a history: of a kind, endlessly many; of a family, those of one scene in ever new orders.
+/// The boxes of a history: an endless sequence of a kind, or the boxes of one scene of a family in ever new orders.
 class BoxSource {
 public:
-    /// `name`: of a kind or a family. `scene_objects`: number of boxes of a scene.
+    /// `name`: name of a kind or a family. `scene_objects`: number of boxes of a scene.
     BoxSource(const std::string& name, std::uint64_t scene_objects) : name_(name), objects_(scene_objects) {
         const auto families = family_names();
         is_family_ = std::find(families.begin(), families.end(), name) != families.end();
@@ -36,7 +36,7 @@ public:
         if (next_ == boxes_.size()) renew(random);
         return boxes_[next_++];
     }
-    /// A clearance that matters in such a scene without joining all of it.
+    /// Returns a clearance that matters in such a scene without joining all of it.
     double clearance() const { return is_family_ ? clearance_ : 0.5; }
 
 private:
@@ -73,17 +73,17 @@ private:
     double clearance_ = 0;
 };
 
-/// How long a history is.
+/// The size of a history.
 struct HistorySize {
     std::uint64_t objects = 320;  ///< at first, at most
     int steps = 25;
 };
 
-/// One scene, its model, and what happens to both. AnyScene: what has the calls of a Scene.
+/// A scene and its model, which get the same calls. AnyScene: a class with the calls of Scene.
 template <typename AnyScene>
 class History {
 public:
-    /// `name`: of a kind or a family. `make` makes the scene of some SceneOptions.
+    /// `name`: name of a kind or a family. `make` makes the scene from SceneOptions.
     template <typename Make>
     History(const std::string& name, std::uint64_t seed, Make&& make, const HistorySize& size = {})
         : random_(seed), size_(size), boxes_(name, size.objects + 80) {
@@ -132,7 +132,7 @@ private:
         if (with_traits_ && chance(0.3)) set_traits(random_() % most);
     }
 
-    /// Not in all histories, and not each time: queries may make an octree, which the next step does not use.
+    /// Runs in some histories and at some steps only: queries may make an octree, which the next step does not use.
     void check_queries() {
         if constexpr (std::is_same_v<AnyScene, Scene>) {
             if (queried_ && chance(0.3)) QueryModel(model_, scene_, random_()).check();
@@ -217,7 +217,7 @@ private:
         }
     }
 
-    /// After a step, what was swept is where it came to.
+    /// After a step, moves each swept object to the end of its sweep.
     void settle() {
         for (const auto& [index, box] : places_) {
             if (model_.objects.contains(index)) model_.objects[index].box = box;

@@ -1,4 +1,5 @@
-// Scenes large enough for deep octrees: each step against a full detection by the engine, for any number of threads.
+// Tests scenes large enough for deep octrees. Compares each step with a full detection by the engine, for any number of
+// threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace octopair::test {
 namespace {
 
-/// What all lie in.
+/// Returns the box around all boxes.
 Box3f hull(std::span<const Box3f> boxes) {
     Box3f all = boxes.front();
     for (const Box3f& box : boxes) {
@@ -70,7 +71,7 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
-/// The first object that is kept far above the leaves, in the step in which a small one moves.
+/// Tests the first object that is stored far above the leaves, in a step in which a small object moves.
 TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
     std::vector<Box3f> boxes = test::make_boxes("uniform", 4000, 34);
     std::vector<ObjectId> ids(boxes.size());
@@ -90,7 +91,7 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
     EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
 }
 
-/// Many go where the octree has no octants, all into one: dearer than it seemed, and the result is the same.
+/// Many objects move into a single place without octants. The step costs more than estimated, and the result stays right.
 TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
     std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(30000, 4), 35);
     std::vector<ObjectId> ids(boxes.size());

@@ -1,4 +1,4 @@
-// A scene and what it should say, by brute force: every pair of objects, every step.
+// Model of a scene: computes the expected results of each step by brute force over all pairs of objects.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct ModelObject {
     Traits traits;
 };
 
-/// The rule of a scene, written again.
+/// Returns whether two objects are a pair, by an independent implementation of the scene's rule.
 inline bool are_pair(const ModelObject& a, const ModelObject& b, double margin) {
     if ((a.traits.mask & b.traits.groups) == 0 || (b.traits.mask & a.traits.groups) == 0) return false;
     if (a.traits.fixed && b.traits.fixed) return false;
@@ -48,7 +48,7 @@ public:
         return found;
     }
 
-    /// Compares a step with the last one.
+    /// Compares a step of the scene with the last step of the model.
     template <typename AnyScene>
     void check(AnyScene& scene) {
         const StepResult& result = scene.step();
@@ -69,7 +69,7 @@ public:
         kept_ = kept;
     }
 
-    /// Compares the lists with the last step's.
+    /// Compares the lists of the scene with the last step of the model.
     template <typename AnyScene>
     void check_lists(AnyScene& scene) const {
         ASSERT_EQ(scene.pairs().to_vector(), before_);

@@ -1,4 +1,4 @@
-// PairHistory: what it refuses, and that what it refuses changes nothing.
+// Tests PairHistory: its refusals, and that a refused call changes nothing.
 #include "scene/pair_history.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ protected:
         history_.take_over(changes);
         return changes;
     }
-    /// The message of the error that a call throws; empty if it throws none.
+    /// Returns the message of the Error that a call throws, empty if it throws none.
     static std::string error_of(const std::function<void()>& call) {
         try {
             call();
@@ -51,15 +51,15 @@ protected:
         EXPECT_EQ(history_.list().to_vector(), (Pairs{{1, 2}, {3, 7}, {4, 5}}));
     }
     /// Applies changes that are seen to be wrong when the list is made, and mends that with a full detection.
-    void expect_doubt(const std::vector<PairChanges>& steps, const std::string& text) {
+    void expect_inconsistent(const std::vector<PairChanges>& steps, const std::string& text) {
         for (const PairChanges& changes : steps) history_.apply(changes);
         for (int i = 0; i < 2; ++i) {
             const std::string message = error_of([&] { (void)history_.list(); });
             EXPECT_NE(message.find(text), std::string::npos) << message;
-            EXPECT_TRUE(history_.is_doubtful());
+            EXPECT_TRUE(history_.is_inconsistent());
         }
         EXPECT_EQ(error_of([&] { take_over({{0, 9}}); }), "");
-        EXPECT_FALSE(history_.is_doubtful());
+        EXPECT_FALSE(history_.is_inconsistent());
         EXPECT_EQ(history_.list().to_vector(), (Pairs{{0, 9}}));
     }
 
@@ -90,17 +90,20 @@ TEST_F(PairHistoryTest, AStepThatListsAPairTwice) {
 }
 
 TEST_F(PairHistoryTest, AStepThatEndsMoreThanThereIs) {
-    expect_refused({{}, {{0, 1}, {0, 2}, {0, 3}, {0, 4}}}, "4 pairs ended, from pair 0-1 on, but there were 3");
+    expect_refused({{}, {{0, 1}, {0, 2}, {0, 3}, {0, 4}}},
+                   "4 pairs ended, the first of them pair 0-1, but the scene had 3");
 }
 
-TEST_F(PairHistoryTest, APairThatBeganButWasThere) { expect_doubt({{{{3, 7}}, {}}}, "pair 3-7 began, but"); }
+TEST_F(PairHistoryTest, APairThatBeganButWasThere) { expect_inconsistent({{{{3, 7}}, {}}}, "pair 3-7 began, but"); }
 TEST_F(PairHistoryTest, APairThatBeganInTwoSteps) {
-    expect_doubt({{{{6, 8}}, {}}, {{{6, 8}}, {}}}, "pair 6-8 began twice");
+    expect_inconsistent({{{{6, 8}}, {}}, {{{6, 8}}, {}}}, "pair 6-8 began twice");
 }
-TEST_F(PairHistoryTest, APairThatEndedButWasNotThere) { expect_doubt({{{}, {{6, 8}}}}, "pair 6-8 ended, but"); }
-TEST_F(PairHistoryTest, APairBeyondTheListThatEnded) { expect_doubt({{{{0, 1}}, {{9, 10}}}}, "pair 9-10 ended, but"); }
+TEST_F(PairHistoryTest, APairThatEndedButWasNotThere) { expect_inconsistent({{{}, {{6, 8}}}}, "pair 6-8 ended, but"); }
+TEST_F(PairHistoryTest, APairBeyondTheListThatEnded) {
+    expect_inconsistent({{{{0, 1}}, {{9, 10}}}}, "pair 9-10 ended, but");
+}
 TEST_F(PairHistoryTest, APairThatEndedInTwoSteps) {
-    expect_doubt({{{}, {{3, 7}}}, {{}, {{3, 7}}}}, "pair 3-7 ended twice");
+    expect_inconsistent({{{}, {{3, 7}}}, {{}, {{3, 7}}}}, "pair 3-7 ended twice");
 }
 
 TEST_F(PairHistoryTest, StepsThatAreRight) {

@@ -1,5 +1,5 @@
-// Scenes on random histories of additions, moves, sweeps, removals and new traits: brute force is the judge of each step,
-// and of queries between them.
+// Tests scenes on random histories of additions, moves, sweeps, removals and new traits. Brute force checks each step
+// and the queries between steps.
 #include <gtest/gtest.h>
 
 #include "scene/history.hpp"

@@ -1,4 +1,4 @@
-// Queries beside those of the random histories: large scenes, many at once, any number of threads, and bad ones.
+// Tests queries on large scenes, many queries at the same time, any number of threads, and invalid queries.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::Model;
 
 class SceneQueriesTest : public ::testing::TestWithParam<std::string> {};
 
-/// A scene and its model, of one kind.
+/// A scene of one kind and its model.
 struct Pool {
     Pool(const std::string& kind, std::uint64_t objects, unsigned threads) : scene({threads}) {
         const std::vector<Box3f> boxes = test::make_boxes(kind, objects, 21);

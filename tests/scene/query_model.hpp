@@ -1,4 +1,4 @@
-// What queries should say, by trying every object.
+// Model of queries: computes the expected answers by a test of every object.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@
 
 namespace octopair::test {
 
-/// How a ray and a box lie to each other, in more digits than the library has: what is close to touching may be either.
+/// Relation of a ray and a box, in higher precision than the library's. Nearly touching counts as `close`, where both
+/// answers are right.
 enum class RayResult { miss, close, hit };
 
 inline RayResult cast(const Ray& ray, const Box3d& box, long double& along) {
@@ -36,7 +37,7 @@ inline RayResult cast(const Ray& ray, const Box3d& box, long double& along) {
     return enter <= leave + rounding ? RayResult::close : RayResult::miss;
 }
 
-/// Asks a scene about places near its objects and elsewhere, and compares the answers with the model's.
+/// Makes queries at places near the objects and elsewhere, and compares the answers with the model's.
 class QueryModel {
 public:
     QueryModel(const Model& model, Scene& scene, std::uint64_t seed) : scene_(scene), random_(seed) {
@@ -59,7 +60,7 @@ private:
     double unit() { return std::uniform_real_distribution<>(0, 1)(random_); }
     Box3d object_box() { return all_.empty() ? Box3d{{0, 0, 0}, {1, 1, 1}} : all_[random_() % all_.size()]->box; }
 
-    /// An object's, or one of its corners, or what reaches from one to another.
+    /// Returns the box of an object, a corner of it, or a box that reaches from one object to another.
     Box3d random_box() {
         Box3d box = object_box();
         const Box3d other = object_box();

@@ -1,4 +1,5 @@
-// The rules of queries against integers of any size: on grids at all scales, on random numbers and at float64's ends.
+// Tests the rules of queries against integers of any size: on grids at all scales, on random numbers and at the limits
+// of float64.
 #include "scene/queries/query_rules.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ std::vector<Point> integer_points(int squared_radius) {
     return points;
 }
 
-/// A box of no extent at centre + point, all times 2^exponent.
+/// Returns a box of zero extent at centre + point, all times 2^exponent.
 Box3d scaled_box(const Point& point, const Point& centre, int exponent) {
     double at[3];
     for (unsigned axis = 0; axis < 3; ++axis) at[axis] = std::ldexp(point[axis] + centre[axis], exponent);
@@ -64,7 +65,7 @@ TEST(QueryRules, SpheresTouchEveryIntegerPointOnThem) {
     }
 }
 
-/// Numbers of one kind: of a small grid at some scale, adjacent, of any bits, or at float64's ends.
+/// Random numbers of one kind: of a small grid at some scale, adjacent, of any bits, or at float64's limits.
 class Numbers {
 public:
     explicit Numbers(std::mt19937_64& random)

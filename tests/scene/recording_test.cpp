@@ -1,4 +1,5 @@
-// Recordings: what was recorded finds the same again, on any number of threads; what is no recording is refused.
+// Tests recordings. A replay finds the recorded results on any number of threads. Data that is not a recording is
+// refused.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -33,7 +34,7 @@ ReplayReport replay_bytes(const std::string& bytes, const ReplayOptions& options
     return replay(reader, options);
 }
 
-/// Calls of all kinds to a scene that is recorded.
+/// Makes calls of all kinds to a recorded scene.
 class RandomCalls {
 public:
     RandomCalls(const SceneOptions& options, std::uint64_t seed)
@@ -125,7 +126,7 @@ protected:
     SceneOptions options(Precision precision = Precision::float32, double margin = 0) const {
         return {1, precision, margin, path()};
     }
-    /// A recording of a few hundred bytes with every kind of record.
+    /// Returns a recording of a few hundred bytes with every kind of record.
     std::string small() const {
         RandomCalls(options(), 3).run(3, 6);
         return content();
@@ -134,7 +135,7 @@ protected:
     TemporaryDirectory directory_;
 };
 
-/// Where the records of a recording begin, and its end.
+/// Returns the offsets of the records of a recording, and its size.
 std::vector<std::size_t> borders(const std::string& bytes) {
     std::vector<std::size_t> found = {sizeof(RecordingHead)};
     while (found.back() < bytes.size()) {
@@ -145,7 +146,7 @@ std::vector<std::size_t> borders(const std::string& bytes) {
     return found;
 }
 
-/// A record as a recorder writes it.
+/// Returns a record in the form of a recorder.
 std::string record(std::uint32_t kind, const std::string& payload) {
     RecordHead head = {RecordKind(kind), 0, payload.size()};
     head.check = head.right_check();
@@ -220,11 +221,12 @@ TEST_F(Recording, ADifferenceIsFound) {
     RecordedResult hashed = result;
     ++hashed.hash;
     const std::string message = error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(hashed)); });
-    EXPECT_TRUE(message.starts_with("r.rec: step 3: other pairs than recorded, as many of them: ")) << message;
+    EXPECT_TRUE(message.starts_with("r.rec: step 3: the pairs differ from the recorded ones, their numbers do not: "))
+        << message;
     RecordedResult counted = result;
     counted.began += 5;
     EXPECT_NE(error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(counted)); })
-                  .find("; recorded were " + std::to_string(counted.began) + " began"),
+                  .find("; recorded: " + std::to_string(counted.began) + " began"),
               std::string::npos);
     EXPECT_EQ(replay_bytes(with(counted), {1, false}).steps, 3u);  // nobody asked
 }
@@ -275,7 +277,7 @@ TEST_F(Recording, WhatIsNoRecordingIsRefused) {
     head.version = 2;
     refused(head_of(head), "byte 8: version 2 is newer than this program, which reads versions up to 1");
     head.version = 0;
-    refused(head_of(head), "there is no version 0");
+    refused(head_of(head), "version is 0, but versions start at 1");
     head = {};
     head.precision = 16;
     refused(head_of(head), "byte 12: precision is 16, not 32 or 64");
@@ -295,18 +297,19 @@ TEST_F(Recording, RecordsThatNobodyWroteAreRefused) {
     };
     const auto add = std::uint32_t(RecordKind::add), move = std::uint32_t(RecordKind::move);
     const std::string unit_bytes = test::bytes_of(std::vector<float>{0, 0, 0, 1, 1, 1});
-    refused(0, "", "a record of kind 0 is not known");
-    refused(8, "", "a record of kind 8 is not known");
-    refused(move, "", "it is too short");
-    refused(add, numbers({1, 0, 0}), "its length does not fit its counts: 0 bytes for 24");
-    refused(add, numbers({0xffffffff, 0xffffffff, 0xffffffff}), "its length does not fit its counts");
+    refused(0, "", "unknown kind of record: 0");
+    refused(8, "", "unknown kind of record: 8");
+    refused(move, "", "the record is too short");
+    refused(add, numbers({1, 0, 0}), "the length of the record does not match its counts: 0 bytes instead of 24");
+    refused(add, numbers({0xffffffff, 0xffffffff, 0xffffffff}), "the length of the record does not match its counts");
     refused(add, numbers({1, 0, 0}) + test::bytes_of(std::vector<float>{0, 0, 0, -1, 1, 1}), "object 0 of the call");
     refused(add, numbers({1, 2, 0}) + unit_bytes + std::string(16, '\0'), "2 paddings for 1 objects");
-    refused(add, numbers({1, 0, 1}) + unit_bytes + numbers({1, 1, 2}), "traits are fixed by 2, not 0 or 1");
-    refused(move, numbers({1, 5, 1}) + unit_bytes, "id 5.1 is of no object");
-    refused(std::uint32_t(RecordKind::set_traits), numbers({0, 0, 0}), "its length does not fit its counts");
-    refused(std::uint32_t(RecordKind::step), numbers({0}), "its length does not fit its counts");
-    refused(std::uint32_t(RecordKind::result), std::string(32, '\0'), "the result of no step");
+    refused(add, numbers({1, 0, 1}) + unit_bytes + numbers({1, 1, 2}), "the trait `fixed` is 2, not 0 or 1");
+    refused(move, numbers({1, 5, 1}) + unit_bytes, "id 5.1 names no object");
+    refused(std::uint32_t(RecordKind::set_traits), numbers({0, 0, 0}),
+            "the length of the record does not match its counts");
+    refused(std::uint32_t(RecordKind::step), numbers({0}), "the length of the record does not match its counts");
+    refused(std::uint32_t(RecordKind::result), std::string(32, '\0'), "a result without a step before it");
 }
 
 constexpr Box3f unit_box = {{0, 0, 0}, {1, 1, 1}};
@@ -381,7 +384,7 @@ TEST_F(Recording, PlacesThatCannotBeWritten) {
     EXPECT_EQ(message(directory_.path()), directory_.path() + ": cannot create: Is a directory");
 }
 
-/// No file grows beyond `bytes` while it lives: a disk that is full.
+/// Limits the size of files to `bytes` until destruction, to simulate a full disk.
 class FullDisk {
 public:
     explicit FullDisk(std::size_t bytes) {

@@ -1,4 +1,4 @@
-// What a scene takes: no memory from the heap in steady frames, and not much for what it holds.
+// Tests the memory of a scene: no heap allocations in steady frames, and a bounded size for its content.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -32,7 +32,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 namespace octopair::test {
 namespace {
 
-/// Objects that go to and fro between two places, a few each frame.
+/// Objects that swing between two places, a few in each frame.
 class Swing {
 public:
     Swing(std::uint64_t objects, unsigned threads)
@@ -82,7 +82,7 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
     EXPECT_EQ(swing.full, full);
 }
 
-/// Any allocation of a step may fail: the step says so, and finds the same when it is made again.
+/// Any allocation of a step may fail: the step throws, and a repeated step finds the same result.
 TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
 #ifdef OCTOPAIR_TEST_SANITIZED
     GTEST_SKIP() << "allocations are the sanitizer's";

@@ -1,4 +1,4 @@
-// The paper's figure 2: an object so fast that it is on one side of another in one frame and on the far side in the next.
+// Tests figure 2 of the paper: between two frames, a fast object moves from one side of another object to the far side.
 #include <gtest/gtest.h>
 
 #include "octopair/octopair.hpp"

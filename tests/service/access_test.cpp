@@ -1,4 +1,4 @@
-// Who may call a server: tokens, their files, and addresses that others can reach.
+// Tests access to a server: tokens, token files, and addresses that other machines can reach.
 #include "service/guarded.hpp"
 #include "service/protocol/octopair.pb.h"
 
@@ -35,8 +35,8 @@ TEST_F(Access, TokensLetIn) {
     EXPECT_EQ(ask(socket(), with(right)), right_answer);
     EXPECT_EQ(ask(socket(), with("fedcba9876543210")), right_answer);
     EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(wrong_token)); }),
-              socket() + ": the token is none of the server's");
-    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with("")); }), socket() + ": the server wants a token");
+              socket() + ": the server does not accept this token");
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with("")); }), socket() + ": the server requires a token");
 }
 
 TEST_F(Access, EveryCallWantsATokenButHealth) {
@@ -70,7 +70,7 @@ TEST_F(Access, TokenFilesOthersMayReadAreRefused) {
     for (const mode_t mode : {0640, 0604, 0620, 0602, 0644}) {
         ASSERT_EQ(::chmod(file.c_str(), mode), 0);
         EXPECT_EQ(refusal_of(with_tokens(socket()), ErrorCode::usage),
-                  file + ": others may read it; a secret is its owner's alone (chmod 600)");
+                  file + ": other users can access this secret file; restrict it to its owner (chmod 600)");
     }
     ASSERT_EQ(::chmod(file.c_str(), 0400), 0);
     const service::Server server(with_tokens(socket()), silent());
@@ -82,12 +82,12 @@ TEST_F(Access, TokenFilesThatHoldNoneAreRefused) {
         write_secret(file, content);
         return refusal_of(with_tokens(socket()), ErrorCode::bad_input);
     };
-    EXPECT_EQ(refused(""), file + ": holds no token");
-    EXPECT_EQ(refused("# none\n"), file + ": holds no token");
-    EXPECT_EQ(refused("anna\n"), file + ": line 1: a line is NAME TOKEN");
-    EXPECT_EQ(refused("\nanna short\n"), file + ": line 2: a token has at least 16 bytes");
+    EXPECT_EQ(refused(""), file + ": the file contains no token");
+    EXPECT_EQ(refused("# none\n"), file + ": the file contains no token");
+    EXPECT_EQ(refused("anna\n"), file + ": line 1: a line must be NAME TOKEN");
+    EXPECT_EQ(refused("\nanna short\n"), file + ": line 2: a token must have at least 16 bytes");
     EXPECT_EQ(refused("a 0123456789abcdef\nb 0123456789abcdef\n"),
-              file + ": line 2: the name or the token is there twice");
+              file + ": line 2: an earlier line has the same name or token");
     ASSERT_EQ(::unlink(file.c_str()), 0);
     EXPECT_NE(refusal_of(with_tokens(socket()), ErrorCode::io_failed).find(file), std::string::npos);
 }
@@ -110,7 +110,7 @@ TEST_F(Access, AddressesThatOthersReachNeedProtection) {
 TEST_F(Access, TokensDoNotLeaveTheMachineInTheClear) {
     for (const std::string address : {"192.0.2.1:7000", "127.0.0.1.example.invalid:7000"}) {
         EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(address, with(right)); }),
-                  address + ": a token is not sent there without encryption");
+                  address + ": a token is sent to another machine only with encryption; use TLS");
     }
 }
 

@@ -1,4 +1,4 @@
-// The same bytes from a server as from threads of one's own: every kind of scene, every way to ask.
+// Tests that a server gives the same bytes as local threads, for every kind of scene and every kind of call.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -87,7 +87,7 @@ std::vector<std::string> sample_kinds() {
 
 INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
 
-/// The answer to a call about the objects of a case, and its summary's numbers.
+/// Returns the answer to a call with the objects of a case, with the numbers of its summary.
 Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
     Options options;
     options.order = asked.order;

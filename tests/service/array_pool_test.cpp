@@ -1,4 +1,4 @@
-// Arrays that are kept for the next job: given to whom they fit, and never many.
+// Tests the pool of arrays for later jobs: an array is reused only where it fits, and the pool stays small.
 #include <gtest/gtest.h>
 
 #include "service/server/jobs/array_pool.hpp"
@@ -10,7 +10,7 @@ class Spares : public ::testing::Test {
 protected:
     static constexpr std::uint64_t many = 100'000;  // 2.4 MB
 
-    /// Where the boxes lie that are given back.
+    /// Returns the address of the boxes that are given back.
     const Box3f* give(std::uint64_t count) {
         auto boxes = engine_->allocate_boxes<Box3f>(count);
         const Box3f* const place = boxes.boxes().data();
@@ -60,7 +60,7 @@ TEST_F(Spares, AreNeitherTinyNorMany) {
         }
         EXPECT_EQ(spares_.bytes(), std::uint64_t(i) * 24'000'000);
     }
-    give(2'000'000);  // two of the oldest go for it
+    give(2'000'000);  // replaces two of the oldest arrays
     EXPECT_EQ(spares_.bytes(), 120'000'000u);
     EXPECT_EQ(take(999'999), last);
 }

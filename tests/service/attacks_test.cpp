@@ -1,5 +1,5 @@
-// Clients that mean harm, or know no better: slow, silent, greedy, in another language. None holds the server's means for
-// long, and a real job beside them is done.
+// Tests malicious or faulty clients: slow, silent, greedy, or with a wrong protocol. No such client holds the server's
+// resources for long, and a valid job at the same time is done.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -82,7 +82,7 @@ TEST_P(ServedAttacks, SilenceIsNotWaitedFor) {
     EXPECT_TRUE(socket.is_closed_within(minutes(1)));
 }
 
-/// A call whose message never gets complete.
+/// A call whose message is never complete.
 TEST_P(ServedAttacks, AByteNowAndThenOfAMessage) {
     RawSocket socket(served_.address());
     ASSERT_TRUE(socket.send(std::string(http2_preface) + http2_frame({test::settings_frame}, {}) +
@@ -100,7 +100,7 @@ TEST_P(ServedAttacks, AByteNowAndThenOfAMessage) {
     test::check_serves(served_.address());
 }
 
-/// Complete messages, each with next to nothing.
+/// Complete messages that hold almost no data.
 TEST_P(ServedAttacks, AnUploadOfAByteNowAndThen) {
     const auto spec = test::spec_of(100'000);
     const auto channel = test::open_channel(served_.address());
@@ -133,13 +133,13 @@ TEST_P(ServedAttacks, AResultThatNobodyReads) {
     EXPECT_FALSE(call.finish().ok());
 }
 
-/// Frames that ask for an answer, many times over, from one that does not read the answers.
+/// Sends many frames that require an answer, and does not read the answers.
 class Flood {
 public:
     Flood(const std::string& address, std::string frames) : socket_(address), frames_(std::move(frames)) {
         (void)socket_.send(std::string(http2_preface) + http2_frame({test::settings_frame}, {}));
     }
-    /// Until so many bytes have gone, or the server takes no more.
+    /// Sends until `most` bytes are sent, or the server accepts no more.
     void run(std::uint64_t most) {
         for (std::uint64_t sent = 0; sent < most && socket_.send(frames_); sent += frames_.size()) {
         }

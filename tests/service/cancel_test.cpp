@@ -1,4 +1,4 @@
-// Calls that are cancelled, and clients that go away: at each stage the server's job ends and its memory is free again.
+// Tests cancelled calls and clients that disconnect: at each stage the server's job ends and its memory is free again.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
@@ -22,7 +22,7 @@ using test::comes_true;
 using test::Gate;
 using test::Served;
 
-/// Nothing ends for having stood still.
+/// Sets timeouts so long that no stalled call ends.
 Served::Change patient(Gate& gate) {
     return [&gate](service::ServerOptions& options) {
         options.engine = test::gated_engines(gate);
@@ -33,7 +33,7 @@ Served::Change patient(Gate& gate) {
 
 class ServedCancel : public ::testing::Test {
 protected:
-    /// Stops a call on `boxes` once `reached` holds.
+    /// Stops a call on `boxes` when `reached` holds.
     void expect_cancelled(const std::vector<Box3f>& boxes, const std::function<bool()>& reached) {
         const auto engine = served_.client();
         Job job = engine->submit(boxes);
@@ -124,7 +124,7 @@ TEST_F(ServedCancel, OfAnUploadThatStandsStill) {
     expect_serves();
 }
 
-/// `octopair detect` as a client that can be killed.
+/// `octopair detect` as a client that a test can kill.
 class ClientProgram {
 public:
     ClientProgram(const std::string& input, const std::string& address) {

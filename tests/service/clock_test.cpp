@@ -1,4 +1,4 @@
-// The machine's clock is set by a day, either way, while jobs run: what ends by time ends by a clock that nobody sets.
+// Tests changes of the system clock by a day, forward or back, while jobs run. Timeouts use a monotonic clock.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -28,12 +28,12 @@ protected:
         ASSERT_TRUE(std::filesystem::exists(fake_time)) << "package faketime";
         test::write_file(folder_.file("time"), "+0");
     }
-    /// A server whose clock this test sets.
+    /// Returns the setting of a server whose clock this test changes.
     ServerProgram::Setting setting() const {
         return {.environment = std::string("LD_PRELOAD=") + fake_time + " DONT_FAKE_MONOTONIC=1 FAKETIME_NO_CACHE=1 " +
                                "FAKETIME_TIMESTAMP_FILE='" + folder_.file("time") + "'"};
     }
-    /// A server that is killed leaves what faketime keeps in shared memory.
+    /// Removes the shared memory of faketime, which a killed server leaves behind.
     static void remove_leftovers(pid_t id) {
         for (const char* const name : {"/dev/shm/faketime_shm_", "/dev/shm/sem.faketime_sem_"}) {
             std::filesystem::remove(name + std::to_string(id));
@@ -72,7 +72,7 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
     EXPECT_EQ(job.state(), JobState::running);
     set_clock();
     EXPECT_EQ(job.summary().pairs, heap.size() * (heap.size() - 1) / 2);
-    // The default patience with uploads is a minute: it has not come.
+    // The default patience with uploads is a minute, which has not passed.
     ASSERT_TRUE(upload.write(test::upload_of(nullptr, test::bytes_of_boxes(1000))));
     EXPECT_TRUE(upload.finish().ok());
     test::check_serves(server.address());
@@ -83,7 +83,7 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
 TEST_P(ServerClock, WhatTakesTooLongStillEnds) {
     ServerProgram& server = serve(" --max-seconds 3 --stall 3");
     const auto engine = connect(server.address(), {.patience = minutes(1)});
-    const std::vector<Box3f> heap(400'000);  // far longer than that
+    const std::vector<Box3f> heap(400'000);  // takes far longer than that
     Job job = engine->submit_stream(heap, {});
     const auto channel = test::open_channel(server.address());
     const auto spec = test::spec_of(1000);

@@ -1,4 +1,4 @@
-// How a server ends, and who may take its place.
+// Tests how a server ends, and which server may take its place.
 #include <filesystem>
 #include <future>
 #include <thread>
@@ -56,7 +56,7 @@ TEST_F(Drain, WaitsForNoUpload) {
     EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
 }
 
-/// A client that reads slowly gets all of a result that was under way.
+/// A client that reads slowly gets the complete result of a running job.
 TEST_F(Drain, LetsResultsReachTheirClients) {
     service::Server server(patient(), silent());
     constexpr std::uint64_t boxes = 3000;
@@ -90,7 +90,7 @@ TEST_F(Drain, CancelsWhatIsLeftAfterItsGrace) {
     ClientOptions hasty;
     hasty.patience = std::chrono::milliseconds(100);
     const auto engine = connect(address(), hasty);
-    // Of so many equal boxes all pairs are counted for hours.
+    // To count all pairs of so many equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     auto refused = std::async(std::launch::async,
                               [&] { return error_of(ErrorCode::engine_failed, [&] { engine->count_pairs({same}); }); });
@@ -99,7 +99,7 @@ TEST_F(Drain, CancelsWhatIsLeftAfterItsGrace) {
     EXPECT_TRUE(refused.get().starts_with(address() + ": no server answers"));
 }
 
-/// For sh: `serve N ARGUMENT...` starts one, numbered, and waits until it listens or has ended.
+/// Shell functions: `serve N ARGUMENT...` starts server number N and waits until it listens or has ended.
 constexpr const char* functions = R"(
     serve() {
         n=$1; shift

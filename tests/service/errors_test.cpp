@@ -1,4 +1,4 @@
-// What is wrong with a call is said in the words of the local engine.
+// Tests that a server reports an invalid call with the message of the local engine.
 #include <gtest/gtest.h>
 
 #include <limits>

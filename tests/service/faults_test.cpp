@@ -1,5 +1,5 @@
-// A server that is killed, stopped, or loses its workers, while clients upload, wait and read: every client ends with the
-// right pairs, each once.
+// Tests a server that is killed, stopped, or loses its workers while clients upload, wait and read. Every client gets
+// the right pairs, each pair once.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -32,7 +32,7 @@ std::vector<Pair> right_pairs(const std::vector<Box3f>& boxes) {
     return list.to_vector();
 }
 
-/// A job that streams; its sink waits where it is told to.
+/// A job that streams. Its sink waits at a given number of pairs.
 class StreamedJob {
 public:
     StreamedJob(const ServerProgram& server, const std::vector<Box3f>& boxes, std::uint64_t hold_from)
@@ -48,7 +48,7 @@ public:
     bool wait_until_held() {
         return comes_true([&] { return holding_ || job_.wait_for(milliseconds(0)); }, minutes(2)) && holding_;
     }
-    /// Until so many pairs have come.
+    /// Continues until `hold_from` pairs have arrived.
     void go_on(std::uint64_t hold_from) { hold_from_ = hold_from; }
     JobState state() const { return job_.state(); }
     std::vector<Pair> take() {
@@ -77,7 +77,7 @@ protected:
 
 TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
     ServerProgram server;
-    const std::vector<Box3f> heap(test::scaled(80'000, 8));  // long to count
+    const std::vector<Box3f> heap(test::scaled(80'000, 8));  // takes long to count
     const std::uint64_t heap_pairs = heap.size() * (heap.size() - 1) / 2;
     const auto uploader = client_of(server), runner = client_of(server), other = client_of(server);
     for (int round = 0; round < 3; ++round) {
@@ -88,7 +88,7 @@ TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
         ASSERT_TRUE(comes_true([&] { return running.state() == JobState::running; }, minutes(1)));
         std::this_thread::sleep_for(milliseconds(100));
         server.signal(SIGSTOP);
-        // Of these, it takes nothing but what fits into the socket.
+        // The server accepts no more of this upload than fits into the socket.
         Job uploading = uploader->submit(large_);
         Job asking = other->submit(small_);
         std::this_thread::sleep_for(milliseconds(100));
@@ -173,7 +173,8 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     const auto begin = std::chrono::steady_clock::now();
     expect_right(large_, large_pairs_);
     const auto whole = std::chrono::steady_clock::now() - begin;
-    // One kill in a job, at several moments: many would be an error on a machine so busy that no attempt ends between two.
+    // Kill once in a job, at several moments. On a machine so busy that no attempt ends between two kills, many kills
+    // would be an error.
     for (int i = 0; i < 8 || (faults() < 1 && i < 1000); ++i) {
         const std::jthread killer([&] {
             std::this_thread::sleep_for(whole * (i % 4 + 1) / 5);

@@ -1,4 +1,5 @@
-// Very many connections, very many jobs. OCTOPAIR_TEST_FULL=1 makes it ten thousand and a hundred thousand.
+// Tests very many connections and very many jobs. With OCTOPAIR_TEST_FULL=1: ten thousand connections and a hundred
+// thousand jobs.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -27,7 +28,7 @@ bool is_full() { return std::getenv("OCTOPAIR_TEST_FULL") != nullptr; }
 
 constexpr std::uint64_t memory_bound = std::uint64_t(test::sanitized ? 2000 : 400) << 20;
 
-/// As many descriptors as the system lets this process have; how many.
+/// Raises the limit on descriptors as far as the system permits. Returns the limit.
 std::uint64_t raise_descriptors() {
     rlimit limit{};
     (void)::getrlimit(RLIMIT_NOFILE, &limit);
@@ -84,7 +85,7 @@ TEST(Floods, OfSmallJobs) {
     EXPECT_LT(server.descriptors(), 100u);
 }
 
-/// Many calls at once on one connection, none of which goes on.
+/// Many simultaneous calls on one connection, all without progress.
 TEST(Floods, OfCallsThatStandStill) {
     const test::Served served([](service::ServerOptions& options) { options.stall = std::chrono::seconds(2); });
     const auto channel = test::open_channel(served.address());

@@ -10,7 +10,7 @@ namespace octopair::test {
 
 namespace {
 
-/// Streams and counts alone: servers ask for nothing else.
+/// Supports streams and counts only. Servers make no other calls.
 class GatedEngine final : public Engine {
 public:
     explicit GatedEngine(Gate& gate) : gate_(gate) {}

@@ -1,4 +1,5 @@
-// Gate: an engine for a server under test that waits in every call until it is let go on, and says how many are there.
+// Gate: a test engine for servers. Every call waits at the gate until the test opens it. The gate counts the waiting
+// calls.
 #pragma once
 
 #include <condition_variable>
@@ -10,14 +11,14 @@
 
 namespace octopair::test {
 
-/// Must outlive the engines that wait at it.
+/// Blocks the calls of its engines. Must outlive these engines.
 class Gate {
 public:
     void open();
     void close();
-    /// Throws Error{cancelled} if stopped meanwhile.
+    /// Waits until the gate opens. Throws: Error{cancelled} if stopped meanwhile.
     void pass(const std::stop_token& stop);
-    /// Waits until so many calls are at the gate, a minute at most.
+    /// Waits until `waiting` calls are at the gate, for a minute at most.
     bool wait_for(unsigned waiting);
 
 private:
@@ -27,7 +28,7 @@ private:
     unsigned waiting_ = 0;
 };
 
-/// Makes local engines of one thread behind the gate.
+/// Returns a maker of local engines of one thread behind the gate.
 service::EngineMaker gated_engines(Gate& gate);
 
 }  // namespace octopair::test

@@ -1,4 +1,4 @@
-// A server in the test's process, at a port or a socket of its own, and files that protect it.
+// A server in the test's process, at its own port or socket, with the token and certificate files that protect it.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -37,7 +37,7 @@ inline service::ServerOptions options_at(const std::string& address) {
     return options;
 }
 
-/// Three boxes, of which two overlap.
+/// Detects the pairs of three boxes, two of which overlap.
 inline std::vector<Pair> ask(const std::string& address, ClientOptions options) {
     options.patience = std::chrono::milliseconds(300);
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{5, 5, 5}, {6, 6, 6}}, {{1, 0, 0}, {2, 1, 1}}};
@@ -47,14 +47,14 @@ inline std::vector<Pair> ask(const std::string& address, ClientOptions options) 
 }
 inline const std::vector<Pair> right_answer = {{0, 2}};
 
-/// The file of a test's own, which is nobody else's to read.
+/// Writes a file that only the test's user can read.
 inline void write_secret(const std::string& path, const std::string& content) {
     write_file(path, content);
     ASSERT_EQ(::chmod(path.c_str(), 0600), 0);
 }
 
-/// An authority, and what it signs, made by the openssl command line: NAME.pem and NAME.key for "server", "client" and both
-/// as "expired-server", "expired-client"; "stranger" is signed by another authority.
+/// Makes a certificate authority and signed certificates with the openssl command line: NAME.pem and NAME.key. Names:
+/// "server", "client", "expired-server", "expired-client", and "stranger", which another authority signed.
 class Certificates {
 public:
     Certificates() {
@@ -91,7 +91,7 @@ private:
     TemporaryDirectory folder_;
 };
 
-/// One message to a method of that path, as a client without our library.
+/// Sends a single message to the method at a path, without octopair's client.
 inline grpc::Status call_raw(const std::string& address, const std::string& method, const std::string& token = "") {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));

@@ -1,4 +1,4 @@
-// What ends while other things go on: a client's engine with jobs under way, a server with calls under way.
+// Tests objects that end during activity: a client's engine with running jobs, a server with running calls.
 #include <gtest/gtest.h>
 
 #include <thread>

@@ -1,5 +1,5 @@
-// The server's limits: each refusal is an Error{resource_limit} that names its limit and how much it allows, and the next
-// job that keeps to it is done.
+// Tests the server's limits: each refusal is an Error{resource_limit} with the name and value of the limit. The next
+// job within the limit is done.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -59,7 +59,7 @@ TEST(ServedLimits, OfObjectsThatNoMachineHas) {
             if (!limits) all.objects = all.input_bytes = 0;
         }));
         const auto channel = test::open_channel(served.address());
-        // The last have a number of bytes that wraps around to few.
+        // For the last numbers, the number of bytes overflows to a small value.
         for (const std::uint64_t objects : {largest32, largest32 + 1, largest64, largest64 / 24 + 1,
                                             std::uint64_t(1) << 61, std::uint64_t(1) << 63}) {
             for (const bool join : {false, true}) {
@@ -99,7 +99,7 @@ TEST(ServedLimits, OfPairsKept) {
 
 TEST(ServedLimits, OfMemory) {
     const Served served(limited([](auto& limits) { limits.memory_bytes = 8'000'000; }));
-    const std::vector<Box3f> many(100'000), crowd(2000);  // of the crowd the pairs are too large
+    const std::vector<Box3f> many(100'000), crowd(2000);  // the pairs of `crowd` are too large
     expect_refused("memory_bytes", 8'000'000, [&] { (void)count(served, many); });
     EXPECT_TRUE(served.comes_to_rest());
     PairList list;
@@ -154,7 +154,7 @@ TEST_F(GatedLimits, OfTime) {
     const std::vector<Box3f> many(60'000);
     for (const auto& boxes : {test::touching_boxes, many}) {
         EXPECT_EQ(test::error_of(ErrorCode::resource_limit, [&] { (void)count(served, boxes); }),
-                  "job_seconds: the job ran longer than the 0.3 s that one may take");
+                  "job_seconds: the job ran longer than 0.3 s, the limit of the server");
     }
     gate_.open();
     test::check_serves(served.address());

@@ -1,4 +1,4 @@
-// The lines of a server's log.
+// Tests the lines of a server's log.
 #include <spdlog/sinks/ostream_sink.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ protected:
         for (std::string line; std::getline(in, line);) lines.push_back(line);
         return lines;
     }
-    /// Waits for an event of that name.
+    /// Waits for an event with the given message.
     json event(const std::string& message) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (std::chrono::steady_clock::now() < end) {
@@ -76,7 +76,7 @@ TEST_F(Log, TellsOfJobsAndRefusalsButNoToken) {
     options.token_file = folder_.file("tokens");
     options.limits.objects = 3;
     const auto logger = log(LogForm::json);
-    logger->set_level(spdlog::level::debug);  // jobs of one message are told there
+    logger->set_level(spdlog::level::debug);  // jobs of one message are logged at this level
     const service::Server server(options, logger);
     const std::string address = server.address().text();
     ClientOptions client;
@@ -100,7 +100,7 @@ TEST_F(Log, TellsOfJobsAndRefusalsButNoToken) {
 
     client.token = "not the right token";
     EXPECT_NE(error_of(ErrorCode::usage, [&] { ask(address, client); }), "");
-    EXPECT_EQ(event("call refused")["reason"], "the token is none of the server's");
+    EXPECT_EQ(event("call refused")["reason"], "the server does not accept this token");
     EXPECT_EQ(text_.str().find("0123456789abcdef"), std::string::npos);
     EXPECT_EQ(text_.str().find("not the right token"), std::string::npos);
 }

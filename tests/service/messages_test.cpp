@@ -1,4 +1,4 @@
-// Messages that no client of ours sends: the call is refused in words, and the server goes on.
+// Tests messages that octopair's client never sends: the server refuses the call with a clear message and continues.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -64,7 +64,7 @@ std::string hex_of(const grpc::ByteBuffer& message) {
     return text;
 }
 
-/// As docs/protocol.md has them, to the byte.
+/// Compares messages with the example in docs/protocol.md, byte by byte.
 TEST(Messages, AreThoseOfTheExample) {
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
     const auto data = std::as_bytes(std::span(boxes));
@@ -96,7 +96,7 @@ TEST(Messages, AreThoseOfTheExample) {
               "7A080000000001000000");
 }
 
-/// Takes no input.
+/// Accepts no input.
 struct NoInput : service::InputTarget {
     void append(std::span<const std::byte>) override {}
     std::uint64_t missing() const override { return 0; }
@@ -144,7 +144,7 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
     expect_bad(queued.finish(), "more bytes");
 }
 
-/// The input is gone by then, and the call still open, as the client has not read its result.
+/// The input is already released, and the call is still open, because the client has not read its result.
 TEST_F(ServedMessages, DataAndTheEndAfterTheJobHasEnded) {
     gate_.open();
     const std::vector<Box3f> boxes(2000);  // 16 MB of pairs
@@ -164,10 +164,10 @@ TEST_F(ServedMessages, DataAndTheEndAfterTheJobHasEnded) {
 
 TEST_F(ServedMessages, JobsOutOfPlace) {
     const auto data = upload_of(nullptr, bytes_of_boxes(1)), job = upload_of(&spec_, bytes_of_boxes(1));
-    expect_bad(send({data}), "the first message says no job");
-    expect_bad(send({upload_of(nullptr, {})}), "the first message says no job");
+    expect_bad(send({data}), "the first message has no job spec");
+    expect_bad(send({upload_of(nullptr, {})}), "the first message has no job spec");
     expect_bad(send({job, job}), "a second job");
-    expect_bad(test::call_small(channel_, data), "the first message says no job");
+    expect_bad(test::call_small(channel_, data), "the first message has no job spec");
 }
 
 TEST_F(ServedMessages, SpecsThatMakeNoSense) {
@@ -237,7 +237,7 @@ TEST_F(ServedMessages, AJobThatComesTwice) {
     ASSERT_TRUE(first.write(upload_of(&spec_, bytes_of_boxes(10))));
     ASSERT_TRUE(gate_.wait_for(1));
     ASSERT_TRUE(other.write(upload_of(&spec_, std::string(240, '\0'))));
-    expect_bad(other.finish(), "is there already");
+    expect_bad(other.finish(), "already exists");
     ASSERT_TRUE(again.write(upload_of(&spec_, bytes_of_boxes(10))));
     EXPECT_EQ(first.finish().error_code(), grpc::StatusCode::CANCELLED);
     gate_.open();

@@ -1,4 +1,4 @@
-// What a server shows to Prometheus.
+// Tests the metrics that a server exports to Prometheus.
 #include "service/metrics_page.hpp"
 #include "support/scale.hpp"
 
@@ -40,8 +40,8 @@ TEST_F(Metrics, CountJobs) {
     }
 }
 
-/// What does not fit into one message is found twice, the first time not to the end; and once for the next job that may be
-/// as large.
+/// A result that does not fit into a message is computed twice, the first time incompletely. The next job of similar
+/// size is computed once.
 TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
     serve(options_at(socket()));
     const auto client = connect(socket());

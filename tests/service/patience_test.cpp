@@ -1,4 +1,4 @@
-// Servers that are not there, or do not answer: calls end when the patience does, no sooner.
+// Tests servers that do not exist or do not answer: calls end when the patience is over, and not earlier.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -19,7 +19,7 @@ namespace {
 using std::chrono::milliseconds;
 using test::Served;
 
-/// Listens, and never answers.
+/// A server that listens and never answers.
 class Mute {
 public:
     explicit Mute(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -72,7 +72,7 @@ TEST(ServedPatience, EndsWhenAServerStaysAway) {
     EXPECT_EQ(test::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
     served.start();
     gate.open();
-    // With so little patience one may miss it again.
+    // With so little patience, a call may miss the server again.
     const auto answers = [&] {
         std::uint64_t pairs = 0;
         (void)test::code_of([&] { pairs = engine->count_pairs(test::objects_of(test::touching_boxes)); });

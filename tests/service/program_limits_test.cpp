@@ -1,4 +1,4 @@
-// A server with few descriptors, or little memory: it says so, and lives.
+// Tests a server with few descriptors or little memory: the server reports the shortage and keeps running.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -26,7 +26,7 @@ TEST(ServerProgramLimits, OfDescriptors) {
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     std::vector<RawSocket> held;
     std::optional<ErrorCode> code;
-    // The server ends connections that say nothing for 10 s, which a busy machine may need for this.
+    // The server ends connections that are silent for 10 s. A busy machine may need as long for this step.
     for (int attempt = 0; attempt < 3 && code != ErrorCode::resource_limit; ++attempt) {
         held.clear();
         for (int i = 0; i < 80; ++i) held.emplace_back(server.address());
@@ -42,7 +42,7 @@ TEST(ServerProgramLimits, OfDescriptors) {
 
 TEST(ServerProgramLimits, OfAddressSpace) {
     if (test::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
-    // With an arena of malloc for every thread, gRPC itself would want for room.
+    // With a malloc arena for every thread, gRPC itself would run out of memory.
     ServerProgram server({.arguments = "--engine local --threads 1", .before = "export MALLOC_ARENA_MAX=2;"});
     test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});

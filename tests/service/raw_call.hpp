@@ -1,4 +1,4 @@
-// Calls message by message, as a client makes them that is not ours: any bytes, in any order.
+// Calls message by message, without octopair's client: any bytes, in any order.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -16,22 +16,22 @@
 
 namespace octopair::test {
 
-/// A connection of its own.
+/// Opens a separate connection.
 std::shared_ptr<grpc::Channel> open_channel(const std::string& address);
 
-/// A stream. Every step waits for its end, a minute at most.
+/// A stream. Every step waits for its completion, for a minute at most.
 class RawCall {
 public:
     explicit RawCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method = "Detect");
     RawCall(const RawCall&) = delete;
     RawCall& operator=(const RawCall&) = delete;
-    /// Cancels what is not over.
+    /// Cancels the call if it has not ended.
     ~RawCall();
 
     bool write(const grpc::ByteBuffer& message);
     bool writes_done();
     std::optional<grpc::ByteBuffer> read();
-    /// Reads what is left, and says how the call ended.
+    /// Reads the remaining messages, and returns the status of the call.
     grpc::Status finish();
     void cancel() { context_.TryCancel(); }
 
@@ -45,19 +45,19 @@ private:
     bool over_ = false;
 };
 
-/// One message each way.
+/// Makes a call with one message in each direction.
 grpc::Status call_small(const std::shared_ptr<grpc::Channel>& channel, const grpc::ByteBuffer& question,
                         grpc::ByteBuffer* answer = nullptr);
 
-/// With a new id.
+/// Makes a spec with a new id.
 v1::JobSpec spec_of(std::uint64_t objects);
-/// A message with the spec, if there is one, and data.
+/// Makes a message with data, and with the spec if `spec` is not null.
 grpc::ByteBuffer upload_of(const v1::JobSpec* spec, const std::string& data);
-/// So many boxes apart from each other.
+/// Returns the bytes of `objects` boxes that do not touch.
 std::string bytes_of_boxes(std::uint64_t objects);
 grpc::ByteBuffer buffer_of(const std::string& bytes);
 
-/// The failure that a status carries; its message is empty if it carries none.
+/// Returns the failure in a status. Its message is empty if the status has no failure.
 v1::Failure failure_in(const grpc::Status& status);
 
 }  // namespace octopair::test

@@ -50,7 +50,7 @@ std::string big_endian(std::uint32_t number, int bytes) {
     return text;
 }
 
-/// A literal that no table keeps (RFC 7541).
+/// Encodes a header as a literal without table entries (RFC 7541).
 std::string header(const std::string& name, const std::string& value) {
     return std::string(1, '\0') + char(name.size()) + name + char(value.size()) + value;
 }

@@ -1,4 +1,4 @@
-// A socket that sends what it likes, and HTTP/2 (RFC 9113) by hand.
+// A socket that sends arbitrary bytes, and helpers that encode HTTP/2 (RFC 9113) by hand.
 #pragma once
 
 #include <chrono>
@@ -9,18 +9,18 @@
 
 namespace octopair::test {
 
-/// Connected to `unix:PATH` or `127.0.0.1:PORT`.
+/// A socket connected to `unix:PATH` or `127.0.0.1:PORT`.
 class RawSocket {
 public:
-    /// Throws std::runtime_error if it cannot be connected.
+    /// Throws: std::runtime_error if the connection fails.
     explicit RawSocket(const std::string& address);
 
     int number() const { return socket_.number(); }
-    /// False if the other side is gone, or takes nothing for five seconds.
+    /// Sends bytes. Returns false if the peer is gone, or accepts nothing for five seconds.
     bool send(std::string_view bytes) const;
-    /// What comes until the other side closes, or for so long.
+    /// Returns the bytes received until the peer closes or `most` has passed.
     std::string receive(std::chrono::milliseconds most);
-    /// Whether the other side has closed, within so long; what it sent is dropped.
+    /// Returns whether the peer closes within `most`. Drops received bytes.
     bool is_closed_within(std::chrono::milliseconds most);
 
 private:
@@ -38,9 +38,9 @@ struct Http2Frame {
 inline constexpr char data_frame = 0, headers_frame = 1, reset_frame = 3, settings_frame = 4, ping_frame = 6;
 
 std::string http2_frame(const Http2Frame& frame, std::string_view payload);
-/// The head of a gRPC call of a method of octopair's service.
+/// Returns the head of a gRPC call of a method of octopair's service.
 std::string grpc_head(std::uint32_t stream, const std::string& method);
-/// A gRPC message's first five bytes.
+/// Returns the first five bytes of a gRPC message.
 std::string grpc_prefix(std::uint32_t length);
 
 }  // namespace octopair::test

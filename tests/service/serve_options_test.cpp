@@ -1,4 +1,4 @@
-// The options of `octopair serve`, in a file and on the command line, and those that are refused.
+// Tests the options of `octopair serve`, in a file and on the command line, and the refused options.
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -6,7 +6,7 @@ namespace {
 
 class ServeOptions : public ProgramTest {
 protected:
-    /// What it says of a file of these lines, before it would listen.
+    /// Returns the message about a file of these lines. The program exits before it listens.
     std::string refused(const std::string& lines, int status = 2) const {
         write_file(file("c.toml"), lines);
         const Outcome outcome = run("serve --config c.toml --listen unix:socket");
@@ -14,7 +14,7 @@ protected:
         EXPECT_FALSE(std::filesystem::exists(file("socket"))) << lines;
         return outcome.err;
     }
-    /// Serves until it has started.
+    /// Runs the server until it has started.
     Outcome served(const std::string& arguments) const {
         return shell("\"$P\" serve " + arguments + R"( 2>log & child=$!
             for i in $(seq 1200); do
@@ -27,21 +27,22 @@ protected:
 };
 
 TEST_F(ServeOptions, UnknownKeysNameFileAndKey) {
-    EXPECT_EQ(refused("max-jbos = 5\n"), "octopair: c.toml: max-jbos: is no option of 'serve'\n");
+    EXPECT_EQ(refused("max-jbos = 5\n"), "octopair: c.toml: max-jbos: not an option of 'serve'\n");
     EXPECT_EQ(refused("[limits]\nmax-jobs = 5\n").find("octopair: c.toml: limits"), 0u);
-    EXPECT_EQ(refused("config = 'd.toml'\n"), "octopair: c.toml: config: is no option of 'serve'\n");
+    EXPECT_EQ(refused("config = 'd.toml'\n"), "octopair: c.toml: config: not an option of 'serve'\n");
 }
 
 TEST_F(ServeOptions, WrongValuesNameFileAndKey) {
     EXPECT_EQ(refused("max-jobs = many\n").find("octopair: c.toml: max-jobs: --max-jobs: 'many' is not a whole number"),
               0u);
-    EXPECT_EQ(refused("max-memory = \"8 GB\"\n"),
-              "octopair: c.toml: max-memory: --max-memory: '8 GB' is no number of bytes, as 65536, 64K, 4G\n");
+    EXPECT_EQ(
+        refused("max-memory = \"8 GB\"\n"),
+        "octopair: c.toml: max-memory: --max-memory: '8 GB' is not a number of bytes, for example 65536, 64K or 4G\n");
     EXPECT_EQ(refused("stall = 0\n"), "octopair: c.toml: stall: --stall: at least 1 second\n");
     EXPECT_EQ(refused("keep = 0\n"), "octopair: c.toml: keep: --keep: at least 1 second\n");
-    EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: a folder is wanted\n");
-    EXPECT_EQ(refused("max-jobs = [1, 2]\n"), "octopair: c.toml: max-jobs: one value is wanted\n");
-    EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not known"), 0u);
+    EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: must name a folder\n");
+    EXPECT_EQ(refused("max-jobs = [1, 2]\n"), "octopair: c.toml: max-jobs: needs exactly one value\n");
+    EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not a valid value"), 0u);
 }
 
 TEST_F(ServeOptions, MissingFileIsNamed) {

@@ -1,4 +1,4 @@
-// A server in the test's own process, on a Unix socket in a folder of its own.
+// A server in the test's process, on a Unix socket in a temporary folder.
 #pragma once
 
 #include <chrono>
@@ -17,13 +17,13 @@ class Served {
 public:
     using Change = std::function<void(service::ServerOptions&)>;
 
-    /// Serves with a local engine of two threads, unless `change` says otherwise.
+    /// Starts a server with a local engine of two threads, unless `change` sets other options.
     explicit Served(const Change& change = {});
 
     const std::string& address() const { return address_; }
     service::Server& server() { return *server_; }
     service::ServerLoad load() const { return server_->load(); }
-    /// No job is on the server, and none of its memory taken; waits for it.
+    /// Waits until the server has no jobs and uses no memory for jobs. Returns whether this happened.
     bool comes_to_rest() const;
 
     void stop() { server_ = nullptr; }
@@ -38,10 +38,10 @@ private:
     std::unique_ptr<service::Server> server_;
 };
 
-/// Throws Error if a job of a few objects does not find its pairs.
+/// Throws: Error if a job of a few objects does not find its pairs.
 void check_serves(const std::string& address);
 
-/// Fails the test unless `call` throws Error{resource_limit} that names the limit and how much it allows.
+/// Fails the test unless `call` throws Error{resource_limit} with the name and value of the limit.
 void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call);
 
 }  // namespace octopair::test

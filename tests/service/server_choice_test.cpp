@@ -1,4 +1,4 @@
-// octopair detect --engine ADDRESS: the options for a server, and what is said of it.
+// Tests `octopair detect --engine ADDRESS`: the options for a server, and the messages about them.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -14,7 +14,7 @@ protected:
         write_file(file("token"), "0123456789abcdef\n");
         write_file(file("wrong"), "0123456789abcdeg\n");
     }
-    /// With a server at unix:socket that wants a token.
+    /// Runs commands with a server at unix:socket that requires a token.
     Outcome with_server(const std::string& lines) const {
         return shell(R"(chmod 600 tokens token wrong
             "$P" serve --listen unix:socket --threads 1 --tokens tokens 2>log & child=$!
@@ -33,9 +33,9 @@ TEST_F(ServerChoice, TokensComeFromAFileOrTheEnvironment) {
     const Outcome refused = with_server("\"$P\" $D --quiet --token-file wrong"),
                   none = with_server("\"$P\" $D --quiet");
     EXPECT_EQ(refused.status, 2);
-    EXPECT_EQ(refused.err, "octopair: unix:socket: the token is none of the server's\n");
+    EXPECT_EQ(refused.err, "octopair: unix:socket: the server does not accept this token\n");
     EXPECT_EQ(none.status, 2);
-    EXPECT_EQ(none.err, "octopair: unix:socket: the server wants a token\n");
+    EXPECT_EQ(none.err, "octopair: unix:socket: the server requires a token\n");
 }
 
 TEST_F(ServerChoice, EventsAskWithTheSameToken) {
@@ -47,7 +47,8 @@ TEST_F(ServerChoice, EventsAskWithTheSameToken) {
 TEST_F(ServerChoice, TokenFilesOthersMayReadAreRefused) {
     const Outcome outcome = with_server("chmod 644 token; \"$P\" $D --quiet --token-file token");
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.err, "octopair: token: others may read it; a secret is its owner's alone (chmod 600)\n");
+    EXPECT_EQ(outcome.err,
+              "octopair: token: other users can access this secret file; restrict it to its owner (chmod 600)\n");
 }
 
 TEST_F(ServerChoice, SummaryAndStatsNameTheServer) {

@@ -1,4 +1,4 @@
-// `octopair serve` as a program of its own: to be killed, stopped, and started again.
+// `octopair serve` as a separate program that a test can kill, stop and restart.
 #pragma once
 
 #include <sys/types.h>
@@ -19,7 +19,7 @@ public:
         std::string environment = {};  ///< "NAME=VALUE ..."
     };
 
-    /// Starts it on a Unix socket in a folder of its own.
+    /// Starts the server on a Unix socket in a temporary folder.
     explicit ServerProgram(Setting setting);
     ServerProgram() : ServerProgram(Setting()) {}
     ServerProgram(const ServerProgram&) = delete;
@@ -31,15 +31,15 @@ public:
     pid_t id() const { return id_; }
     bool lives();
     void signal(int number) const;
-    /// What it exited with, 128 + signal if it was killed.
+    /// Returns the exit status, or 128 + signal if the server was killed.
     int wait();
-    /// kill -9, and again from the beginning on the same socket.
+    /// Sends SIGKILL, and restarts the server on the same socket.
     void kill_and_restart();
-    /// What it wrote, of all its lives.
+    /// Returns the output of all runs of the server.
     std::string log() const { return test::read_file(folder_.file("log")); }
-    /// Resident memory in bytes, and open descriptors; 0 if it does not live.
+    /// Return resident memory in bytes, and the number of open descriptors. Both are 0 if the server does not run.
     std::uint64_t memory() const;
-    /// From now on it may map no more than so many bytes beyond what it has mapped.
+    /// Limits further memory mappings to `more` bytes.
     void limit_memory(std::uint64_t more) const;
     std::size_t descriptors() const;
 

@@ -1,4 +1,4 @@
-// Inputs and results just at the borders of messages, pieces, and small and large jobs.
+// Tests inputs and results at the size limits of messages, pieces, and small and large jobs.
 #include <gtest/gtest.h>
 
 #include "service/protocol/messages.hpp"
@@ -13,7 +13,7 @@ using service::most_small_objects;
 using service::piece_bytes;
 using test::Served;
 
-/// `crowd` boxes in one place, each a pair with each other, then others apart.
+/// Makes `crowd` boxes at one place, which all form pairs with each other, then boxes apart.
 std::vector<Box3f> boxes_with(std::uint64_t objects, std::uint64_t crowd) {
     std::vector<Box3f> boxes;
     boxes.reserve(objects);

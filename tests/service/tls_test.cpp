@@ -1,4 +1,4 @@
-// Connections under TLS, and certificates instead of tokens.
+// Tests connections with TLS, and certificates in place of tokens.
 #include "service/guarded.hpp"
 
 namespace octopair::test {
@@ -110,7 +110,7 @@ TEST_F(Tls, KeysOthersMayReadAreRefused) {
     { const service::Server server(options, silent()); }
     ASSERT_EQ(::chmod(options.tls.key.c_str(), 0644), 0);
     EXPECT_EQ(refusal_of(options, ErrorCode::usage),
-              options.tls.key + ": others may read it; a secret is its owner's alone (chmod 600)");
+              options.tls.key + ": other users can access this secret file; restrict it to its owner (chmod 600)");
 }
 
 }  // namespace

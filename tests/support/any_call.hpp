@@ -1,4 +1,4 @@
-// Any call about the objects of a case, by any engine: to compare engines.
+// A call with the objects of a case, by any engine, for comparisons of engines.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace octopair::test {
 
-/// One call about the objects of a case, by any engine.
+/// A call with the objects of a case, by any engine.
 struct AnyCall {
     const Case& asked;
     Order order;

@@ -1,9 +1,9 @@
-// Random calls of an engine, each from one seed, so that any can be run again alone.
+// Random calls of an engine. Each call has its own seed, so that a test can repeat it alone.
 //
-// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that one case.
-// Soak:   OCTOPAIR_TEST_CASES=<number> runs so many cases of each kind instead of the usual number;
-//         OCTOPAIR_TEST_SHARE=<per cent> a share of the usual number;
-//         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> do so for the tests of exactness.
+// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that case only.
+// Soak:   OCTOPAIR_TEST_CASES=<number> sets the number of cases of each kind.
+//         OCTOPAIR_TEST_SHARE=<per cent> sets a share of the default number.
+//         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> set the numbers for the tests of exactness.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace octopair::test {
 
-/// The objects of a call, owned.
+/// Owns the objects of a call.
 struct OwnedObjects {
     std::variant<std::vector<Box3f>, std::vector<Box3d>> boxes;
     std::vector<double> padding;
@@ -23,7 +23,7 @@ struct OwnedObjects {
     Objects view() const;
 };
 
-/// One random call: what is searched, and how.
+/// A random call: its objects and options.
 struct Case {
     OwnedObjects first;
     std::optional<OwnedObjects> second;  ///< of a join
@@ -33,27 +33,28 @@ struct Case {
     unsigned threads[3] = {};        ///< 1 to 8
 
     std::string describe() const;
-    /// Returns what a call is given. Borrows the objects.
+    /// Returns the input of the call. Borrows the objects.
     Input input() const;
 };
 
-/// Objects 0 to 3,000, mostly few; kinds whose pairs are many get fewer.
+/// Makes a case of 0 to 3,000 objects, mostly few. Kinds with many pairs get fewer objects.
 Case make_case(const std::string& kind, std::uint64_t seed);
 
-/// The seed of the i-th case of a kind, or OCTOPAIR_TEST_SEED.
+/// Returns the seed of the i-th case of a kind, or OCTOPAIR_TEST_SEED.
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i);
-/// How many cases of a kind to run: `usual`, or what the environment asks for.
+/// Returns the number of cases of a kind to run: `usual`, or the number that the environment sets.
 std::uint64_t case_count(std::uint64_t usual);
 
-/// The scenes [begin, end) that a test of exactness checks, numbered by their seeds.
+/// The scenes [begin, end) of a test of exactness, numbered by their seeds.
 struct SceneRange {
     std::uint64_t begin, end;
     std::uint64_t size() const { return end - begin; }
-    /// The i-th of `parts` parts.
+    /// Returns the i-th of `parts` parts.
     SceneRange part(std::uint64_t i, std::uint64_t parts) const;
 };
 enum class SceneSize : std::uint8_t { small, large };
-/// `usual` scenes, as many as the environment asks for (fewer under sanitizers), or the one of OCTOPAIR_TEST_SEED.
+/// Returns `usual` scenes (fewer under sanitizers), the number that the environment sets, or the scene of
+/// OCTOPAIR_TEST_SEED only.
 SceneRange scene_range(SceneSize size, std::uint64_t usual);
 
 }  // namespace octopair::test

@@ -8,7 +8,7 @@ namespace octopair::test {
 
 namespace {
 
-/// Hexadecimal, so that the box can be put into a test as it is.
+/// Prints a box in hexadecimal, so that a test can hold it unchanged.
 std::string describe(const Objects& objects, std::uint32_t index) {
     std::ostringstream text;
     text << std::hexfloat << index << " {";

@@ -1,4 +1,4 @@
-// Comparisons of lists, files and boxes that say where two of them differ.
+// Comparisons of lists, files and boxes that report where two of them differ.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@
 
 namespace octopair {
 
-/// For GoogleTest, which looks for it in the namespace of Pair.
+/// Prints a pair for GoogleTest, which looks for this function in the namespace of Pair.
 inline void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.a << "-" << pair.b; }
 
 }  // namespace octopair
 
 namespace octopair::test {
 
-/// Success if both sequences are equal, element by element; else their sizes and the first elements that differ.
+/// Succeeds if both sequences are equal. Otherwise reports their sizes and the first elements that differ.
 template <typename Sequence>
 ::testing::AssertionResult same_sequence(const Sequence& found, const Sequence& expected) {
     if (found == expected) return ::testing::AssertionSuccess();
@@ -33,18 +33,18 @@ template <typename Sequence>
     return failure;
 }
 
-/// What a list of pairs was found in; `second` is null but for a join.
+/// The objects of a search. `second` is null except for a join.
 struct Searched {
     const Objects& first;
     const Objects* second = nullptr;
 };
 
-/// Success if both lists are the same, pair for pair; else the number of differences and the first pair that is missing
-/// or one too many. Both are ascending.
+/// Succeeds if both lists hold the same pairs. Otherwise reports the number of differences and the first missing or
+/// extra pair. Requires: both lists are ascending.
 ::testing::AssertionResult same_pairs(const std::vector<Pair>& found, const std::vector<Pair>& expected,
                                       const Searched& where);
 
-/// Success if both are the same, in the same order.
+/// Succeeds if both lists hold the same pairs in the same order.
 ::testing::AssertionResult same_bytes(const std::vector<Pair>& found, const std::vector<Pair>& expected);
 
 }  // namespace octopair::test

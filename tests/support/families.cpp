@@ -17,18 +17,18 @@ using samples::RandomStream;
 using Point = std::array<double, 3>;
 using Boxes3d = std::vector<Box3d>;
 
-/// What a family makes its boxes of.
+/// The number of objects and the random stream of a family.
 struct Draw {
     std::uint64_t objects;
     RandomStream random;
 
-    /// About the distance between neighbours in the unit cube.
+    /// Returns the approximate distance between neighbours in the unit cube.
     double spacing() const { return 1 / std::cbrt(double(std::max<std::uint64_t>(1, objects))); }
     Point point() { return {random.uniform(), random.uniform(), random.uniform()}; }
-    /// 2^x with x uniform in [low, high).
+    /// Returns 2^x with x uniform in [low, high).
     double power_of_two(double low, double high) { return std::exp2(random.uniform(low, high)); }
     bool chance(double part) { return random.uniform() < part; }
-    /// A direction, not quite uniform.
+    /// Returns a random direction, not quite uniform.
     Point direction() {
         Point way{random.gaussian(), random.gaussian(), random.gaussian()};
         const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) + 1e-9;
@@ -62,7 +62,7 @@ Boxes3d repeat(std::uint64_t count, Next&& next) {
     return boxes;
 }
 
-/// Sizes over a factor of 16 to 64, another typical size on each axis.
+/// Sizes over a factor of 16 to 64, with a different typical size on each axis.
 Boxes3d anisotropic(Draw& draw) {
     Point typical;
     for (double& side : typical) side = draw.spacing() * draw.power_of_two(-4, 1);
@@ -76,7 +76,7 @@ Boxes3d anisotropic(Draw& draw) {
     });
 }
 
-/// Sides by a power law, alike on all axes or each on its own.
+/// Sides by a power law, equal on all axes or independent on each axis.
 Boxes3d long_tail(Draw& draw) {
     const double exponent = draw.random.uniform(0.25, 0.75), least = draw.spacing() * draw.power_of_two(-3, -1);
     const bool cubes = draw.chance(0.5);
@@ -117,7 +117,7 @@ Boxes3d surface(Draw& draw) {
     });
 }
 
-/// A sheet of so many cells a side that hangs in folds.
+/// A folded sheet with a given number of cells on each side.
 class Cloth {
 public:
     Cloth(std::uint64_t side, Draw& draw) : side_(side) {
@@ -128,7 +128,7 @@ public:
     Box3d vertex(std::uint64_t u, std::uint64_t v) const {
         return around(at(u, v), {thickness_, thickness_, thickness_});
     }
-    /// One of the two triangles of a cell.
+    /// Returns the box of either triangle of a cell.
     Box3d face(std::uint64_t u, std::uint64_t v, bool upper) const {
         const auto bare = [&](std::uint64_t i, std::uint64_t k) { return around(at(i, k), {0, 0, 0}); };
         const Box3d diagonal = hull(bare(u + 1, v), bare(u, v + 1));
@@ -169,7 +169,7 @@ Boxes3d cloth_vertices(const Cloth& cloth) {
 
 Boxes3d cloth(Draw& draw) { return cloth_faces(Cloth(1 + std::uint64_t(std::sqrt(double(draw.objects) / 2)), draw)); }
 
-/// Boxes around where an object begins and ends a step, some of them far.
+/// Boxes around the start and end of an object's step. Some steps are long.
 Boxes3d swept(Draw& draw) {
     const double size = draw.spacing() * draw.power_of_two(-3, -1), exponent = draw.random.uniform(0.2, 0.8);
     return repeat(draw.objects, [&] {
@@ -181,7 +181,7 @@ Boxes3d swept(Draw& draw) {
     });
 }
 
-/// Whole numbers: borders, ends and octants coincide exactly. In units, not in the unit cube.
+/// Whole numbers: borders, ends and octants coincide exactly. Coordinates are in units, not in the unit cube.
 Boxes3d lattice(Draw& draw) {
     const double cells = std::max(1.0, std::floor(draw.random.uniform(0.7, 2) / draw.spacing()));
     const std::uint64_t longest = 2 + draw.random.below(3);
@@ -196,7 +196,7 @@ Boxes3d lattice(Draw& draw) {
     });
 }
 
-/// Clusters within clusters, each a small part of the one around it.
+/// Clusters within clusters, each a small part of the cluster around it.
 Boxes3d nested_clusters(Draw& draw) {
     const unsigned levels = 1 + unsigned(draw.random.below(4));
     const double part = draw.power_of_two(-9, -2);
@@ -220,7 +220,7 @@ Boxes3d nested_clusters(Draw& draw) {
     });
 }
 
-/// So many world-sized objects that their pairs stay few for each object.
+/// Returns the number of world-sized objects for which the pairs of each object stay few.
 std::uint64_t world_sized(Draw& draw) {
     const double most = 1 + 4 * std::sqrt(double(draw.objects));
     return std::min(draw.objects, std::uint64_t(draw.random.uniform(0, most)));
@@ -245,7 +245,7 @@ Boxes3d rods(Draw& draw) {
     return boxes;
 }
 
-/// Wide flat boxes, parallel or not, among dust or not.
+/// Wide flat boxes, parallel or not, with or without small boxes between them.
 Boxes3d sheets(Draw& draw) {
     const double thickness = draw.spacing() * draw.power_of_two(-12, -4),
                  size = draw.spacing() * draw.power_of_two(-3, 0);
@@ -262,7 +262,7 @@ Boxes3d sheets(Draw& draw) {
     return boxes;
 }
 
-/// Few boxes of every size up to the world's, the others small.
+/// A few boxes of every size up to the size of the world. All other boxes are small.
 Boxes3d six_decades(Draw& draw) {
     return repeat(draw.objects, [&] {
         const double share = draw.random.uniform();
@@ -284,7 +284,7 @@ Boxes3d flat(Draw& draw) {
     });
 }
 
-/// Piles of equal boxes, and boxes that lie in a row within them.
+/// Piles of equal boxes, and rows of boxes within them.
 Boxes3d piles(Draw& draw) {
     const double size = draw.spacing() * draw.power_of_two(-1, 1);
     Boxes3d boxes;
@@ -324,7 +324,7 @@ const Family& family_of(const std::string& name) {
     throw std::invalid_argument("no family is called " + name);
 }
 
-/// Another place, size and orientation in space for all boxes of a scene.
+/// Moves, scales and reorients all boxes of a scene.
 struct Placement {
     std::array<int, 3> axes = {0, 1, 2};
     std::array<bool, 3> mirrored = {};
@@ -354,7 +354,7 @@ struct Placement {
     }
 };
 
-/// In float32 or as they are; in a random order of objects, or in the order in which they were made.
+/// Returns the boxes in float32 or unchanged, in a random order or in the order of their creation.
 OwnedObjects owned(Boxes3d boxes, Draw& draw) {
     if (draw.chance(0.7)) {
         for (std::size_t i = boxes.size(); i > 1; --i)
@@ -406,12 +406,12 @@ Case make_family_case(const std::string& name, std::uint64_t objects, std::uint6
     Boxes3d first, second;
     const double kind = draw.random.uniform();
     if (name == "cloth" && kind < 0.5) {
-        // Vertices against faces, as cloth simulations ask.
+        // Vertices against faces, as in cloth simulations.
         const Cloth sheet(1 + std::uint64_t(std::sqrt(double(objects) / 3)), draw);
         first = cloth_vertices(sheet);
         second = cloth_faces(sheet);
     } else if (kind < 0.3) {
-        // Two sets of unlike size and extent.
+        // Two sets of different size and extent.
         const Family& other = families[std::size_t(draw.random.below(families.size()))];
         Draw of_first{1 + draw.random.below(objects), draw.random};
         Draw of_second{objects - of_first.objects + 1, RandomStream(seed, 1)};

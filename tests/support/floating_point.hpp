@@ -1,4 +1,4 @@
-// Floating-point states that a caller may have set: subnormal numbers taken for 0, other rounding, exceptions that trap.
+// Floating-point states of a caller: subnormal numbers treated as 0, other rounding modes, exceptions that trap.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace octopair::test {
 
-/// `control`: of the processor; on others than x86-64 a rounding mode of <cfenv>.
+/// `control`: control register of the processor on x86-64, otherwise a rounding mode of <cfenv>.
 struct CallerState {
     const char* name;
     unsigned control;
@@ -44,7 +44,7 @@ inline std::vector<CallerState> caller_states() {
 
 #endif
 
-/// Calls body() in a caller's state, which it must leave as it found it.
+/// Calls body() in a caller's state. Fails if body() changes the state.
 template <typename Body>
 void call_in(const CallerState& state, Body&& body) {
     const unsigned before = floating_point_control();

@@ -1,4 +1,4 @@
-// A hash of pairs and boxes: FNV-1a over 32-bit words, so that the bytes and their order count.
+// A hash of pairs and boxes: FNV-1a over 32-bit words. The hash depends on the bytes and on their order.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
-// Test programs with this in them run the fast kernels with no better instructions than OCTOPAIR_TEST_INSTRUCTIONS names,
-// as on a processor that has no others: AVX3, AVX2, SSE4, SSSE3, SSE2.
+// Limits the fast kernels of a test program to the instruction set that OCTOPAIR_TEST_INSTRUCTIONS names. Possible
+// values: AVX3, AVX2, SSE4, SSSE3, SSE2.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace {
     std::exit(2);
 }
 
-/// Highway gives a lower bit to what is better.
+/// Highway gives a better instruction set a lower bit.
 [[maybe_unused]] const bool are_limited = [] {
     const char* const name = std::getenv("OCTOPAIR_TEST_INSTRUCTIONS");
     if (name == nullptr) return false;

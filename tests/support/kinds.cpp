@@ -14,7 +14,7 @@ namespace {
 
 using samples::RandomStream;
 
-/// How a kind places an object of either precision.
+/// Places an object of a kind, in either precision.
 template <typename Real>
 using MakeBox = Box<Real> (*)(RandomStream&);
 
@@ -28,7 +28,7 @@ Box<Real> span_box(const double (&low)[3], const double (&extent)[3]) {
     return box;
 }
 
-/// Corners on a small lattice of integers: faces, edges and corners touch all the time; extents are often zero.
+/// Corners on a small lattice of integers: faces, edges and corners often touch. Extents are often zero.
 template <typename Real>
 Box<Real> lattice(RandomStream& random) {
     Box<Real> box;
@@ -40,14 +40,14 @@ Box<Real> lattice(RandomStream& random) {
     return box;
 }
 
-/// Few different boxes, each many times over.
+/// Few different boxes, each with many copies.
 template <typename Real>
 Box<Real> duplicates(RandomStream& random) {
     RandomStream few(random.below(5), 77);
     return lattice<Real>(few);
 }
 
-/// Zero extent on `axes` of the three axes, in a random order of the axes; coordinates repeat.
+/// Zero extent on `axes` of the three axes, in a random order of the axes. Coordinates repeat.
 template <typename Real, int axes>
 Box<Real> collapsed(RandomStream& random) {
     Box<Real> box;
@@ -72,7 +72,7 @@ Box<Real> giants(RandomStream& random) {
     return span_box<Real>(low, extent);
 }
 
-/// Corners on fractions of powers of two, or the next number to them on either side: the borders of octants.
+/// Corners on fractions of powers of two, which are borders of octants, or on the next number on either side.
 template <typename Real>
 Box<Real> borders(RandomStream& random) {
     const auto border = [&] {
@@ -97,7 +97,7 @@ Box<Real> borders(RandomStream& random) {
     return box;
 }
 
-/// Zeros of both signs, and what is next to them.
+/// Zeros of both signs and their neighbours.
 template <typename Real>
 Box<Real> signed_zeros(RandomStream& random) {
     constexpr Real tiny = std::numeric_limits<Real>::denorm_min();
@@ -137,7 +137,7 @@ Box<Real> largest(RandomStream& random) {
     return box;
 }
 
-/// A world of 64, 10 million away on every axis: in float32 everything lies on whole numbers.
+/// A world of size 64, at 10 million on every axis: in float32 all coordinates are whole numbers.
 template <typename Real>
 Box<Real> far_origin(RandomStream& random) {
     double low[3], extent[3];
@@ -148,7 +148,7 @@ Box<Real> far_origin(RandomStream& random) {
     return span_box<Real>(low, extent);
 }
 
-/// Sizes over 6 decades, each axis its own.
+/// Sizes over 6 decades, independent on each axis.
 template <typename Real>
 Box<Real> decades(RandomStream& random) {
     double low[3], extent[3];
@@ -159,7 +159,7 @@ Box<Real> decades(RandomStream& random) {
     return span_box<Real>(low, extent);
 }
 
-/// All in one plane, line or point of the world, but for one object far out.
+/// All objects in a plane, line or point of the world, except for an object far away.
 template <typename Real>
 Box<Real> outliers(RandomStream& random) {
     if (random.below(40) == 0) {
@@ -243,7 +243,7 @@ std::vector<Box3f> make_boxes(const std::string& kind, std::uint64_t objects, st
 std::vector<Box3d> make_double_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed) {
     if (const OwnKind* own = find_own(kind)) return make_own(own->make_double, objects, seed);
     std::vector<Box3d> boxes = widened(samples::make_scene(kind, objects, seed));
-    // Fill the bits that float32 lacks: ends that were the same, or touched, come to lie a little apart.
+    // Fill the bits that float32 lacks: ends that were equal or touched are then slightly apart.
     for (std::uint64_t i = 0; i < objects; ++i) {
         RandomStream random(~seed, i);
         for (int axis = 0; axis < 3; ++axis) {
@@ -263,7 +263,7 @@ std::vector<Box3d> widened(const std::vector<Box3f>& boxes) {
     return wide;
 }
 
-// Not inlined: where g++ 12 vectorises double(float(x)), it leaves both conversions out.
+// Not inlined: where g++ 12 vectorises double(float(x)), g++ leaves both conversions out.
 [[gnu::noinline]] Box3f narrowed(const Box3d& box) {
     Box3f narrow;
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// Kinds of scenes for tests: those of samples, and degenerate ones of the tests' own.
+// Kinds of scenes for tests: the kinds of samples, and degenerate kinds for tests only.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,21 +11,21 @@
 
 namespace octopair::test {
 
-/// All kinds of samples, then "lattice", "duplicates", "segments" and so on (kinds.cpp).
+/// Returns the names of all kinds of samples, then "lattice", "duplicates", "segments" and so on (kinds.cpp).
 std::vector<std::string> all_kind_names();
 
-/// Valid boxes; the same for the same arguments.
+/// Makes valid boxes. A pure function of its arguments.
 std::vector<Box3f> make_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
 
-/// Float64 boxes of the same kind; they use the whole precision or range where the kind is about that.
+/// Makes float64 boxes of the same kind, with the full precision or range of float64 if the kind tests precision or range.
 std::vector<Box3d> make_double_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
 
 std::vector<Box3d> widened(const std::vector<Box3f>& boxes);
-/// The box with the nearest coordinates that float32 holds.
+/// Returns the box with the nearest float32 coordinates.
 Box3f narrowed(const Box3d& box);
 Box3d rounded_to_float32(const Box3d& box);
 
-/// Names a parametrised test by its kind.
+/// Names a parametrised test after its kind.
 std::string param_name(const ::testing::TestParamInfo<std::string>& info);
 
 }  // namespace octopair::test

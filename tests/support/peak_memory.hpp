@@ -1,4 +1,4 @@
-// How much memory a test took.
+// Measures the peak memory of a test process.
 #pragma once
 
 #include <sys/resource.h>
@@ -7,7 +7,7 @@
 
 namespace octopair::test {
 
-/// The most memory this process ever had resident, in bytes.
+/// Returns the peak resident memory of this process, in bytes.
 inline std::uint64_t peak_rss() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -1,5 +1,5 @@
-// The scenes of every kind, seed 1, and their pairs: counted and hashed once, by the naive and the LBVH baseline, with
-// both compilers. They change only if a scene does, which breaks everybody's results.
+// Scenes of every kind with seed 1, and the number and hash of their pairs. The naive and the LBVH baseline computed
+// the values, with both compilers. The values change only if a scene changes, which breaks all users' results.
 #pragma once
 
 #include <algorithm>

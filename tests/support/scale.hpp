@@ -1,4 +1,4 @@
-// How much the tests do: less under sanitizers, which cost 5 to 20 times the time.
+// Scales the amount of work of tests: less under sanitizers, which cost 5 to 20 times the time.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr bool thread_sanitized = __has_feature(thread_sanitizer);
 inline constexpr bool thread_sanitized = false;
 #endif
 
-/// `full`, or a `divisor`th of it under sanitizers.
+/// Returns `full`, or `full / divisor` under sanitizers.
 constexpr std::uint64_t scaled(std::uint64_t full, std::uint64_t divisor) {
     return sanitized ? (full + divisor - 1) / divisor : full;
 }

@@ -1,4 +1,4 @@
-// Headers that most tests include. Each program of tests compiles with them precompiled.
+// Headers that most tests include. Each test program precompiles them.
 #pragma once
 
 #include <gtest/gtest.h>

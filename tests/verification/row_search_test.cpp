@@ -1,4 +1,5 @@
-// The second algorithm against brute force, on random calls of every kind and on boxes at the ends of what numbers hold.
+// Tests the second algorithm against brute force, on random calls of every kind and on boxes at the limits of the
+// number range.
 #include "verification/row_search.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ std::vector<Pair> found_by(const RowSearch& search) {
     return pairs;
 }
 
-/// Each pair of objects is judged alone as well.
+/// Expects the right answer for each single pair of objects as well.
 void expect_judged(const RowSearch& search, const std::vector<Pair>& pairs) {
     std::vector<Pair> judged;
     for (std::uint32_t a = 0; a < search.rows(); ++a) {
@@ -65,7 +66,7 @@ TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
-/// All boxes with corners among a few numbers.
+/// Returns all boxes with corners among a few numbers.
 template <typename Real>
 std::vector<Box<Real>> boxes_among(const std::vector<Real>& numbers) {
     std::vector<Box<Real>> boxes;

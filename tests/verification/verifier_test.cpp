@@ -1,4 +1,4 @@
-// The checks of a result: right ones pass, in pieces of any length, and each error that is planted is found and named.
+// Tests the verifier of results. Right results pass, in pieces of any length. Each planted error is found and named.
 #include "verification/verifier.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace octopair::test {
 namespace {
 
-/// Objects, their pairs in ascending order, and an order that stands for the octal one.
+/// Objects, their pairs in ascending order, and a second order in place of the octal order.
 struct Scene {
     Scene(std::uint64_t objects, bool with_second)
         : boxes(test::make_boxes("dense", objects, 3)), more(test::make_boxes("dense", objects / 2, 4)) {
@@ -35,7 +35,7 @@ struct Scene {
     std::vector<Pair> pairs, mixed;
 };
 
-/// A result as a call could deliver it.
+/// A result in the form that a call delivers.
 struct Result {
     std::vector<Pair> pairs;
     bool truncated = false;
@@ -45,7 +45,7 @@ struct Result {
     unsigned threads = 1;
 };
 
-/// What the verifier says of a result; empty: it is right.
+/// Returns the verifier's message about a result, empty if the result is right.
 std::string complaint(const Scene& scene, ResultKind kind, const Result& result) {
     Verifier verifier({.objects = scene.searched(), .kind = kind, .limit = result.limit, .threads = result.threads});
     const std::span<const Pair> all = result.pairs;
@@ -278,7 +278,8 @@ TEST(Verifier, FindsAnInvalidBoxThatWasNotRefused) {
         (void)verifier.finish({0, false});
         FAIL() << "passed";
     } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "verification failed: the box of object 40 is not valid, but was not refused");
+        EXPECT_STREQ(error.what(),
+                     "verification failed: the box of object 40 is not valid, but the engine accepted it");
     }
 }
 

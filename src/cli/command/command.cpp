@@ -86,7 +86,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app_->exit(success);
     } catch (const CLI::ParseError& error) {
-        throw Error(ErrorCode::usage, std::string(error.what()) + " (" + app_->get_name() + " --help tells more)");
+        throw Error(ErrorCode::usage, std::string(error.what()) + " (see " + app_->get_name() + " --help)");
     }
     return std::nullopt;
 }

@@ -24,29 +24,29 @@ public:
     explicit Option(CLI::Option& option) : option_(&option) {}
 
     Option required();
-    /// The help's word for the value.
+    /// Sets the word for the value in the help.
     Option type_name(const std::string& word);
     Option description(const std::string& text);
     /// Leaves the option out of the help.
     Option hide();
-    /// The environment variable that gives the value where the command line does not.
+    /// Sets the environment variable that gives the value if the command line does not.
     Option environment(const std::string& variable);
     Option needs(Option other);
     Option excludes(Option other);
-    /// `fault` returns what is wrong with a value, or an empty string.
+    /// Adds a check. `fault` returns what is wrong with a value, or an empty string.
     Option check(std::function<std::string(const std::string& text)> fault);
 
-    /// Returns whether the option has a value: of the command line, the environment, or set_text().
+    /// Returns whether the option has a value from the command line, the environment, or set_text().
     bool is_given() const;
-    /// Gives the option a value as if the value stood on the command line, and reads the value.
-    /// Throws: Error{usage} if it is not a value of this option; what reading throws.
+    /// Sets and parses a value, as if it were on the command line.
+    /// Throws: Error{usage} if the value is invalid; what the option's reader throws.
     void set_text(const std::string& text);
 
 private:
     CLI::Option* option_;
 };
 
-/// The program, or a subcommand. A name `--NAME` is an option; a name without dashes is a positional argument.
+/// The program, or a subcommand. A name `--NAME` makes an option. A name without dashes makes a positional argument.
 class Command {
 public:
     using ReadText = std::function<void(const std::string& text)>;
@@ -56,14 +56,15 @@ public:
 
     std::string name() const;
     Command add_subcommand(const std::string& name, const std::string& description);
-    /// The command line must have exactly one of the subcommands.
+    /// Requires exactly one of the subcommands on the command line.
     void require_subcommand();
-    /// The last part of the help.
+    /// Sets the last part of the help.
     void footer(const std::string& text);
-    /// `done` runs once all options are read.
+    /// Sets a function that runs after all options are parsed.
     void callback(std::function<void()> done);
 
-    /// Requires: `value` and `values` outlive the parsing; so does what `read` borrows.
+    // Requires for all overloads: `value`, `values`, and what `read` borrows outlive the parsing.
+
     Option add_option(const std::string& name, std::string& value, const std::string& description = {});
     Option add_option(const std::string& name, std::vector<std::string>& values, const std::string& description);
     Option add_option(const std::string& name, const ReadText& read, const std::string& description);
@@ -78,14 +79,15 @@ private:
 /// The parser of the whole command line.
 class CommandLine {
 public:
-    /// `version`: the text that --version prints.
+    /// `version` is the text that --version prints.
     CommandLine(const std::string& name, const std::string& description, const std::string& version);
     ~CommandLine();
 
     Command program() { return Command(*app_); }
 
-    /// Reads all options, and runs the callbacks of the commands. Returns the exit status if help or version was printed
-    /// instead. Throws: Error{usage} for a wrong command line; what reading and the callbacks throw.
+    /// Parses all options, and runs the callbacks of the commands. Returns nothing, or the exit status if the help or the
+    /// version was printed instead.
+    /// Throws: Error{usage} for an invalid command line; what readers of options and callbacks throw.
     std::optional<int> parse(int argc, char** argv);
 
 private:
@@ -94,11 +96,12 @@ private:
 
 /// A line KEY = VALUE or KEY = [VALUE, ...] of a configuration file.
 struct ConfigEntry {
-    std::string key;  ///< with the sections around it, if any: SECTION.KEY
+    std::string key;  ///< KEY, or SECTION.KEY for a key in a section
     std::vector<std::string> values;
 };
 
-/// Returns the entries of a file in TOML. Only for callbacks of commands: CommandLine::parse() reports syntax errors.
+/// Returns the entries of a TOML file.
+/// Requires: the caller is a callback of a command, because CommandLine::parse() reports the syntax errors.
 std::vector<ConfigEntry> parse_config(std::istream& file);
 
 }  // namespace octopair::cli

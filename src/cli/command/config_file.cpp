@@ -32,11 +32,11 @@ void apply_config(const Command& command, const std::string& file) {
     for (const auto& [key, values] : entries_of(file)) {
         std::optional<Option> option = command.find_option("--" + key);
         if (!option || key == "config" || key == "help") {
-            refuse(file, key, "is no option of '" + command.name() + "'");
+            refuse(file, key, "not an option of '" + command.name() + "'");
         }
-        if (!seen.insert(key).second) refuse(file, key, "is there twice");
+        if (!seen.insert(key).second) refuse(file, key, "set twice");
         if (option->is_given()) continue;
-        if (values.size() != 1) refuse(file, key, "one value is wanted");
+        if (values.size() != 1) refuse(file, key, "needs exactly one value");
         try {
             option->set_text(values.front());
         } catch (const Error& error) {

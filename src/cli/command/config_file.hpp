@@ -1,4 +1,4 @@
-// A subcommand's options in a file (TOML, or INI without sections): a line `NAME = VALUE` is the option --NAME.
+// Reads options of a subcommand from a file (TOML, or INI without sections). A line `NAME = VALUE` sets the option --NAME.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace octopair::cli {
 
-/// Gives `command`, which was parsed, those options of the file that the command line does not have. Throws Error{usage}
-/// that names the file and the key, Error{io_failed} if it cannot be read.
+/// Sets the options of `file` that the command line does not set. Requires: `command` was parsed.
+/// Throws: Error{usage} that names the file and the key; Error{io_failed} if the file cannot be read.
 void apply_config(const Command& command, const std::string& file);
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// How a failure is told: one line on standard error, and an exit status.
+// Reports an error as one line on standard error and an exit status.
 #pragma once
 
 #include <cstdio>
@@ -8,10 +8,10 @@
 
 namespace octopair::cli {
 
-/// The name that messages begin with. program_main() sets it.
+/// Name of the program, which messages begin with. program_main() sets it.
 inline constinit const char* program_name = "octopair";
 
-/// Needs no memory. Returns the exit status.
+/// Prints the message. Returns the exit status. Allocates no memory.
 inline int fail(ErrorCode code, const char* message) {
     std::fprintf(stderr, "%s: %s\n", program_name, message);
     return exit_status(code);

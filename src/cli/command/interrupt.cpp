@@ -9,16 +9,17 @@ Interrupt::Interrupt() {
     sigaddset(&signals_, SIGINT);
     sigaddset(&signals_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    // A shell starts what runs behind its back with SIGINT ignored, and an ignored signal might not be waited for.
+    // A shell starts background processes with SIGINT ignored, and sigwait() may not return for an ignored signal.
     std::signal(SIGINT, SIG_DFL);
     waiter_ = std::thread([this] { wait(); });
-    // A thread that starts allocates, and a child forked meanwhile finds a sanitizer's allocator locked for good.
+    // Wait until the thread runs. A starting thread allocates, and a child forked at that time would find the allocator of a
+    // sanitizer locked.
     waits_.wait();
 }
 
 Interrupt::~Interrupt() {
     finished_ = true;
-    pthread_kill(waiter_.native_handle(), SIGINT);  // one of those it waits for
+    pthread_kill(waiter_.native_handle(), SIGINT);  // wakes the thread from sigwait()
     waiter_.join();
 }
 

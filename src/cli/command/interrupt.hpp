@@ -1,7 +1,8 @@
-// SIGINT and SIGTERM as a stop request; the second one kills.
+// Interrupt: turns the first SIGINT or SIGTERM into a stop request. The second one kills the process.
 //
-// The signals are blocked in every thread but taken by one that waits for them, so that nothing runs in a signal
-// handler and no system call is cut short. Make it before any other thread: they inherit what is blocked.
+// - The signals are blocked in all threads. One thread waits for them with sigwait().
+// - So no code runs in a signal handler, and no system call is interrupted.
+// - Requires: it is made before any other thread, because threads inherit the signal mask.
 #pragma once
 
 #include <csignal>

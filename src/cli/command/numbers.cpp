@@ -35,7 +35,8 @@ std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
     if (parse_whole_text(digits, number) && number <= std::numeric_limits<std::uint64_t>::max() >> shift) {
         return number << shift;
     }
-    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is no number of bytes, as 65536, 64K, 4G", option, text));
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: '{}' is not a number of bytes, for example 65536, 64K or 4G", option, text));
 }
 
 double parse_length(std::string_view option, const std::string& text) {

@@ -1,4 +1,5 @@
-// Numbers on the command line: decimal, whole, of no locale.
+// Parses and formats numbers of the command line. Numbers are decimal. Parsing does not depend on the locale, and the whole
+// text must be a number.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +9,19 @@
 
 namespace octopair::cli {
 
-inline constexpr unsigned most_threads = 1024;  ///< that an option may ask for
+inline constexpr unsigned max_threads = 1024;  ///< largest value of --threads
 
-/// A whole number from 0 to `most`. Throws Error{usage} that names `option`.
+/// Returns a whole number from 0 to `most`. Throws: Error{usage} that names `option`.
 std::uint64_t parse_count(std::string_view option, const std::string& text,
                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
-/// Bytes: a whole number, perhaps with K, M, G or T, which count by 1024. Throws Error{usage} that names `option`.
+/// Returns a number of bytes. The suffixes K, M, G and T are powers of 1024. Throws: Error{usage} that names `option`.
 std::uint64_t parse_bytes(std::string_view option, const std::string& text);
 
-/// A finite number >= 0. Throws Error{usage} that names `option`.
+/// Returns a finite number >= 0. Throws: Error{usage} that names `option`.
 double parse_length(std::string_view option, const std::string& text);
 
-/// 1234567 as "1,234,567".
+/// Returns the number with commas between groups of three digits: 1234567 gives "1,234,567".
 std::string grouped(std::uint64_t number);
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// program_main: runs a program's work, and reports its errors as one line and an exit status.
+// program_main: runs a program, and reports an exception as one line on standard error and an exit status.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,9 @@ namespace octopair::cli {
 /// The work of a subcommand. Returns the exit status. May throw.
 using Action = std::function<int()>;
 
-/// Runs `run`, and returns its exit status. An exception becomes one line on standard error, which begins with `program`, and
-/// the exit status of its error code. A closed pipe and a file-size limit make write() fail, and do not end the program.
-/// Call once, from main(). `program`: a text that lives until the end.
+/// Calls `run`, and returns its exit status. An exception becomes one line on standard error, which begins with `program`, and
+/// the exit status of its error code. SIGPIPE and SIGXFSZ are ignored, so that write() fails instead of ending the program.
+/// Requires: called once, from main(); `program` lives until the program ends.
 int program_main(const char* program, const Action& run);
 
 }  // namespace octopair::cli

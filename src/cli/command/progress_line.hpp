@@ -1,4 +1,4 @@
-// One line on standard error that says how far the work is; only on a terminal, redrawn ten times a second at most.
+// ProgressLine: a progress bar on standard error. It is drawn only on a terminal, and at most ten times per second.
 #pragma once
 
 #include <chrono>
@@ -6,17 +6,18 @@
 
 namespace octopair::cli {
 
-/// Used by one thread at a time.
+/// Thread safety: only one thread may use it at a time.
 class ProgressLine {
 public:
+    /// Draws nothing if not `wanted`.
     explicit ProgressLine(bool wanted);
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine() { clear(); }
 
-    /// `done` is from 0 to 1.
+    /// Draws the bar. `done` is from 0 to 1.
     void show(std::string_view activity, double done);
-    /// Leaves the terminal as it was, for what else is printed.
+    /// Erases the bar, so that other text can be printed.
     void clear();
 
 private:

@@ -12,8 +12,8 @@ void check_word(const Words& words, const std::string& word) {
     if (std::find(words.present.begin(), words.present.end(), word) != words.present.end()) return;
     const bool known = std::find(words.later.begin(), words.later.end(), word) != words.later.end();
     throw Error(ErrorCode::usage,
-                fmt::format("{}: '{}' {}; this version has: {}", words.option, word,
-                            known ? "does not exist yet" : "is not known", fmt::join(words.present, ", ")));
+                fmt::format("{}: '{}' {}; valid values: {}", words.option, word,
+                            known ? "is not supported yet" : "is not a valid value", fmt::join(words.present, ", ")));
 }
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// Options whose value is one of a few words.
+// Checks options whose value is one of a few words.
 #pragma once
 
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace octopair::cli {
 
-/// Those of `later` are known but not there yet.
+/// The words of an option.
 struct Words {
     std::string_view option;
-    std::vector<std::string_view> present;
-    std::vector<std::string_view> later;
+    std::vector<std::string_view> present;  ///< valid words
+    std::vector<std::string_view> later;    ///< words that a later version will accept
 };
 
-/// Throws Error{usage} that lists those present, unless `word` is one of them.
+/// Throws: Error{usage} that lists the valid words, unless `word` is valid.
 void check_word(const Words& words, const std::string& word);
 
 }  // namespace octopair::cli

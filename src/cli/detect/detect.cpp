@@ -1,4 +1,4 @@
-// octopair detect: the options, and what is made of the result.
+// octopair detect: parses and checks the options, runs the search, and reports the outcome.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -28,15 +28,15 @@ namespace octopair::cli {
 
 namespace {
 
-/// What is said of a run beside its pairs.
+/// Writes the outcome of a run besides its pairs: the count, the statistics, and the summary.
 class Outcome {
 public:
-    /// The file is opened at once, so that a place that cannot be written is known before the work.
+    /// Opens the file of --stats now, so that an unwritable path fails before the search.
     Outcome(const DetectRequest& request, std::stop_token stop) : request_(request), stop_(std::move(stop)) {
         if (!request.stats.empty()) stats_.emplace(request.stats);
     }
 
-    void tell(const DetectReport& report) {
+    void write(const DetectReport& report) {
         if (request_.count_only) {
             io::StandardOutput out(stop_);
             out.write(std::to_string(report.pairs) + '\n');
@@ -67,12 +67,13 @@ DetectReport detect_and_report(const DetectRequest& request, Group& group, const
     });
     const DetectReport report = request.events ? detect_events(request, stop) : detect(request, group, stop);
     group.together([&] {
-        if (outcome) outcome->tell(report);
+        if (outcome) outcome->write(report);
     });
     return report;
 }
 
 #ifdef OCTOPAIR_WITH_MPI
+/// Runs the search on all ranks. Only rank 0 writes the outcome and the error message.
 int run_on_ranks(const DetectRequest& request) {
     const Interrupt interrupt;
     Cluster cluster;
@@ -101,15 +102,15 @@ void add_what(Command& command, DetectRequest& request) {
     add_scene_options(command, request);
     add_pipeline_options(command, request.pipeline);
     command.add_flag("--events", request.events,
-                     "of a moving scene: only what began and ended, as rows frame,event,a,b (begin, end)");
+                     "for a moving scene: write only the pairs that begin or end, as rows frame,event,a,b");
 }
 
 void add_outcome(Command& command, DetectRequest& request) {
-    const Option output =
-        command
-            .add_option("--output", request.output,
-                        "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)")
-            .type_name("FILE");
+    const Option output = command
+                              .add_option("--output", request.output,
+                                          "file for the pairs; its ending .npy, .csv or .jsonl gives the format "
+                                          "(default: CSV on standard output)")
+                              .type_name("FILE");
     command
         .add_option(
             "--index-type",
@@ -117,14 +118,15 @@ void add_outcome(Command& command, DetectRequest& request) {
                 check_word({"--index-type", {"uint32", "uint64"}, {}}, word);
                 request.wide_indices = word == "uint64";
             },
-            "of indices in .npy (default uint32; with --engine mpi uint64 where there are more objects)")
+            "type of indices in .npy: uint32 (default), or uint64 with --engine mpi (default for more than 2^32 - 1 "
+            "objects)")
         .type_name("TYPE");
-    add_order_options(command, request, "the first N pairs (with --events: rows)");
-    command.add_flag("--count-only", request.count_only, "print the number of pairs alone").excludes(output);
+    add_order_options(command, request, "write only the first N pairs (with --events: rows)");
+    command.add_flag("--count-only", request.count_only, "print only the number of pairs").excludes(output);
     command.add_flag("--verify", request.verify,
-                     "check the pairs of boxes by a second algorithm; exit status 6 if they differ");
-    command.add_flag("--fail-on-collision", request.fail_on_collision, "exit status 1 if any pair was found");
-    command.add_option("--stats", request.stats, "write numbers about the run as JSON").type_name("FILE");
+                     "check the pairs of boxes with a second algorithm; exit status 6 if they differ");
+    command.add_flag("--fail-on-collision", request.fail_on_collision, "exit with status 1 if any pair is found");
+    command.add_option("--stats", request.stats, "write statistics of the run as JSON").type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
@@ -135,7 +137,7 @@ void check_index_type(const DetectRequest& request) {
     if (!io::is_array_file(request.output) && !request.count_only) refuse("only in an .npy file");
 }
 
-/// Refuses what the second algorithm could not check.
+/// Throws: Error{usage} for options whose results the second algorithm cannot check.
 void check_verify_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--verify: " + why); };
     if (request.events) refuse("not with --events; without it, the pairs of each frame are verified");
@@ -143,12 +145,12 @@ void check_verify_options(const DetectRequest& request) {
     if (request.wide_indices) refuse("not with --index-type uint64");
 }
 
-/// What the one has written is not lost to another. Devices and pipes take all.
+/// Throws: Error{usage} if two outputs go to the same regular file, because one would overwrite the other.
 void check_outputs(const DetectRequest& request) {
     namespace fs = std::filesystem;
     const std::pair<std::string_view, fs::path> outputs[] = {
         {"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}};
-    std::error_code no_path;  // then the writer says why
+    std::error_code no_path;  // ignored: the writer reports an invalid path
     const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, no_path), no_path); };
     for (const auto& [option, path] : outputs) {
         for (const auto& [earlier_option, earlier] : outputs) {
@@ -156,7 +158,7 @@ void check_outputs(const DetectRequest& request) {
             if (path.empty() || earlier.empty() || place(path) != place(earlier)) continue;
             if (fs::exists(path, no_path) && !fs::is_regular_file(path, no_path)) continue;
             throw Error(ErrorCode::usage,
-                        fmt::format("{}: {} is the file of {} as well", option, path.native(), earlier_option));
+                        fmt::format("{}: {} is also the file of {}", option, path.native(), earlier_option));
         }
     }
 }

@@ -9,9 +9,11 @@
 namespace octopair::cli {
 
 void add_scene_options(Command& command, DetectRequest& request) {
-    command.add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or a mesh scene; several are one set")
+    command
+        .add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or mesh files; several files form one set")
         .required();
-    command.add_option("--against", request.against, "only pairs (a in INPUT, b in FILE)").type_name("FILE");
+    command.add_option("--against", request.against, "find only pairs of an object a of INPUT and an object b of FILE")
+        .type_name("FILE");
     command
         .add_option(
             "--objects",
@@ -19,14 +21,15 @@ void add_scene_options(Command& command, DetectRequest& request) {
                 check_word({"--objects", {"node", "triangle"}, {}}, word);
                 request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
             },
-            "what counts as one object of a mesh file: node (default) or triangle")
+            "objects of a mesh file: node (default; nodes with meshes) or triangle")
         .type_name("WHAT");
     command
         .add_option(
             "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
-            "pairs count up to a gap of M on every axis (default 0)")
+            "largest gap per axis at which two boxes still form a pair (default 0)")
         .type_name("M");
-    command.add_option("--padding", request.padding, "shape (n,): each object's own clearance").type_name("FILE.npy");
+    command.add_option("--padding", request.padding, "clearance of each object: an array of shape (n,)")
+        .type_name("FILE.npy");
 }
 
 void add_order_options(Command& command, DetectRequest& request, const std::string& limited) {

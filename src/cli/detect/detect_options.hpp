@@ -1,4 +1,4 @@
-// The options that say what is looked for, of every subcommand that finds pairs or has them found.
+// Options that `octopair detect` and `octopair submit` share: the scene, and the order and number of pairs.
 #pragma once
 
 #include "cli/detect/detection.hpp"
@@ -7,10 +7,10 @@ namespace octopair::cli {
 
 class Command;
 
-/// INPUT, --against, --objects, --margin, --padding.
+/// Adds INPUT, --against, --objects, --margin and --padding.
 void add_scene_options(Command& command, DetectRequest& request);
 
-/// --order, --limit. `limited`: what the limit counts.
+/// Adds --order and --limit. `limited` is the help text of --limit.
 void add_order_options(Command& command, DetectRequest& request, const std::string& limited);
 
 }  // namespace octopair::cli

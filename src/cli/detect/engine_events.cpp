@@ -1,4 +1,4 @@
-// Events by an engine: all pairs of each frame, compared with those of the frame before.
+// Engine events: finds all pairs of each frame, and compares them with those of the frame before.
 #include <utility>
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// Goes through a list pair by pair.
+/// A forward cursor over the pairs of a list.
 class ListCursor {
 public:
     explicit ListCursor(const PairList& list) : chunks_(list.chunks()) { skip_empty(); }
@@ -33,7 +33,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// A set's boxes in the frame that was read, where the engine has them at hand.
+/// The boxes of a set in the frame that was read last, in memory of the engine.
 template <typename Real>
 class FrameBoxes {
 public:

@@ -17,7 +17,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// Adds the time that `work` takes.
+/// Runs `work`, and adds its duration to `seconds`.
 template <typename Work>
 void timed(double& seconds, const Work& work) {
     const Timed timing(seconds);
@@ -75,7 +75,8 @@ private:
         timed(report_.seconds.write, [&] { writer_->finish(); });
     }
 
-    /// A file appears whole or not at all; standard output must not begin before all frames are known to be good.
+    /// Reads all frames once to find invalid input. Needed only for standard output, which cannot be taken back; a file appears
+    /// whole or not at all.
     void check_frames(EventSource& source) {
         if (!request_.output.empty() || report_.frames < 2) return;
         timed(report_.seconds.read, [&] {
@@ -103,7 +104,7 @@ private:
         report_.events->began += write(frame, io::Event::begin, events.began);
     }
 
-    /// Tells how many.
+    /// Writes rows up to the limit. Returns the number of rows written.
     std::uint64_t write(std::uint64_t frame, io::Event event, std::span<const Pair> pairs) {
         if (request_.limit) {
             const std::uint64_t left = *request_.limit - rows_;

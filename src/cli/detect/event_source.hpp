@@ -1,5 +1,7 @@
-// What begins and ends from frame to frame, found in one of two ways: by a scene, which looks around what moved, or by
-// any engine, which finds all pairs of each frame, and a comparison with those of the frame before.
+// EventSource: finds the pairs that begin and end from frame to frame. There are two implementations:
+//
+// - scene events: a scene searches only the surroundings of the objects that moved.
+// - engine events: any engine finds all pairs of each frame, which are compared with those of the frame before.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +15,30 @@
 
 namespace octopair::cli {
 
-/// The sets of objects; all outlive what is made of them.
+/// Sets of objects of a search. Requires: they outlive the event source.
 struct FrameSets {
     const FrameSet& inputs;
     const FrameSet* against;  ///< null: pairs within the inputs
     const Paddings& paddings;
 };
 
-/// Ascending; in a join, b is numbered within its own set.
+/// Events of a frame, ascending. In a join, b is a number within the second set.
 struct FrameEvents {
     std::span<const Pair> ended, began;  ///< valid until the next frame
-    std::uint64_t pairs = 0;             ///< that there are now
+    std::uint64_t pairs = 0;             ///< number of pairs in this frame
 };
 
 class EventSource {
 public:
     virtual ~EventSource() = default;
-    /// Throws Error as FrameSet::read does.
+    /// Reads the boxes of a frame. Throws: what FrameSet::read() throws.
     virtual void read(std::uint64_t frame, const std::stop_token& stop) = 0;
-    /// Of the frame that was read, against the one that was found before; the first one, against no pairs.
+    /// Returns the differences between the frame that was read last and the frame of the previous find(). The first find()
+    /// compares with an empty result.
     virtual FrameEvents find(const std::stop_token& stop) = 0;
 };
 
-/// Real is double where one of the sets is wide.
+/// Real must be double if one of the sets is wide.
 template <typename Real>
 std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request);
 template <typename Real>

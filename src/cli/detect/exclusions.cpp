@@ -20,7 +20,7 @@ namespace {
 
 using Names = std::span<const std::string>;
 
-/// Which objects have a name; several may have the same, and those that have none are not here.
+/// Maps a name to the objects that have it. Several objects may have the same name.
 class NameTable {
 public:
     explicit NameTable(Names names) {
@@ -60,7 +60,7 @@ private:
     static Names names(const InputSet& set) { return set.scene.names; }
     std::optional<Names> second_names() const { return join() ? std::optional(names(*sets_.second)) : std::nullopt; }
 
-    /// Of objects with shapes, which all have beyond the pairs.
+    // Requires a stage beyond Stage::pairs: then all objects have shapes.
     void add_groups() const {
         ShapedSet& first = *sets_.first.shaped;
         ShapedSet* const second = join() ? sets_.second->shaped.get() : nullptr;
@@ -69,7 +69,7 @@ private:
                                         second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
     }
 
-    /// Objects of two files have no parent in common.
+    // In a join, the objects of a pair are in different files and cannot have the same parent.
     void add_parents() const {
         if (!join() && sets_.first.shaped != nullptr) {
             pipeline_.add(make_parent_filter(sets_.first.shaped->parents()));
@@ -99,7 +99,7 @@ private:
         pipeline_.add(make_ignored_pairs_filter(std::move(ignored), join()));
     }
 
-    /// Sets of files without names have no names at all.
+    // A set whose files have no names has an empty list of names.
     void check_names() const {
         for (const InputSet* set : {&sets_.first, sets_.second}) {
             if (set == nullptr || set->scene.names.size() == set->scene.objects) continue;

@@ -13,7 +13,7 @@ namespace {
 class Row final : public FilterRow {
 public:
     Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
-        : sets_(sets), stop_(stop), pipeline_(threads_beside(request.engine)) {
+        : sets_(sets), stop_(stop), pipeline_(local_threads(request.engine)) {
         if (sets.first.scene.triangles) {
             add_triangles(request);
             return;
@@ -49,7 +49,7 @@ private:
     void add_triangles(const DetectRequest& request) {
         TriangleOptions options{.margin = request.margin, .features = stage_of(request) == Stage::features};
         options.adjacent = request.pipeline.adjacent.value_or(options.adjacent);
-        options.threads = threads_beside(request.engine);
+        options.threads = local_threads(request.engine);
         const TriangleSet first = triangles(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
         pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));

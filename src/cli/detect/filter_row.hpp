@@ -1,4 +1,4 @@
-// The filters of a run: made of what was asked and what the scene files say, once; then used frame by frame.
+// FilterRow: the filters of a run. They are made once, from the request and the scene files, and run on each frame.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace octopair::cli {
 
-/// Both sets of a search; `second` is null but for a join.
+/// The sets of a search. `second` is null unless the search is a join.
 struct SetPair {
     const InputSet& first;
     const InputSet* second = nullptr;
@@ -21,14 +21,15 @@ struct SetPair {
 class FilterRow {
 public:
     virtual ~FilterRow() = default;
-    /// An empty sink counts.
+    /// Finds the pairs of a frame, filters them, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                                 const Options& options) = 0;
-    /// The same of pairs that were found before.
+    /// Filters pairs that were found before, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) = 0;
 };
 
-/// Borrows from the sets. Throws what is wrong with rules, and with objects that do not fit their shapes.
+/// Makes the filters. Borrows from the sets.
+/// Throws: Error for invalid exclusion rules, and for objects that do not fit their shapes.
 std::unique_ptr<FilterRow> make_filter_row(const DetectRequest& request, const SetPair& sets,
                                            const std::stop_token& stop);
 

@@ -10,8 +10,8 @@ namespace octopair::cli {
 
 namespace {
 
-/// What one rank tells the others.
-struct Share {
+/// Results of one rank, for the sums over all ranks.
+struct RankResult {
     std::uint64_t collisions = 0;
     bool truncated = false;
 };
@@ -32,9 +32,9 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
     PipelineSummary summary;
     double seconds = 0;
     {
-        const Timed timed(seconds);  // waiting for the slowest rank included
+        const Timed timed(seconds);  // includes waiting for the slowest rank
         const CollisionSink keep = [&](const Batch& batch) { kept->add(batch.pairs(), batch.findings()); };
-        // No rank's share of the result is longer than all of it, so each may end at the limit by itself.
+        // Each rank may stop at the limit by itself: the piece of one rank has no more collisions than the whole result.
         cluster_.together([&] { summary = row_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
         const std::uint64_t own = join(summary, options);
         if (kept != nullptr) kept->cut(own);
@@ -45,12 +45,12 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
 
 std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options) {
     const std::uint64_t limit = options.limit.value_or(std::numeric_limits<std::uint64_t>::max());
-    const std::vector<Share> shares = cluster_.all_gather(Share{summary.collisions, summary.truncated});
+    const std::vector<RankResult> results = cluster_.all_gather(RankResult{summary.collisions, summary.truncated});
     std::uint64_t before = 0, all = 0;
     for (unsigned rank = 0; rank < cluster_.ranks(); ++rank) {
         if (rank == cluster_.rank()) before = all;
-        all += shares[rank].collisions;
-        summary.truncated |= shares[rank].truncated;
+        all += results[rank].collisions;
+        summary.truncated |= results[rank].truncated;
     }
     summary.truncated |= all > limit;
     summary.collisions = std::min(all, limit);

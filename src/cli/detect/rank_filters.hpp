@@ -1,4 +1,4 @@
-// Filters on ranks: each has all that they need to know, and filters its own piece of the pairs.
+// RankFilters: filters on MPI ranks. Each rank has all objects, and filters its own piece of the pairs.
 #pragma once
 
 #include <memory>
@@ -10,18 +10,18 @@
 
 namespace octopair::cli {
 
-/// All functions are collective and throw on all ranks alike.
+/// All functions are collective. An exception is thrown on all ranks.
 class RankFilters {
 public:
-    /// `sets`: whole. Borrows all.
+    /// Borrows all parameters. Requires: `sets` hold all objects, not slices.
     RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets, const std::stop_token& stop);
 
-    /// Of `pairs`, the piece of this rank, what comes out goes to `kept`, if there is one. The limit is that of all ranks
-    /// together. Returns what all ranks did, but for the search and with the seconds of this one.
+    /// Filters `pairs`, the piece of this rank, and appends the result to `kept` unless that is null. The limit of `options`
+    /// applies to all ranks together. Returns the sums over all ranks, without the search. The seconds are those of this rank.
     PipelineSummary run(const PairList& pairs, const Options& options, CollisionPiece* kept);
 
 private:
-    /// The sums over all ranks; how many collisions of this one stay within the limit.
+    /// Replaces `summary` by the sums over all ranks. Returns how many collisions this rank keeps under the limit.
     std::uint64_t join(PipelineSummary& summary, const Options& options);
 
     Cluster& cluster_;

@@ -1,4 +1,4 @@
-// Events by a scene, here or on a server, which is given only the boxes that differ from the frame before.
+// Scene events: a scene, local or on a server, finds the events. It gets only the boxes that differ from the frame before.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -14,7 +14,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// A set of objects in a scene, and their boxes in this frame and the one before.
+/// The objects of one set in a scene, with their boxes in this frame and in the frame before.
 template <typename Real>
 class MovingObjects {
 public:
@@ -33,7 +33,7 @@ public:
         scene.add({std::span<const Box<Real>>(now_.span()), padding}, ids_, traits);
     }
 
-    /// Those whose boxes differ from the frame before, a run at a time.
+    /// Moves the objects whose boxes differ from the frame before. Each run of consecutive objects is one call.
     template <typename AnyScene>
     void move(AnyScene& scene) const {
         if (!set_.frames().moving) return;
@@ -42,7 +42,7 @@ public:
             while (end < ids_.size() && differs(end)) ++end;
             if (end == begin) continue;
             scene.move(std::span(ids_).subspan(begin, end - begin), now_.span().subspan(begin, end - begin));
-            begin = end;  // which does not differ
+            begin = end;  // box `end` does not differ, so the loop may skip it
         }
     }
 
@@ -57,7 +57,7 @@ private:
     std::vector<ObjectId> ids_;
 };
 
-/// A new scene numbers objects in the order in which they are added: the inputs', then those of the other set.
+/// Finds events with a scene. A new scene numbers objects in the order of addition: first the inputs, then the second set.
 template <typename Real, typename AnyScene>
 class SceneEvents final : public EventSource {
 public:
@@ -80,7 +80,7 @@ public:
 private:
     void add() {
         if (!against_) return inputs_.add(scene_, paddings_.inputs(), {});
-        // Objects of one set pair with those of the other alone.
+        // With these groups and masks, only objects of different sets form pairs.
         inputs_.add(scene_, paddings_.inputs(), std::array{Traits{.groups = 1, .mask = 2}});
         against_->add(scene_, paddings_.against(), std::array{Traits{.groups = 2, .mask = 1}});
     }
@@ -100,7 +100,7 @@ private:
     const Paddings& paddings_;
     MovingObjects<Real> inputs_;
     std::optional<MovingObjects<Real>> against_;
-    std::uint64_t first_;  // number of the other set's first object in the scene
+    std::uint64_t first_;  // number of the second set's first object in the scene
     AnyScene scene_;
     bool added_ = false;
     std::vector<Pair> ended_, began_;

@@ -50,7 +50,7 @@ std::vector<std::string> all_inputs(const DetectRequest& request) {
     return inputs;
 }
 
-/// An input without shapes, or none.
+/// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {
     for (const std::string& input : all_inputs(request)) {
         if (!io::is_mesh_file(input) && !io::is_json_file(input)) return input;
@@ -69,20 +69,21 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
     command
         .add_option(
             "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); },
-            "how far down the pipeline: pairs of boxes, objects that meet (default for meshes), or features: where and "
-            "how")
+            "last stage of the pipeline: pairs of boxes, objects that meet (default for mesh and JSON files), or "
+            "features, which adds contacts")
         .type_name("STAGE");
     command
         .add_option(
             "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
-            "triangles that share corners: beyond-shared (default: if they meet elsewhere), exclude or include")
+            "pairs of triangles that share corners: beyond-shared (default: if they also meet elsewhere), exclude or "
+            "include")
         .type_name("WHICH");
     command
         .add_option(
             "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
-            "with --stage features: contacts of each pair, the deepest first (default 16)")
+            "with --stage features: maximum contacts of a pair, the deepest first (default 16)")
         .type_name("N");
-    command.add_option("--exclude", request.exclude, "leave out pairs by rules of names, see docs/formats.md")
+    command.add_option("--exclude", request.exclude, "leave out pairs by rules on names, see docs/formats.md")
         .type_name("RULES.json");
     command
         .add_option(
@@ -91,13 +92,13 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
                 check_word({"--same-parent", {"include", "exclude"}, {}}, word);
                 request.same_parent = word == "exclude";
             },
-            "pairs of objects of one parent: include (default) or exclude")
+            "pairs of objects with the same parent: include (default) or exclude")
         .type_name("WHAT");
     command
-        .add_option("--baseline", request.baseline, "an older result: say which collisions are new, gone or the same")
+        .add_option("--baseline", request.baseline,
+                    "compare with an older result: mark collisions as new, same or gone")
         .type_name("OLD.jsonl");
-    command.add_option("--report", request.report, "write a page about the collisions for people")
-        .type_name("FILE.html");
+    command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
 }
 
 Stage stage_of(const DetectRequest& request) {
@@ -112,8 +113,8 @@ bool has_filters(const DetectRequest& request) {
 
 namespace {
 
-/// The option that has pairs filtered.
-std::string asked_of(const DetectRequest& request) {
+/// Returns the option that makes filters necessary, for messages.
+std::string filter_option(const DetectRequest& request) {
     switch (stage_of(request)) {
         case Stage::objects:
             return "--stage objects";
@@ -129,35 +130,35 @@ void check_triangle_options(const DetectRequest& request) {
     const bool exact = stage_of(request) != Stage::pairs;
     const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
     if (request.pipeline.adjacent && !(triangles && exact)) {
-        refuse("--adjacent: only with --objects triangle, beyond --stage pairs");
+        refuse("--adjacent: only with --objects triangle and --stage objects or features");
     }
     if (request.pipeline.max_contacts && (triangles || stage_of(request) != Stage::features)) {
-        refuse("--max-contacts: only with --stage features, of nodes");
+        refuse("--max-contacts: only with --stage features and --objects node");
     }
     if (!triangles || !has_filters(request)) return;
     if (!request.pipeline.exclude.empty()) refuse("--exclude: not with --objects triangle");
     if (request.pipeline.same_parent) refuse("--same-parent: not with --objects triangle");
-    if (!request.padding.empty()) refuse("--padding: triangles have it in --stage pairs alone");
+    if (!request.padding.empty()) refuse("--padding: with --objects triangle only at --stage pairs");
 }
 
-/// Of what is said of collisions, beside their rows.
+/// Checks --baseline and --report.
 void check_outcome_options(const DetectRequest& request) {
     const PipelineRequest& asked = request.pipeline;
     for (const auto& [option, value] :
          {std::pair("--baseline", &asked.baseline), std::pair("--report", &asked.report)}) {
         if (value->empty()) continue;
-        if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only beyond --stage pairs", option));
+        if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only with --stage objects or features", option));
         if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
     }
     const std::string page = io::ending_of(asked.report), older = io::ending_of(asked.baseline);
     if (!asked.report.empty() && page != ".html" && page != ".htm") {
-        refuse(fmt::format("--report: {}: a page ends in .html", asked.report));
+        refuse(fmt::format("--report: {}: the name of a report must end in .html or .htm", asked.report));
     }
     if (older == ".csv" || older == ".npy") {
-        refuse(fmt::format("--baseline: {}: an older result is a .jsonl file", asked.baseline));
+        refuse(fmt::format("--baseline: {}: the older result must be a .jsonl file", asked.baseline));
     }
     if (!asked.baseline.empty() && request.limit)
-        refuse("--baseline: not with --limit, which leaves out what may be new");
+        refuse("--baseline: not with --limit, which may leave out new collisions");
 }
 
 }  // namespace
@@ -166,13 +167,13 @@ void check_pipeline_options(const DetectRequest& request) {
     check_triangle_options(request);
     check_outcome_options(request);
     if (!has_filters(request)) return;
-    const std::string asked = asked_of(request);
+    const std::string asked = filter_option(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");
     if (request.wide_indices) refuse("--index-type uint64: not with " + asked);
     if (request.events) refuse(asked + ": not with --events");
     if (stage_of(request) == Stage::pairs) return;
     if (const auto input = input_of_boxes(request)) {
-        refuse(fmt::format("{}: {} has boxes, not shapes; --stage pairs is for these", asked, *input));
+        refuse(fmt::format("{}: {} has only boxes, no shapes; use --stage pairs", asked, *input));
     }
 }
 

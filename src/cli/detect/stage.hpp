@@ -1,4 +1,4 @@
-// How far down the pipeline a run goes, and which of its options go with that.
+// Stage: how far a run goes down the pipeline; and the options of the pipeline.
 #pragma once
 
 #include <cstdint>
@@ -17,31 +17,31 @@ struct DetectRequest;
 
 enum class Stage : std::uint8_t { pairs, objects, features };
 
-/// What is asked of the pipeline; left out where the default is meant.
+/// Options of the pipeline. A member without a value means the default.
 struct PipelineRequest {
     std::optional<Stage> stage;
-    std::string exclude;  ///< a file of exclusion rules, or empty
+    std::string exclude;  ///< path of exclusion rules, or empty
     std::optional<bool> same_parent;
     std::optional<AdjacentTriangles> adjacent;
     std::optional<std::uint32_t> max_contacts;
-    std::string baseline;  ///< an older result, or empty
-    std::string report;    ///< where a page for people goes, or empty
+    std::string baseline;  ///< path of an older result, or empty
+    std::string report;    ///< path of the HTML report to write, or empty
 };
 
-/// Those of this program, as --stage names them.
+/// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
-/// --stage, --adjacent, --max-contacts, --exclude, --same-parent, --baseline, --report.
+/// Adds --stage, --adjacent, --max-contacts, --exclude, --same-parent, --baseline and --report.
 void add_pipeline_options(Command& command, PipelineRequest& request);
 
-/// The one that was asked for; else `objects` where all inputs have shapes and this program has a pipeline for them, and
-/// `pairs` where not.
+/// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the
+/// request has no --events; otherwise `pairs`.
 Stage stage_of(const DetectRequest& request);
 
-/// Whether pairs are to go through filters.
+/// Returns whether the request needs filters.
 bool has_filters(const DetectRequest& request);
 
-/// Throws Error{usage} for what does not go together.
+/// Throws: Error{usage} for options that do not fit together.
 void check_pipeline_options(const DetectRequest& request);
 
 }  // namespace octopair::cli

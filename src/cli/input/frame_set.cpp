@@ -13,7 +13,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// A scene that stands still; a float64 one is never asked for as float32.
+/// Copies boxes, and widens float32 to float64. Requires: float64 boxes are not copied to float32.
 template <typename Real>
 void copy_boxes(const Boxes& from, std::span<Box<Real>> to) {
     std::visit(
@@ -32,7 +32,7 @@ void copy_boxes(const Boxes& from, std::span<Box<Real>> to) {
 FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent& content,
                    const std::stop_token& stop) {
     for (const std::string& path : paths) {
-        if (io::is_json_file(path)) io::refuse(path, "events are not told of JSON scenes yet");
+        if (io::is_json_file(path)) io::refuse(path, "--events does not support JSON scenes yet");
     }
     open_moving(paths);
     if (!moving_.empty()) return;

@@ -1,5 +1,7 @@
-// The files named on the command line as one set of objects whose frames are read one by one: of a moving scene no more
-// than a frame is in memory. What is numbered and what is refused is the same as for an InputSet.
+// FrameSet: the input files of the command line as one set of objects, read frame by frame.
+//
+// - Of a moving scene, at most one frame is in memory.
+// - Objects have the same numbers, and errors are the same, as for an InputSet.
 #pragma once
 
 #include <optional>
@@ -13,17 +15,20 @@ namespace octopair::cli {
 
 class FrameSet {
 public:
-    /// Throws what read_input_set throws.
+    /// Throws: what read_input_set() throws; Error{bad_input} for JSON scenes.
     FrameSet(const std::vector<std::string>& paths, const io::SceneContent& content, const std::stop_token& stop);
 
-    std::uint64_t objects() const { return objects_; }  ///< in each frame
+    /// Returns the number of objects in each frame.
+    std::uint64_t objects() const { return objects_; }
     const io::FrameCount& frames() const { return frames_; }
-    bool wide() const { return wide_; }  ///< float64 somewhere
-    /// Empty, or one an object.
+    /// Returns whether at least one file is float64.
+    bool wide() const { return wide_; }
+    /// Returns the names of the objects: empty, or one name per object.
     const std::vector<std::string>& names() const { return still_.scene.names; }
 
-    /// Fills `boxes`, as many as there are objects, from a frame; Real is double where the set is wide. Throws
-    /// Error{bad_input} that names the file and the object for what is not a box; Error{io_failed, cancelled}.
+    /// Reads the boxes of a frame.
+    /// Requires: `boxes` has one element per object; Real is double if the set is wide.
+    /// Throws: Error{bad_input} that names the file and the object, for an invalid box; Error{io_failed, cancelled}.
     template <typename Real>
     void read(std::uint64_t frame, std::span<Box<Real>> boxes, const std::stop_token& stop) const;
 
@@ -35,7 +40,7 @@ private:
 
     void open_moving(const std::vector<std::string>& paths);
 
-    InputSet still_;  // empty if the set moves
+    InputSet still_;  // the objects of a scene that does not move; empty for a moving scene
     std::vector<MovingPart> moving_;
     std::uint64_t objects_ = 0;
     io::FrameCount frames_;

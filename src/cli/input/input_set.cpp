@@ -45,12 +45,12 @@ std::optional<std::uint64_t> InputSet::fault_position() const {
 namespace {
 
 io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
-    // What is a mesh file, or may name one, goes through importers.
+    // Mesh files need an importer, which may crash. JSON scenes may name mesh files.
     const bool isolated = io::is_mesh_file(path) || io::is_json_file(path);
     return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
 
-/// A file whose objects can be had in parts.
+/// A file from which a range of objects can be read. Only .npy files are read in part; others are read whole.
 class PartFile {
 public:
     PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {

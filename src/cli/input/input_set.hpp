@@ -1,4 +1,4 @@
-// The files named on the command line, as one set of objects.
+// InputSet: the input files of the command line as one set of objects.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace octopair::cli {
 
-/// How many objects each file brought, in the order of their numbers.
+/// A file of a set, and its number of objects. Parts are in the order of the object numbers.
 struct Part {
     std::string path;
     std::uint64_t objects;
@@ -20,7 +20,7 @@ struct Part {
 
 class ShapedSet;
 
-/// One of so many even parts of a set.
+/// One of `slices` slices of a set. Slices have almost equal sizes.
 struct SliceNumber {
     std::uint64_t slice = 0, slices = 1;
 
@@ -28,7 +28,7 @@ struct SliceNumber {
     std::uint64_t end(std::uint64_t objects) const { return part(objects, slice + 1); }
 
 private:
-    /// objects * number / slices, without the product.
+    /// Returns objects * number / slices. Avoids the overflow of the product.
     std::uint64_t part(std::uint64_t objects, std::uint64_t number) const {
         return objects / slices * number + objects % slices * number / slices;
     }
@@ -36,35 +36,38 @@ private:
 
 struct InputSet {
     io::LoadedScene scene;
-    std::shared_ptr<ShapedSet> shaped;  ///< what became of the scene's shapes, in a program with a pipeline
-    bool moves_meanwhile = false;       ///< some shapes have a place at time 1 as well
+    std::shared_ptr<ShapedSet> shaped;  ///< prepared shapes, after make_shaped(); null in a build without the pipeline
+    bool moves_meanwhile = false;       ///< true if objects have end poses, at time 1
     std::vector<Part> parts;
-    std::uint64_t begin = 0;               ///< objects of the parts before those of the scene, where it is a slice
-    std::uint64_t total = 0;               ///< objects of all parts
-    std::span<const double> padding = {};  ///< borrowed; empty, or one an object
+    std::uint64_t begin = 0;               ///< for a slice, the number of its first object
+    std::uint64_t total = 0;               ///< number of objects of all parts
+    std::span<const double> padding = {};  ///< empty, or one padding per object; borrowed
 
-    /// The objects of a frame; a set that does not move is the same in every frame.
+    /// Returns the objects of frame `f`. A set that does not move has the same objects in every frame.
     Objects frame(std::uint64_t f) const;
-    /// Of a whole set, those of a slice.
+    /// Returns the objects of a slice of frame `f`. Requires: the set is not a slice itself.
     Objects frame_slice(std::uint64_t f, const SliceNumber& number) const;
-    /// Names the file and the object of it that is not a box, if there is one.
+    /// Returns a message about the first invalid box, with the file and the object; or nothing if all boxes are valid.
     std::optional<std::string> find_fault() const;
-    /// Where it stands: an object, counted on from frame to frame.
+    /// Returns the position of the first invalid box: frame * total + object; or nothing if all boxes are valid.
     std::optional<std::uint64_t> fault_position() const;
 };
 
-/// Reads files. Sets of JSON scenes, and of triangles with what the exact stages need (SceneContent::shapes), lack boxes until
-/// make_shaped() makes them (shaped_set.hpp). Throws what io::read_scene and io::join_scenes throw.
-/// Requires: no other thread of this process is at work (isolated_read.hpp). Read all sets before the shapes of one are made.
+/// Reads files as one set. Sets of JSON scenes, and of triangles read with SceneContent::shapes, have no boxes until
+/// make_shaped() computes them (shaped_set.hpp).
+/// Requires: no other thread of this process runs (isolated_read.hpp). So read all sets before make_shaped().
+/// Throws: what io::read_scene() and io::join_scenes() throw.
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
                         const std::stop_token& stop);
 
-/// The objects of a slice of the set, of any files but JSON scenes; of .npy files no others are read. `names`: whether the
-/// scene gets the names of all objects of the set, or of none.
+/// Selects a slice of a set.
 struct SliceRequest {
     SliceNumber number;
-    bool names = false;
+    bool names = false;  ///< true: read the names of all objects of the set; false: read no names
 };
+/// Reads one slice of a set. From .npy files it reads only the objects of the slice.
+/// Requires: no file is a JSON scene; the requirements of read_input_set().
+/// Throws: what read_input_set() throws.
 InputSet read_input_slice(const std::vector<std::string>& paths, const io::SceneContent& content,
                           const SliceRequest& wanted, const std::stop_token& stop);
 

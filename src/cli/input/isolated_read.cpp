@@ -1,4 +1,4 @@
-// Through the pipe go an Answer, then the message of an error, or the scene (scene_transfer.hpp).
+// The child sends through a pipe: an Answer, then either an error message or the scene (scene_transfer.hpp).
 #include "cli/input/isolated_read.hpp"
 
 #include <fcntl.h>
@@ -35,13 +35,13 @@ struct Answer {
     std::uint64_t message_bytes;
 };
 
-/// Names and shapes are many small things, which go through the pipe in larger pieces.
+/// Size of the buffers on both sides of the pipe. A scene has many small values, such as names, so they are sent in batches.
 constexpr std::size_t piece_bytes = 65536;
 
-/// The child's side: it writes, and ends where nobody reads any more.
+/// The sending side, in the child. Ends the child if the pipe is closed.
 class PipeSender {
 public:
-    explicit PipeSender(int pipe) : pipe_(pipe) { waiting_.reserve(piece_bytes); }
+    explicit PipeSender(int pipe) : pipe_(pipe) { buffered_.reserve(piece_bytes); }
 
     void scene(const io::LoadedScene& scene) {
         send(Answer{false, {}, 0});
@@ -61,16 +61,16 @@ private:
         send_bytes(std::as_bytes(std::span(&value, 1)));
     }
     void send_bytes(std::span<const std::byte> bytes) {
-        if (waiting_.size() + bytes.size() > piece_bytes) flush();
+        if (buffered_.size() + bytes.size() > piece_bytes) flush();
         if (bytes.size() > piece_bytes) {
             write(bytes);
         } else {
-            waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+            buffered_.insert(buffered_.end(), bytes.begin(), bytes.end());
         }
     }
     void flush() {
-        write(waiting_);
-        waiting_.clear();
+        write(buffered_);
+        buffered_.clear();
     }
     void write(std::span<const std::byte> bytes) const {
         while (!bytes.empty()) {
@@ -82,13 +82,14 @@ private:
     }
 
     int pipe_;
-    std::vector<std::byte> waiting_;
+    std::vector<std::byte> buffered_;
 };
 
-/// The size of a file; of a glTF or a JSON scene with all that lies beside it, as meshes may be in further files.
+/// Returns the size of a file. For glTF and JSON scenes, whose meshes may be in other files, returns the size of all files in
+/// the directory.
 [[maybe_unused]] std::uintmax_t bytes_to_read(const std::filesystem::path& path) {
     std::error_code error;
-    if (!io::has_parts(path.string())) return std::filesystem::file_size(path, error);
+    if (!io::may_name_files(path.string())) return std::filesystem::file_size(path, error);
     std::uintmax_t bytes = 0;
     const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
     for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
@@ -97,13 +98,14 @@ private:
     return bytes;
 }
 
-/// Importers believe what a file says of its size: one of 309 bytes has taken 16 GB. So memory is bounded by what files
-/// of that size have been seen to need, many times over. (Sanitizers reserve far more than any bound.)
+/// Limits the memory of the child. Importers trust the sizes in a file: a file of 309 bytes made one allocate 16 GB.
+/// The limit is many times the memory that valid files of that size have needed. Sanitizers reserve more address space than
+/// any limit, so builds with sanitizers have none.
 void limit_memory([[maybe_unused]] const std::string& path) {
 #ifndef OCTOPAIR_SANITIZED
     constexpr rlim_t base = rlim_t(4) << 30, factor = 64;
     const std::uintmax_t size = bytes_to_read(path);
-    if (size > std::numeric_limits<rlim_t>::max() / factor / 2) return;  // no file; reading says it better
+    if (size > std::numeric_limits<rlim_t>::max() / factor / 2) return;  // no such file: reading it gives the error
     rlimit limit{};
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, base + factor * size);
@@ -134,7 +136,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
     std::_Exit(0);
 }
 
-/// A child process with the reading end of the pipe it writes to; killed and waited for when its owner goes.
+/// A child process that reads a file, and the reading end of its pipe. The destructor kills the child and waits for it.
 class Child {
 public:
     Child(const std::string& path, const io::SceneContent& content, std::stop_token stop)
@@ -176,7 +178,7 @@ public:
     }
 
 private:
-    /// At least one byte.
+    /// Reads at least one byte. Returns the number of bytes.
     std::size_t read(std::span<std::byte> bytes) {
         for (;;) {
             if (stop_.stop_requested()) io::cancel();
@@ -212,7 +214,7 @@ private:
     Descriptor pipe_;
     pid_t id_ = 0;
     std::vector<std::byte> piece_ = std::vector<std::byte>(piece_bytes);
-    std::span<const std::byte> arrived_;  // of the piece, and not taken yet
+    std::span<const std::byte> arrived_;  // received bytes of piece_ that are not consumed yet
 };
 
 }  // namespace

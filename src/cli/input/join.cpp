@@ -9,8 +9,9 @@ namespace octopair::cli {
 
 io::FrameCount joint_frames(const io::FrameCount& inputs, const io::FrameCount& against, const DetectRequest& request) {
     if (inputs.moving && against.moving && inputs.frames != against.frames) {
-        throw Error(ErrorCode::bad_input, fmt::format("{}: {} frames against the {} of {}", request.against,
-                                                      against.frames, inputs.frames, request.inputs.front()));
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("{}: has {} frames, but {} has {}; both must have the same number", request.against,
+                                against.frames, request.inputs.front(), inputs.frames));
     }
     return inputs.moving ? inputs : against;
 }

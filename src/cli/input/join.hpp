@@ -1,4 +1,4 @@
-// What the two sets of a join must agree on, and the paddings of both.
+// Frames and paddings of the two sets of a join.
 #pragma once
 
 #include <span>
@@ -9,23 +9,25 @@
 
 namespace octopair::cli {
 
-/// The frames of the result; a set that stands still goes with any number. Throws Error{bad_input} where both sets move
-/// and have other numbers of frames.
+/// Returns the frames of the result. A set that does not move fits any number of frames.
+/// Throws: Error{bad_input} if both sets move and have different numbers of frames.
 io::FrameCount joint_frames(const io::FrameCount& inputs, const io::FrameCount& against, const DetectRequest& request);
 
-/// How many objects each set has.
+/// Number of objects of each set.
 struct SetSizes {
     std::uint64_t inputs = 0;
     std::uint64_t against = 0;
 };
 
-/// One clearance for each object of the inputs; of a join also for those of the other set, after them.
+/// Paddings of the objects of the inputs, and after them those of the second set of a join.
 class Paddings {
 public:
-    /// None if the request names no file. Throws what io::read_padding throws, and Error{bad_input} for another number.
+    /// Reads the file of --padding. Without --padding, there are no paddings.
+    /// Throws: what io::read_padding() throws; Error{bad_input} if the number of paddings is wrong.
     Paddings(const DetectRequest& request, const SetSizes& sizes, const std::stop_token& stop);
 
-    /// Empty, or one an object.
+    // Each function returns a span that is empty, or has one padding per object of the set.
+
     std::span<const double> inputs() const { return all_.span().first(inputs_); }
     std::span<const double> against() const { return all_.span().subspan(inputs_); }
 

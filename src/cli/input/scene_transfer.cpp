@@ -10,11 +10,11 @@ namespace octopair::cli {
 
 namespace {
 
-/// T or const T.
+/// Matches T and const T.
 template <typename Any, typename T>
 concept Some = std::same_as<std::remove_const_t<Any>, T>;
 
-// The members of what is passed member by member: the one list that both sides go by.
+// The members of each class that is sent member by member. Sender and receiver use the same list.
 
 auto members(Some<io::LoadedScene> auto& scene) {
     return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.names, scene.shapes, scene.triangles);
@@ -128,7 +128,8 @@ private:
         const std::size_t index = size();
         std::size_t i = 0;
         ((i++ == index ? pass(value.template emplace<T>()) : void()), ...);
-        if (index >= i) throw Error(ErrorCode::engine_failed, "a scene from another process is garbled");
+        if (index >= i)
+            throw Error(ErrorCode::engine_failed, "received invalid data instead of a scene from another process");
     }
 
     const GetBytes& get_;

@@ -1,7 +1,10 @@
-// A loaded scene as bytes, from one process of this program to another on the same machine.
+// Sends a loaded scene as bytes from one process of this program to another on the same machine.
 //
-// Numbers go as they lie in memory; what has a length goes as its length (uint64) and its elements, an optional as a bool
-// and its value, a variant as its index (uint64) and its value, the rest member by member.
+//   trivially copyable values   the bytes in memory
+//   vector, string, Buffer      length (uint64), then the elements
+//   optional                    bool, then the value if there is one
+//   variant                     index (uint64), then the value
+//   other classes               the members, one after the other
 #pragma once
 
 #include <cstddef>
@@ -12,14 +15,14 @@
 
 namespace octopair::cli {
 
-/// Takes all the bytes, or throws.
+/// Sends all bytes of the span, or throws.
 using PutBytes = std::function<void(std::span<const std::byte>)>;
-/// Fills all the bytes, or throws.
+/// Fills the whole span with received bytes, or throws.
 using GetBytes = std::function<void(std::span<std::byte>)>;
 
 void send_scene(const io::LoadedScene& scene, const PutBytes& put);
 
-/// Throws what `get` throws, and Error{engine_failed} for bytes that send_scene does not make.
+/// Returns the received scene. Throws: what `get` throws; Error{engine_failed} for bytes that send_scene() did not make.
 io::LoadedScene receive_scene(const GetBytes& get);
 
 }  // namespace octopair::cli

@@ -46,7 +46,7 @@ GroupMasks ShapedSet::group_masks() {
 
 namespace {
 
-/// Says the file as well, where it is known.
+/// Runs `call`. Puts the file before the message of an error if the set has only one file.
 template <typename Call>
 void with_file(const InputSet& set, const Call& call) {
     try {
@@ -64,7 +64,7 @@ Buffer<AnyBox> copy_of(const std::vector<AnyBox>& boxes) {
     return copy;
 }
 
-/// What is around all boxes of a set, as a shape; none where there are no boxes, or some that the engine refuses.
+/// Returns a shape with the bounds of all boxes of a set. Returns no shape if the set is empty or has invalid boxes.
 io::LoadedShapes bounds_of(const InputSet& set) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Point3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};

@@ -1,4 +1,4 @@
-// The shapes of an input set, made ready for the pipeline.
+// ShapedSet: the shapes of an input set, prepared for the pipeline.
 #pragma once
 
 #include <stop_token>
@@ -11,20 +11,21 @@ namespace octopair::cli {
 
 class ShapedSet {
 public:
-    /// Makes shapes ready on so many threads; 0: one a core. Throws what Geometry throws, and Error{cancelled}.
+    /// Prepares the shapes on `threads` threads; 0 means one per core.
+    /// Throws: what Geometry throws; Error{cancelled}.
     ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop);
     ShapedSet(const ShapedSet&) = delete;
     ShapedSet& operator=(const ShapedSet&) = delete;
 
-    // All borrowed.
+    // Results borrow from this set.
 
     ShapedObjects objects(std::span<const double> padding = {}) const;
-    /// Empty, or what the files say.
+    /// Returns the paddings that the files give; empty if they give none.
     std::span<const double> padding() const { return loaded_.padding; }
     std::span<const std::uint32_t> parents() const { return loaded_.parents; }
     bool has_planes() const;
     bool has_groups() const { return !loaded_.groups.empty() || !loaded_.masks.empty(); }
-    /// With the defaults where the files say nothing.
+    /// Returns the groups and masks of all objects, with defaults for objects without any.
     GroupMasks group_masks();
 
 private:
@@ -34,13 +35,14 @@ private:
     std::vector<Geometry> geometries_;
 };
 
-/// Takes the shapes of a set that has some; they give it its boxes, if it lacks these, and its padding. Triangles give
-/// boxes. Throws as ShapedSet does, and Error{bad_input} for poses that do not fit their shapes, with the file where there
-/// is but one.
+/// Moves the shapes of `set` into `set.shaped`. Sets the padding of the set, and computes its boxes if it has none. For a set
+/// of triangles, only computes the boxes.
+/// Throws: what ShapedSet throws; Error{bad_input} for poses that do not fit their shapes. The message begins with the file if
+/// the set has only one.
 void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop);
 
-/// Takes the shapes of both sets of a join; the second may be empty. A plane gets a box that reaches as far as the other set.
-/// Throws as for one set.
+/// Does the same for both sets of a join. `second` may be empty. A plane gets a box that encloses the extent of the other set.
+/// Throws: what make_shaped() of one set throws.
 void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop);
 
 }  // namespace octopair::cli

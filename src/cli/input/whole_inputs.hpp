@@ -1,4 +1,4 @@
-// All that `octopair detect` reads, whole: the objects of the inputs, those of the other set of a join, and paddings.
+// WholeInputs: all objects and paddings that `octopair detect` reads.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,19 @@
 
 namespace octopair::cli {
 
-/// Sets borrow from it, so it stays where it is.
+/// Neither copyable nor movable, because the sets borrow from `padding`.
 struct WholeInputs {
     WholeInputs() = default;
     WholeInputs(const WholeInputs&) = delete;
     WholeInputs& operator=(const WholeInputs&) = delete;
 
     InputSet first;
-    InputSet second;  ///< of a join
+    InputSet second;  ///< second set of a join, else empty
     io::FrameCount frames;
-    std::optional<Paddings> padding;  ///< of the request's file
+    std::optional<Paddings> padding;  ///< paddings of --padding
 
-    /// With shapes, where filters need them. Throws what read_input_set, joint_frames and Paddings throw.
+    /// Reads the inputs, with shapes if filters need shapes.
+    /// Throws: what read_input_set(), make_shaped(), joint_frames() and Paddings throw.
     void read(const DetectRequest& request, const std::stop_token& stop);
 };
 

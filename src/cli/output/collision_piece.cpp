@@ -16,41 +16,41 @@ void append_finding(Block& block, const Finding& finding) {
                               finding.distance, finding.depth, finding.time, finding.nearest, finding.note});
 }
 
-/// How long a block's arrays are.
+/// Lengths of the arrays of a block.
 struct Lengths {
     std::uint64_t pairs = 0, findings = 0, contacts = 0;
 };
 
-/// Blocks from any rank to the first one.
-class Carrier {
+/// Sends blocks from one rank to rank 0.
+class BlockTransfer {
 public:
-    Carrier(Cluster& cluster, unsigned from) : cluster_(cluster), from_(from) {}
+    BlockTransfer(Cluster& cluster, unsigned from) : cluster_(cluster), from_(from) {}
 
-    /// Collective: `block` of rank `from`; the others have none to give. On the first rank, what has come.
-    const Block& bring(const Block& block) {
+    /// Collective. Sends `block` of rank `from`; the blocks of other ranks are ignored. Returns the received block on rank 0.
+    const Block& send(const Block& block) {
         const auto lengths =
             cluster_.all_gather(Lengths{block.pairs.size(), block.findings.size(), block.contacts.size()})[from_];
         cluster_.together([&] {
             if (!cluster_.first()) return;
-            come_.pairs.resize(std::size_t(lengths.pairs));
-            come_.findings.resize(std::size_t(lengths.findings));
-            come_.contacts.resize(std::size_t(lengths.contacts));
+            received_.pairs.resize(std::size_t(lengths.pairs));
+            received_.findings.resize(std::size_t(lengths.findings));
+            received_.contacts.resize(std::size_t(lengths.contacts));
         });
-        carry(block.pairs, come_.pairs);
-        carry(block.findings, come_.findings);
-        carry(block.contacts, come_.contacts);
-        return come_;
+        send_values(block.pairs, received_.pairs);
+        send_values(block.findings, received_.findings);
+        send_values(block.contacts, received_.contacts);
+        return received_;
     }
 
 private:
     template <typename Value>
-    void carry(const std::vector<Value>& own, std::vector<Value>& come) {
-        cluster_.send_to_first(from_, std::span<const Value>(own), std::span(come));
+    void send_values(const std::vector<Value>& own, std::vector<Value>& received) {
+        cluster_.send_to_first(from_, std::span<const Value>(own), std::span(received));
     }
 
     Cluster& cluster_;
     unsigned from_;
-    Block come_;
+    Block received_;
 };
 
 }  // namespace
@@ -101,13 +101,13 @@ void CollisionPiece::cut(std::uint64_t most) {
 void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer) {
     const std::vector<std::uint64_t> blocks = cluster.all_gather(std::uint64_t(piece.blocks().size()));
     for (unsigned from = 0; from < cluster.ranks(); ++from) {
-        Carrier carrier(cluster, from);
+        BlockTransfer transfer(cluster, from);
         const Block none;
         for (std::size_t i = 0; i < blocks[from]; ++i) {
             const Block& own = cluster.rank() == from ? piece.blocks()[i] : none;
-            const Block& come = from == 0 ? own : carrier.bring(own);
+            const Block& received = from == 0 ? own : transfer.send(own);
             cluster.together([&] {
-                if (writer != nullptr) writer->write(come.pairs, come.full_findings());
+                if (writer != nullptr) writer->write(received.pairs, received.full_findings());
             });
         }
     }

@@ -1,5 +1,6 @@
-// Collisions of one rank, held until the first rank writes those of all: in blocks of plain values, which ranks can send
-// each other as they are.
+// CollisionPiece: the collisions of one rank, stored until rank 0 writes those of all ranks.
+//
+// They are stored in blocks of trivially copyable values, so that ranks can send the arrays without conversion.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ namespace octopair::cli {
 
 class CollisionPiece {
 public:
-    /// A Finding with its contacts elsewhere.
+    /// A Finding without its list of contacts. `contacts` is their number; they are in Block::contacts.
     struct FlatFinding {
         CollisionClass collision_class;
         bool more_contacts;
@@ -26,17 +27,17 @@ public:
     };
     struct Block {
         std::vector<Pair> pairs;
-        std::vector<FlatFinding> findings;  ///< as many, or none
-        std::vector<Contact> contacts;      ///< of all findings, one after another
+        std::vector<FlatFinding> findings;  ///< one per pair, or empty
+        std::vector<Contact> contacts;      ///< contacts of all findings, in order
 
         std::vector<Finding> full_findings() const;
     };
 
     std::uint64_t size() const { return size_; }
     std::span<const Block> blocks() const { return blocks_; }
-    /// Behind those that are there; as many findings as pairs, or none, and so in all calls.
+    /// Appends collisions. Requires: in all calls `findings` has one element per pair, or in all calls it is empty.
     void add(std::span<const Pair> pairs, std::span<const Finding> findings);
-    /// The first so many stay.
+    /// Keeps at most the first `most` collisions.
     void cut(std::uint64_t most);
 
 private:
@@ -44,8 +45,8 @@ private:
     std::uint64_t size_ = 0;
 };
 
-/// Collective: writes the pieces of all ranks, in order, some at a time. Only the first rank has a writer. What it throws is
-/// thrown on all.
+/// Collective. Writes the pieces of all ranks, in the order of the ranks, block by block. `writer` is null except on rank 0.
+/// Throws: what the writer throws, on all ranks.
 void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer);
 
 }  // namespace octopair::cli

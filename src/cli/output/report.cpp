@@ -12,7 +12,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// The largest of this process, the child that read a mesh file, and the workers.
+/// Returns the largest peak memory of one process: this one, the child that read a mesh file, or a worker.
 std::uint64_t peak_rss_bytes() {
     std::uint64_t peak = 0;
     for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -36,7 +36,7 @@ std::string plural(unsigned count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// Those that are known.
+/// Returns the seconds of all steps. Keys of unknown times are left out.
 nlohmann::ordered_json seconds_json(const DetectReport& report) {
     nlohmann::ordered_json seconds = {
         {"total", report.seconds.total}, {"read", report.seconds.read}, {"detect", report.seconds.detect}};
@@ -61,7 +61,7 @@ nlohmann::ordered_json filters_json(const DetectReport& report) {
     return filters;
 }
 
-/// Where time went.
+/// Returns the line with the seconds of each part of the run.
 std::string time_text(const DetectReport& report) {
     const DetectSeconds& seconds = report.seconds;
     std::string text = fmt::format("time        {} = read {}", duration(seconds.total), duration(seconds.read));
@@ -72,7 +72,7 @@ std::string time_text(const DetectReport& report) {
     return text + fmt::format(" + write {} + other\n", duration(seconds.write));
 }
 
-/// The certificate: what was checked, and what was not.
+/// Returns the line of --verify: what was checked, and what was not.
 std::string verified_text(const DetectReport& report) {
     if (!report.verified) return {};
     std::string text = fmt::format("verified    {} {} by a second algorithm in {}", grouped(report.candidates),
@@ -81,7 +81,7 @@ std::string verified_text(const DetectReport& report) {
     return text + '\n';
 }
 
-/// What each filter let through, and how long it took, on all threads together.
+/// Returns a line per filter: pairs out and in, and the seconds summed over all threads.
 std::string filters_text(const DetectReport& report) {
     if (report.filters.empty()) return {};
     std::string text = fmt::format("candidates  {}\n", grouped(report.candidates));

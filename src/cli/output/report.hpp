@@ -1,4 +1,4 @@
-// What `octopair detect` says about its work: lines for people, JSON for programs.
+// Formats the results of a run of `octopair detect`: a summary for people, and statistics in JSON.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace octopair::cli {
 
-/// A few lines, each ended.
+/// Returns the summary: several lines, each with a newline.
 std::string summary_text(const DetectReport& report);
 
-/// One JSON object (docs/formats.md), ended by a newline.
+/// Returns the statistics: one JSON object (docs/formats.md) and a newline.
 std::string stats_json(const DetectReport& report);
 
 }  // namespace octopair::cli

@@ -17,14 +17,14 @@ namespace octopair::cli {
 Cluster::Run::Run() {
     int level = 0;
     if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &level) != MPI_SUCCESS || level < MPI_THREAD_FUNNELED)
-        throw Error(ErrorCode::engine_failed, "MPI cannot be started for a program with threads");
+        throw Error(ErrorCode::engine_failed, "cannot start MPI with support for threads (MPI_THREAD_FUNNELED)");
 }
 
 Cluster::Run::~Run() {
     if (std::uncaught_exceptions() > 0 && !ends_alike) {
         int rank = 0;
         MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-        std::fprintf(stderr, "%s: rank %d failed alone\n", program_name, rank);
+        std::fprintf(stderr, "%s: rank %d failed without the other ranks; all ranks are aborted\n", program_name, rank);
         abort(exit_status(ErrorCode::engine_failed));
     }
     MPI_Finalize();
@@ -32,7 +32,7 @@ Cluster::Run::~Run() {
 
 void Cluster::abort(int status) {
     MPI_Abort(MPI_COMM_WORLD, status);
-    std::abort();  // which MPI_Abort is not declared to make needless
+    std::abort();  // MPI_Abort is not declared [[noreturn]]
 }
 
 void Cluster::together(const std::function<void()>& part) {
@@ -59,7 +59,7 @@ std::string Cluster::broadcast_text(const std::string& text) {
 
 namespace {
 
-/// Copies pairs out of a list, some at a time.
+/// Copies the pairs of a list, batch by batch.
 class ListReader {
 public:
     explicit ListReader(const PairList& list) : chunks_(list.chunks()) {}
@@ -81,13 +81,13 @@ public:
 
 private:
     std::span<const std::span<const Pair>> chunks_;
-    std::size_t taken_ = 0;  // of the first one
+    std::size_t taken_ = 0;  // number of pairs already copied from the first chunk
 };
 
 }  // namespace
 
 void Cluster::relay(const PairList& piece, const std::function<void(std::span<const Pair>)>& take) {
-    constexpr std::uint64_t most = 1 << 20;  // pairs at a time
+    constexpr std::uint64_t most = 1 << 20;  // pairs per message
     together([&] {
         for (const auto chunk : piece.chunks()) {
             if (first()) take(chunk);

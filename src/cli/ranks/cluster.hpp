@@ -59,7 +59,7 @@ public:
     void relay(const PairList& piece, const std::function<void(std::span<const Pair>)>& take);
 
 private:
-    /// MPI's own begin and end.
+    /// Calls MPI_Init and MPI_Finalize.
     struct Run {
         Run();
         Run(const Run&) = delete;

@@ -1,4 +1,4 @@
-// octopair status, result, cancel: the detached jobs of a server.
+// octopair status, result, cancel: show, collect and cancel the jobs of a server.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -26,7 +26,7 @@ struct JobRequest {
     std::string id;
     std::optional<double> wait;
     bool json = false;
-    std::string output;  ///< a file, or empty for standard output
+    std::string output;  ///< path of a file; empty means standard output
     bool keep = false, release = false;
     bool quiet = false;
 };
@@ -127,13 +127,12 @@ public:
     void run() {
         const bool count_only = client_.status(request_.id, stop_).count_only;
         if (count_only && !request_.output.empty()) {
-            throw Error(ErrorCode::usage,
-                        "job " + request_.id + " counts its pairs alone: there is nothing for --output");
+            throw Error(ErrorCode::usage, "job " + request_.id + " only counts pairs; do not give --output");
         }
         try {
             count_only ? count() : stream();
         } catch (const Error& error) {
-            // What the job itself ended with is all that there is to collect.
+            // A failed or cancelled job has no result to keep, so --release applies here too.
             if (request_.release && has_no_result()) client_.release(request_.id, stop_);
             if (error.code() != ErrorCode::cancelled || stop_.stop_requested()) throw;
             throw Error(ErrorCode::engine_failed, "job " + request_.id + " was cancelled");
@@ -164,7 +163,8 @@ private:
         writer->finish();
         line_.clear();
         if (!request_.quiet) {
-            fmt::print(stderr, "{} pairs{}\n", grouped(summary.pairs), summary.truncated ? ", and there are more" : "");
+            fmt::print(stderr, "{} pairs{}\n", grouped(summary.pairs),
+                       summary.truncated ? " (the limit was reached; more exist)" : "");
         }
     }
 
@@ -187,11 +187,14 @@ int run_result(const JobRequest& request) {
 
 void add_result_options(Command& command, JobRequest& request) {
     command
-        .add_option("--output", request.output,
-                    "where the pairs go, by its ending .npy .csv .jsonl (default: CSV on standard output)")
+        .add_option(
+            "--output", request.output,
+            "file for the pairs; its ending .npy, .csv or .jsonl gives the format (default: CSV on standard output)")
         .type_name("FILE");
-    const Option keep = command.add_flag("--keep", request.keep, "the server keeps job and result (default)");
-    command.add_flag("--release", request.release, "the server forgets job and result when they are written")
+    const Option keep = command.add_flag("--keep", request.keep, "keep the job and its result on the server (default)");
+    command
+        .add_flag("--release", request.release,
+                  "delete the job and its result from the server when the pairs are written")
         .excludes(keep);
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
@@ -199,28 +202,28 @@ void add_result_options(Command& command, JobRequest& request) {
 }  // namespace
 
 void add_status(Command& program, Action& action) {
-    Command command = program.add_subcommand("status", "how jobs of a server stand");
+    Command command = program.add_subcommand("status", "show the state of jobs on a server");
     const auto request = std::make_shared<JobRequest>();
-    const Option id = command.add_option("ID", request->id, "of the job (default: all your jobs)");
+    const Option id = command.add_option("ID", request->id, "id of the job (default: all your jobs)");
     command
         .add_option(
             "--wait", [request](const std::string& text) { request->wait = parse_length("--wait", text); },
-            "wait until the job has ended, for at most so long")
+            "wait until the job has ended, at most this long")
         .type_name("SECONDS")
         .needs(id);
-    command.add_flag("--json", request->json, "as JSON");
+    command.add_flag("--json", request->json, "print JSON");
     add_server_address(command, request->server);
     command.callback([request, id, &action] {
         check_server_named(request->server);
-        if (id.is_given() && request->id.empty()) throw Error(ErrorCode::usage, "ID: an empty one is no job's");
+        if (id.is_given() && request->id.empty()) throw Error(ErrorCode::usage, "ID: must not be empty");
         action = [request] { return request->id.empty() ? run_list(*request) : run_status(*request); };
     });
 }
 
 void add_result(Command& program, Action& action) {
-    Command command = program.add_subcommand("result", "the pairs of a submitted job; waits for them");
+    Command command = program.add_subcommand("result", "write the pairs of a submitted job; wait until they are found");
     const auto request = std::make_shared<JobRequest>();
-    command.add_option("ID", request->id, "of the job").required();
+    command.add_option("ID", request->id, "id of the job").required();
     add_result_options(command, *request);
     add_server_address(command, request->server);
     command.callback([request, &action] {
@@ -231,11 +234,12 @@ void add_result(Command& program, Action& action) {
 }
 
 void add_cancel(Command& program, Action& action) {
-    Command command = program.add_subcommand("cancel", "end a job of a server");
+    Command command = program.add_subcommand("cancel", "cancel a job on a server");
     const auto request = std::make_shared<JobRequest>();
-    command.add_option("ID", request->id, "of the job").required();
-    command.add_flag("--release", request->release, "the server forgets it, however it ended");
-    command.add_flag("--json", request->json, "as JSON");
+    command.add_option("ID", request->id, "id of the job").required();
+    command.add_flag("--release", request->release,
+                     "delete the job and its result from the server when the job has ended");
+    command.add_flag("--json", request->json, "print JSON");
     add_server_address(command, request->server);
     command.callback([request, &action] {
         check_server_named(request->server);

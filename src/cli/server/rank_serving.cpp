@@ -37,12 +37,12 @@ public:
         leading.lost = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
         options_.engine = [this](unsigned) { return std::move(engine_); };
-        // Small jobs are served on threads of this process; so are scenes.
+        // Small jobs and scenes run on threads of this process.
         options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
         options_.engine_widths.instant = options_.engine_widths.small;
     }
 
-    /// Throws Error where there can be no server.
+    /// Runs the server until it stops. Throws: Error if the server cannot start.
     void serve(const std::stop_token& stop) {
         serve_until_end(stop);
         if (lost_) Cluster::abort(exit_status(ErrorCode::engine_failed));
@@ -52,9 +52,9 @@ private:
     void serve_until_end(const std::stop_token& stop) {
         const std::stop_callback asked(stop, [this] { end_.request_stop(); });
         service::Server server(options_, log_);
-        // Which of the processes takes signals, nobody could see.
-        tell_start(*log_, server, options_, {{"ranks", std::uint64_t(ranks_)}, {"pid", std::uint64_t(getpid())}});
-        wait_for(end_.get_token());
+        // The log has the process id, because only this process of all ranks handles signals.
+        log_start(*log_, server, options_, {{"ranks", std::uint64_t(ranks_)}, {"pid", std::uint64_t(getpid())}});
+        wait_for_stop(end_.get_token());
         if (!lost_) drain(*log_, server);
         if (lost_) abandon(server);
     }
@@ -65,11 +65,12 @@ private:
         end_.request_stop();
     }
 
-    /// The client of the job that was under way is told how it ended; those that wait will ask the next server. The engine's
-    /// end would wait for all ranks.
+    /// Ends the program after the loss of a rank. Drains the server first, so that the client of the running job gets the
+    /// error; waiting clients retry with the next server. Aborts, because the destructor of the engine would wait for all
+    /// ranks.
     [[noreturn]] static void abandon(service::Server& server) {
-        constexpr std::chrono::seconds to_tell(2);
-        server.drain(to_tell);
+        constexpr std::chrono::seconds drain_timeout(2);
+        server.drain(drain_timeout);
         Cluster::abort(exit_status(ErrorCode::engine_failed));
     }
 
@@ -78,7 +79,7 @@ private:
     unsigned ranks_;
     std::atomic<bool> lost_ = false;
     std::stop_source end_;
-    std::unique_ptr<Engine> engine_;  // until the server takes it
+    std::unique_ptr<Engine> engine_;  // null after the server took it
 };
 
 }  // namespace

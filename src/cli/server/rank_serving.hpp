@@ -1,11 +1,11 @@
-// `octopair serve --engine mpi`: the first rank answers clients, the others find pairs with it.
+// Runs `octopair serve --engine mpi`: rank 0 answers clients, and all ranks find pairs.
 #pragma once
 
 #include "cli/server/serve_options.hpp"
 
 namespace octopair::cli {
 
-/// On all ranks. Returns the exit status of this one; ends the program where a rank no longer takes part.
+/// Collective. Returns the exit status of this rank. Ends the program if a rank no longer responds.
 int serve_on_ranks(const ServeRequest& request);
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// octopair serve: the server.
+// octopair serve: runs a server that finds pairs for clients.
 #include <malloc.h>
 
 #include <memory>
@@ -16,8 +16,8 @@ namespace octopair::cli {
 
 namespace {
 
-/// What an upload gave back serves the next one: memory that the system takes meanwhile has to be cleared again, which takes as
-/// long as all else that the server does with the bytes.
+/// Makes malloc keep the freed memory of an upload for the next upload. The system would clear memory that it gets back, which
+/// takes as long as all other work of the server on the uploaded bytes.
 void keep_freed_memory() {
     mallopt(M_MMAP_THRESHOLD, 2 << 20);
     mallopt(M_TRIM_THRESHOLD, 64 << 20);
@@ -32,8 +32,8 @@ int run_serve(const ServeRequest& request) {
     const auto log = make_log(request);
     const service::ServerOptions options = server_options_of(request);
     service::Server server(options, log);
-    tell_start(*log, server, options);
-    wait_for(interrupt.token());
+    log_start(*log, server, options);
+    wait_for_stop(interrupt.token());
     drain(*log, server);
     return 0;
 }
@@ -41,7 +41,7 @@ int run_serve(const ServeRequest& request) {
 }  // namespace
 
 void add_serve(Command& program, Action& action) {
-    Command command = program.add_subcommand("serve", "find pairs for others: a server");
+    Command command = program.add_subcommand("serve", "run a server that finds pairs for clients");
     const auto request = std::make_shared<ServeRequest>();
     add_serve_options(command, *request);
     command.callback([command, request, &action] {

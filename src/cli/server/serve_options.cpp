@@ -35,7 +35,7 @@ void add_bytes(Command& command, const Described& option, std::uint64_t& value) 
         .type_name(option.type);
 }
 
-/// Whole, at least `least`. `Seconds`: some, or perhaps some.
+/// Adds an option for a whole number of seconds, at least `least`. `Seconds` is a duration, or an optional duration.
 template <typename Seconds>
 void add_seconds(Command& command, const Described& option, Seconds& value, unsigned least) {
     constexpr std::uint64_t most = 1'000'000'000;
@@ -52,50 +52,59 @@ void add_seconds(Command& command, const Described& option, Seconds& value, unsi
 }
 
 void add_limits(Command& command, service::ServerLimits& limits) {
-    add_number(command, {"--max-objects", "N", "objects of a job or a scene (default 50000000; 0: no limit, as below)"},
+    add_number(command,
+               {"--max-objects", "N",
+                "maximum objects of a job or scene (default 50000000); 0 means no limit for all --max options"},
                limits.objects);
-    add_bytes(command, {"--max-input", "BYTES", "bytes of a job's input; K, M, G, T count by 1024 (default 4G)"},
+    add_bytes(command,
+              {"--max-input", "BYTES", "maximum size of a job's input (default 4G); K, M, G, T are powers of 1024"},
               limits.input_bytes);
-    add_number(command, {"--max-pairs", "N", "pairs kept of a job's result (default 500000000)"}, limits.pairs);
-    add_number(command, {"--max-jobs", "N", "jobs and scenes at a time (default 1000)"}, limits.jobs);
-    add_number(command, {"--max-jobs-per-client", "N", "of these, of one client (default 200)"},
+    add_number(command, {"--max-pairs", "N", "maximum stored pairs of a job (default 500000000)"}, limits.pairs);
+    add_number(command, {"--max-jobs", "N", "maximum jobs and scenes at a time (default 1000)"}, limits.jobs);
+    add_number(command, {"--max-jobs-per-client", "N", "maximum jobs and scenes of one client at a time (default 200)"},
                limits.jobs_per_client);
-    add_number(command, {"--max-connections", "N", "connections at a time (default 1000)"}, limits.connections);
+    add_number(command, {"--max-connections", "N", "maximum connections at a time (default 1000)"}, limits.connections);
     command
         .add_option(
             "--max-seconds",
             [&limits](const std::string& text) { limits.job_seconds = parse_length("--max-seconds", text); },
-            "that a job may run (default 600)")
+            "maximum run time of a job (default 600)")
         .type_name("SECONDS");
-    add_bytes(command, {"--max-memory", "BYTES", "memory of all jobs together (default 8G)"}, limits.memory_bytes);
-    add_bytes(command, {"--max-state", "BYTES", "disk of all detached jobs together (default 16G)"},
+    add_bytes(command, {"--max-memory", "BYTES", "maximum memory of all jobs together (default 8G)"},
+              limits.memory_bytes);
+    add_bytes(command, {"--max-state", "BYTES", "maximum disk space of all detached jobs together (default 16G)"},
               limits.state_bytes);
 }
 
 void add_state(Command& command, service::ServerOptions& options) {
     command
         .add_option("--state", options.state_folder,
-                    "a folder for detached jobs, which outlive the server (default: there are none)")
+                    "folder for detached jobs, which survive the end of the server (default: no detached jobs)")
         .type_name("DIR")
-        .check([](const std::string& folder) { return folder.empty() ? "a folder is wanted" : ""; });
-    add_seconds(command, {"--keep", "SECONDS", "that results of detached jobs wait to be released (default 86400)"},
-                options.keep, 1);
+        .check([](const std::string& folder) { return folder.empty() ? "must name a folder" : ""; });
+    add_seconds(
+        command,
+        {"--keep", "SECONDS", "how long results of detached jobs are kept if they are not released (default 86400)"},
+        options.keep, 1);
 }
 
 void add_access(Command& command, service::ServerOptions& options) {
-    command.add_option("--tls-certificate", options.tls.certificate, "encrypt, with this certificate")
+    command.add_option("--tls-certificate", options.tls.certificate, "encrypt connections with this certificate")
         .type_name("FILE.pem");
-    command.add_option("--tls-key", options.tls.key, "the key of the certificate").type_name("FILE.pem");
+    command.add_option("--tls-key", options.tls.key, "private key of the certificate").type_name("FILE.pem");
     command
         .add_option("--tls-client-authority", options.tls.client_authority,
-                    "clients must have a certificate of this authority")
+                    "accept only clients with a certificate of this authority")
         .type_name("FILE.pem");
-    command.add_option("--tokens", options.token_file, "clients must have one of these tokens: lines NAME TOKEN")
+    command
+        .add_option("--tokens", options.token_file,
+                    "accept only clients with a token of this file; each line is NAME TOKEN")
         .type_name("FILE");
 }
 
 void add_watching(Command& command, ServeRequest& request) {
-    command.add_option("--metrics", request.metrics, "show metrics for Prometheus there, on this machine alone")
+    command
+        .add_option("--metrics", request.metrics, "serve metrics for Prometheus at this address, for this machine only")
         .type_name("HOST:PORT");
     command
         .add_option(
@@ -104,7 +113,7 @@ void add_watching(Command& command, ServeRequest& request) {
                 check_word({"--log", {"text", "json"}, {}}, word);
                 request.log_form = word == "json" ? service::LogForm::json : service::LogForm::text;
             },
-            "form of the log's lines on standard error: text (default) or json")
+            "format of log lines on standard error: text (default) or json")
         .type_name("FORM");
     command
         .add_option(
@@ -113,26 +122,28 @@ void add_watching(Command& command, ServeRequest& request) {
                 check_word({"--log-level", {"debug", "info", "warn", "error"}, {}}, word);
                 request.log_level = word;
             },
-            "what is logged: debug, info (default), warn or error")
+            "lowest level to log: debug, info (default), warn or error")
         .type_name("LEVEL");
-    command.add_flag("--quiet", request.quiet, "log errors alone");
+    command.add_flag("--quiet", request.quiet, "log only errors");
 }
 
 }  // namespace
 
 void add_serve_options(Command& command, ServeRequest& request) {
-    command.add_option("--config", request.config, "options from a file, as lines NAME = VALUE (TOML)")
+    command.add_option("--config", request.config, "read options from a file with lines NAME = VALUE (TOML)")
         .type_name("FILE");
-    command.add_option("--listen", request.listen, "unix:PATH or HOST:PORT").type_name("ADDRESS");
+    command.add_option("--listen", request.listen, "address to listen on: unix:PATH or HOST:PORT").type_name("ADDRESS");
     add_engine_options(command, request.engine);
-    command.find_option("--engine")->description("where the server looks for pairs: as in `octopair info`, itself");
-    add_seconds(command,
-                {"--rank-timeout", "SECONDS", "that a rank may be silent while a job is under way (default 60)"},
-                request.rank_silence, 1);
+    command.find_option("--engine")->description("engine of the server: one of those that `octopair info` lists");
+    add_seconds(
+        command,
+        {"--rank-timeout", "SECONDS", "maximum time without a sign of life from a rank while a job runs (default 60)"},
+        request.rank_silence, 1);
     add_limits(command, request.options.limits);
-    add_seconds(command, {"--grace", "SECONDS", "for the jobs that run, when the server ends (default 30)"},
+    add_seconds(command, {"--grace", "SECONDS", "time that running jobs get when the server stops (default 30)"},
                 request.options.grace, 0);
-    add_seconds(command, {"--stall", "SECONDS", "that a client may take for its next message (default 60)"},
+    add_seconds(command,
+                {"--stall", "SECONDS", "maximum time that a client may take for its next message (default 60)"},
                 request.options.stall, 1);
     add_state(command, request.options);
     add_access(command, request.options);
@@ -146,7 +157,7 @@ void complete_serve_request(const Command& command, ServeRequest& request) {
     if (!request.metrics.empty()) request.options.metrics = service::parse_address(request.metrics);
     check_engine_choice(request.engine);
     if (request.engine.is_server()) {
-        throw Error(ErrorCode::usage, "--engine: a server looks for pairs itself; it does not ask another one");
+        throw Error(ErrorCode::usage, "--engine: the engine of a server cannot be another server");
     }
     if (request.rank_silence && !request.engine.has_ranks()) {
         throw Error(ErrorCode::usage, "--rank-timeout: only --engine mpi has ranks");

@@ -1,4 +1,4 @@
-// The options of `octopair serve`, on the command line and in a file.
+// Options of `octopair serve`, from the command line and from a configuration file.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,10 @@
 namespace octopair::cli {
 
 struct ServeRequest {
-    std::string config;  ///< a file, or empty
+    std::string config;  ///< path of a configuration file, or empty
     std::string listen, metrics;
     EngineChoice engine;
-    std::optional<std::chrono::seconds> rank_silence;  ///< as asked for
+    std::optional<std::chrono::seconds> rank_silence;  ///< value of --rank-timeout, if given
     service::ServerOptions options;
     service::LogForm log_form = service::LogForm::text;
     std::string log_level = "info";
@@ -24,7 +24,9 @@ struct ServeRequest {
 
 void add_serve_options(Command& command, ServeRequest& request);
 
-/// After parsing: takes the file in, and checks what belongs together. Throws Error{usage}.
+/// Adds the options of the configuration file, and checks that the options fit together.
+/// Requires: the command line was parsed.
+/// Throws: Error{usage}; Error{io_failed} if the configuration file cannot be read.
 void complete_serve_request(const Command& command, ServeRequest& request);
 
 }  // namespace octopair::cli

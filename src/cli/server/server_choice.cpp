@@ -13,24 +13,29 @@ namespace octopair::cli {
 void add_server_options(Command& command, ServerChoice& choice) {
     command
         .add_option("--token-file", choice.token_file,
-                    "of a server: holds the token that it wants (default: $OCTOPAIR_TOKEN)")
+                    "with a server: file with the token (default: the token in $OCTOPAIR_TOKEN)")
         .type_name("FILE");
-    command.add_flag("--tls", choice.options.tls, "of a server: encrypt, and trust the system's authorities");
-    command.add_option("--tls-authority", choice.options.authority, "of a server: encrypt, and trust this authority")
+    command.add_flag("--tls", choice.options.tls,
+                     "with a server: encrypt, and trust the system's certificate authorities");
+    command
+        .add_option("--tls-authority", choice.options.authority,
+                    "with a server: encrypt, and trust this certificate authority")
         .type_name("FILE.pem");
-    command.add_option("--tls-certificate", choice.options.certificate, "of a server: our own certificate")
+    command.add_option("--tls-certificate", choice.options.certificate, "with a server: certificate of this client")
         .type_name("FILE.pem");
-    command.add_option("--tls-key", choice.options.key, "of a server: the key of our certificate")
+    command.add_option("--tls-key", choice.options.key, "with a server: private key of the client's certificate")
         .type_name("FILE.pem");
     command
         .add_option(
             "--patience", [&choice](const std::string& text) { choice.patience = parse_length("--patience", text); },
-            "of a server that was there: how long it may be away (default 30)")
+            "with a server: how long it may be unreachable after its first answer (default 30)")
         .type_name("SECONDS");
 }
 
 void add_server_address(Command& command, ServerChoice& choice) {
-    command.add_option("--server", choice.address, "the server: unix:PATH or HOST:PORT (default: $OCTOPAIR_SERVER)")
+    command
+        .add_option("--server", choice.address,
+                    "address of the server: unix:PATH or HOST:PORT (default: $OCTOPAIR_SERVER)")
         .environment("OCTOPAIR_SERVER")
         .type_name("ADDRESS");
     add_server_options(command, choice);
@@ -38,7 +43,7 @@ void add_server_address(Command& command, ServerChoice& choice) {
 
 void check_server_named(const ServerChoice& choice) {
     if (choice.address.empty()) {
-        throw Error(ErrorCode::usage, "no server was named; give --server ADDRESS, or set OCTOPAIR_SERVER");
+        throw Error(ErrorCode::usage, "no server is given; use --server ADDRESS, or set OCTOPAIR_SERVER");
     }
 }
 
@@ -52,12 +57,12 @@ void check_server_choice(const ServerChoice& choice) {
     if (!options.certificate.empty()) given = "--tls-certificate";
     if (!options.key.empty()) given = "--tls-key";
     if (choice.patience) given = "--patience";
-    if (given != nullptr) throw Error(ErrorCode::usage, std::string(given) + ": no server is asked (--engine ADDRESS)");
+    if (given != nullptr) throw Error(ErrorCode::usage, std::string(given) + ": only with a server (--engine ADDRESS)");
 }
 
 ClientOptions client_options(const ServerChoice& choice) {
-    constexpr double longest = 1e9;  // what a clock can add
-    // What gRPC would write to standard error, our errors say.
+    constexpr double longest = 1e9;  // seconds; far from overflow in clock arithmetic
+    // Errors of this program have the messages that gRPC would write to standard error.
     ::setenv("GRPC_VERBOSITY", "NONE", 0);
     ClientOptions options = choice.options;
     if (choice.patience)

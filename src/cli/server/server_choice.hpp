@@ -1,4 +1,4 @@
-// Which server is asked, and with what: the options that all subcommands share which call one.
+// Options that select a server and the credentials for it. All subcommands that call a server share them.
 #pragma once
 
 #include <optional>
@@ -11,26 +11,27 @@ namespace octopair::cli {
 class Command;
 
 struct ServerChoice {
-    std::string address;  ///< unix:PATH or HOST:PORT; empty: none
+    std::string address;  ///< unix:PATH or HOST:PORT; empty if no server is selected
     ClientOptions options;
     std::string token_file;
-    std::optional<double> patience;  ///< in seconds
+    std::optional<double> patience;  ///< value of --patience in seconds, if given
 };
 
-/// --token-file, --tls, --tls-authority, --tls-certificate, --tls-key, --patience. No token itself: others see the command
-/// line.
+/// Adds --token-file, --tls, --tls-authority, --tls-certificate, --tls-key and --patience.
+/// There is no option for the token itself, because other users can see the command line.
 void add_server_options(Command& command, ServerChoice& choice);
 
-/// --server, which the environment may give (OCTOPAIR_SERVER), and those.
+/// Adds --server (default: the environment variable OCTOPAIR_SERVER) and the options of add_server_options().
 void add_server_address(Command& command, ServerChoice& choice);
 
-/// Throws Error{usage} if no server was named.
+/// Throws: Error{usage} if no server is selected.
 void check_server_named(const ServerChoice& choice);
 
-/// Throws Error{usage} for such options where no server is asked.
+/// Throws: Error{usage} if an option of add_server_options() is given but no server is selected.
 void check_server_choice(const ServerChoice& choice);
 
-/// With the token of the file, or of the environment's OCTOPAIR_TOKEN. Throws Error if the file is not a token's.
+/// Returns the options of `choice` with the token. The token comes from --token-file, else from OCTOPAIR_TOKEN.
+/// Throws: Error if the file does not hold a token.
 ClientOptions client_options(const ServerChoice& choice);
 
 }  // namespace octopair::cli

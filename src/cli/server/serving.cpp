@@ -20,7 +20,7 @@ service::ServerOptions server_options_of(const ServeRequest& request) {
     const EngineDescription described = describe_engine(request.engine);
     options.engine_name = described.engine;
     const unsigned width = described.threads + described.workers;
-    // A worker process is woken for every job anyway.
+    // With worker processes no job is instant, because every job wakes another process.
     options.engine_widths = {width, width, request.engine.runs_in_caller() ? width : 0};
     options.engine = [choice = request.engine](unsigned one_width) {
         return make_engine(choice.with_width(one_width));
@@ -43,8 +43,8 @@ std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request) {
     return log;
 }
 
-void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
-                const std::vector<service::Field>& more) {
+void log_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
+               const std::vector<service::Field>& more) {
     std::vector<service::Field> fields = {{"address", server.address().text()},
                                           {"version", OCTOPAIR_VERSION},
                                           {"engine", options.engine_name},
@@ -53,7 +53,7 @@ void tell_start(spdlog::logger& log, const service::Server& server, const servic
     service::log_event(log, service::LogLevel::info, "started", fields);
 }
 
-void wait_for(const std::stop_token& stop) {
+void wait_for_stop(const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any changed;
     std::unique_lock lock(mutex);

@@ -1,4 +1,4 @@
-// What servers of this program have in common, whatever they look for pairs with: options, log, beginning and end.
+// Steps of `octopair serve` that are the same for all engines: options, log, start and stop.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -13,17 +13,17 @@
 
 namespace octopair::cli {
 
-/// With the engine that was asked for, unless that is of ranks.
+/// Returns the options of the server, with the engine of the request. With --engine mpi, the caller must replace the engine.
 service::ServerOptions server_options_of(const ServeRequest& request);
 
 std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request);
 
-/// `more`: what only some engines have to tell.
-void tell_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
-                const std::vector<service::Field>& more = {});
-/// Until there is a stop.
-void wait_for(const std::stop_token& stop);
-/// Tells that, too.
+/// Logs that the server has started. `more` has additional fields for some engines.
+void log_start(spdlog::logger& log, const service::Server& server, const service::ServerOptions& options,
+               const std::vector<service::Field>& more = {});
+/// Waits for a stop request.
+void wait_for_stop(const std::stop_token& stop);
+/// Drains the server (Server::drain), and logs the beginning and the end.
 void drain(spdlog::logger& log, service::Server& server);
 
 }  // namespace octopair::cli

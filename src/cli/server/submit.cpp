@@ -1,4 +1,4 @@
-// octopair submit: a scene's pairs as a detached job of a server's.
+// octopair submit: sends a scene to a server as a detached job.
 #include <memory>
 #include <optional>
 
@@ -28,7 +28,8 @@ struct SubmitRequest {
 
 InputSet read_still_set(const std::vector<std::string>& paths, const DetectRequest& what, const std::stop_token& stop) {
     InputSet set = read_input_set(paths, {what.mesh_objects}, stop);
-    if (set.scene.moving) throw Error(ErrorCode::usage, paths.front() + ": a job is of one frame; this scene moves");
+    if (set.scene.moving)
+        throw Error(ErrorCode::usage, paths.front() + ": the scene moves; a job can have only one frame");
     return set;
 }
 
@@ -71,12 +72,13 @@ int run_submit(const SubmitRequest& request) {
 }  // namespace
 
 void add_submit(Command& program, Action& action) {
-    Command command = program.add_subcommand("submit", "have a server find pairs, and collect them later");
+    Command command = program.add_subcommand("submit", "send a scene to a server, and collect its pairs later");
     const auto request = std::make_shared<SubmitRequest>();
     add_scene_options(command, request->what);
-    add_order_options(command, request->what, "the first N pairs");
-    command.add_flag("--count-only", request->what.count_only, "the number of pairs alone");
-    command.add_option("--id", request->id, "the job's name; again: the same job (default: a random one)")
+    add_order_options(command, request->what, "find only the first N pairs");
+    command.add_flag("--count-only", request->what.count_only, "find only the number of pairs");
+    command
+        .add_option("--id", request->id, "id of the job; the same id again means the same job (default: a random id)")
         .type_name("UUID");
     add_server_address(command, request->server);
     command.add_flag("--quiet", request->what.quiet, "no progress on standard error");

@@ -1,4 +1,4 @@
-// How a rank refuses an object of which the others must know.
+// Refusal of an invalid object, so that all ranks report the same object.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,9 @@
 
 namespace octopair {
 
-/// The first object of a rank's source, from this one on, that is not a box. position(number) is where an object of the
-/// source stands among those of all ranks, named_from(number) what its name there adds to its number in its set.
+/// Refuses the first object of a rank's source, from `number` on, that is not a valid box. position(number) returns the
+/// position of an object among the objects of all ranks. named_from(number) returns the offsets, one for each set, that turn
+/// an object's number in the source into its name. Throws: BadObject.
 template <typename Position, typename NamedFrom>
 [[noreturn]] void refuse_object(const BoxSource& source, std::size_t number, const Position& position,
                                 const NamedFrom& named_from) {

@@ -11,28 +11,28 @@ namespace octopair {
 
 namespace {
 
-/// What a rank says of its slice of a set.
-struct ToldSlice {
+/// Parameters of a rank's slice of a set. Sent to all ranks.
+struct SliceParameters {
     std::uint64_t size;
     bool wide, padded;
 };
 
-/// What a rank says of its call.
-struct ToldCall {
+/// Parameters of a rank's call. Sent to all ranks.
+struct CallParameters {
     OutputKind output_kind;
     Order order;
     bool join, limited, verify;
     double margin;
     std::uint64_t limit, buffer_bytes;
-    std::array<ToldSlice, 2> slices;
+    std::array<SliceParameters, 2> slices;
 };
 
-ToldSlice told_of(const Objects* set) {
+SliceParameters parameters_of(const Objects* set) {
     if (set == nullptr) return {};
     return {set->size(), std::holds_alternative<std::span<const Box3d>>(set->boxes), !set->padding.empty()};
 }
 
-ToldCall told_of(const detail::Request& request, OutputKind output_kind) {
+CallParameters parameters_of(const detail::Request& request, OutputKind output_kind) {
     const Options& options = request.options;
     return {.output_kind = output_kind,
             .order = options.order,
@@ -42,13 +42,13 @@ ToldCall told_of(const detail::Request& request, OutputKind output_kind) {
             .margin = options.margin,
             .limit = options.limit.value_or(0),
             .buffer_bytes = options.buffer_bytes,
-            .slices = {told_of(&request.first), told_of(request.second)}};
+            .slices = {parameters_of(&request.first), parameters_of(request.second)}};
 }
 
-/// What two ranks' calls do not have in common, or nothing.
-std::string_view difference(const ToldCall& a, const ToldCall& b) {
-    if (a.output_kind != b.output_kind) return "whether pairs are counted, listed or streamed";
-    if (a.join != b.join) return "whether there is a second set";
+/// Returns the first parameter in which two calls differ, for messages; empty if they agree.
+std::string_view difference(const CallParameters& a, const CallParameters& b) {
+    if (a.output_kind != b.output_kind) return "the output (count, list or stream)";
+    if (a.join != b.join) return "the number of sets";
     if (a.order != b.order) return "the order";
     if (a.margin != b.margin) return "the margin";
     if (a.buffer_bytes != b.buffer_bytes) return "the size of the buffer";
@@ -56,38 +56,41 @@ std::string_view difference(const ToldCall& a, const ToldCall& b) {
     return {};
 }
 
-/// The first rank with an object in a set, which says for all how the set is held.
-std::size_t spokesman(const std::vector<ToldCall>& all, unsigned set) {
+/// Returns the first rank with objects of a set, or the last rank if there is none. Other ranks must have its precision and
+/// padding.
+std::size_t first_rank_with_objects(const std::vector<CallParameters>& all, unsigned set) {
     std::size_t rank = 0;
     while (rank + 1 < all.size() && all[rank].slices[set].size == 0) ++rank;
     return rank;
 }
 
 [[noreturn]] void refuse(std::size_t rank, std::size_t other, std::string_view what) {
-    throw Error(ErrorCode::usage, "the ranks' calls differ: " + std::string(what) + ", on rank " +
-                                      std::to_string(rank) + " and on rank " + std::to_string(other));
+    throw Error(ErrorCode::usage, "the calls of rank " + std::to_string(rank) + " and rank " + std::to_string(other) +
+                                      " differ in " + std::string(what));
 }
 
-void check_likeness(const std::vector<ToldCall>& all) {
-    for (const ToldCall& told : all) {
-        if (told.verify) throw Error(ErrorCode::usage, "verify: not on ranks, none of which has all objects");
+void check_parameters_agree(const std::vector<CallParameters>& all) {
+    for (const CallParameters& parameters : all) {
+        if (parameters.verify)
+            throw Error(ErrorCode::usage,
+                        "verify: the MPI engine cannot check results, because no rank has all objects");
     }
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
         if (const auto what = difference(all[0], all[rank]); !what.empty()) refuse(0, rank, what);
     }
     for (unsigned set = 0; set < 2; ++set) {
-        const std::size_t first = spokesman(all, set);
-        const ToldSlice& like = all[first].slices[set];
+        const std::size_t first = first_rank_with_objects(all, set);
+        const SliceParameters& like = all[first].slices[set];
         for (std::size_t rank = 0; rank < all.size(); ++rank) {
-            const ToldSlice& slice = all[rank].slices[set];
+            const SliceParameters& slice = all[rank].slices[set];
             if (slice.size == 0) continue;
             if (slice.wide != like.wide) refuse(first, rank, "the precision of the boxes");
-            if (slice.padded != like.padded) refuse(first, rank, "whether objects have a padding");
+            if (slice.padded != like.padded) refuse(first, rank, "the use of padding");
         }
     }
 }
 
-/// The median of the same corners that the local engine would take.
+/// Sets the origin of rounding to the median of a sample of corners, the same sample that the local engine takes.
 void choose_origin(Communicator& comm, const detail::Request& request, JointCall& call) {
     const BoxSource own(request.first, request.second, call.form);
     const OriginSample sample{std::size_t(call.objects())};
@@ -107,16 +110,17 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
         [&](std::size_t number) { return named_from(number); });
 }
 
-JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind, std::uint64_t most_objects) {
+JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
+                    std::uint64_t most_objects) {
     Agreement(comm).together([&] { detail::check_request(request); });
-    const std::vector<ToldCall> all = comm.all_gather(told_of(request, output_kind));
-    check_likeness(all);
+    const std::vector<CallParameters> all = comm.all_gather(parameters_of(request, output_kind));
+    check_parameters_agree(all);
     JointCall call;
     call.join = request.second != nullptr;
     call.form = {request.options.margin == 0, {.origin = {}, .margin = request.options.margin}};
     for (unsigned set = 0; set < 2; ++set) {
         call.sizes[set] = all[comm.rank()].slices[set].size;
-        const ToldSlice& like = all[spokesman(all, set)].slices[set];
+        const SliceParameters& like = all[first_rank_with_objects(all, set)].slices[set];
         call.wide[set] = like.size > 0 && like.wide;
         call.padded[set] = like.size > 0 && like.padded;
         call.form.exact &= !call.wide[set] && !call.padded[set];

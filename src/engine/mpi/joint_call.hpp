@@ -1,8 +1,7 @@
-// JointCall: what a call is to all ranks: how many objects there are, which of them this rank brought, how boxes become
-// entries.
+// JointCall: parameters of a call that all ranks agree on: sizes of the sets, slice of this rank, rounding of boxes.
 //
-// Each rank brings a slice of each set; a set is its slices in the order of the ranks. An object's position is its number in
-// its set, that of an object of the second set counted on from the first.
+// Invariants 1. A set is the concatenation of the slices of all ranks, in rank order.
+//            2. The position of an object is its number in its set. Positions of the second set follow those of the first.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace octopair {
 
-/// What becomes of the pairs; the same on all ranks.
+/// How a call returns its pairs. The same on all ranks.
 enum class OutputKind : std::uint8_t { count, list, sink };
 
 inline OutputKind output_kind_of(const detail::Output& output) {
@@ -26,32 +25,32 @@ inline OutputKind output_kind_of(const detail::Output& output) {
 
 struct JointCall {
     bool join = false;
-    std::array<std::uint64_t, 2> totals = {0, 0};  ///< objects of each set
-    std::array<std::uint64_t, 2> begins = {0, 0};  ///< where this rank's begin in it,
-    std::array<std::uint64_t, 2> sizes = {0, 0};   ///< and how many it brought
-    std::array<bool, 2> wide = {}, padded = {};    ///< whether boxes are float64, objects have paddings
+    std::array<std::uint64_t, 2> totals = {0, 0};  ///< number of objects of each set, on all ranks
+    std::array<std::uint64_t, 2> begins = {0, 0};  ///< begin of this rank's slice in each set
+    std::array<std::uint64_t, 2> sizes = {0, 0};   ///< number of objects of this rank's slice of each set
+    std::array<bool, 2> wide = {}, padded = {};    ///< `wide`: boxes are float64; `padded`: objects have paddings
     EntryForm form;
-    /// Of this rank's objects, where they have indices of their own, of 64 bits; borrowed.
+    /// 64-bit indices of this rank's objects, by set; empty unless `indexed`. Borrowed.
     std::array<std::span<const std::uint64_t>, 2> indices = {};
     bool indexed = false;
 
-    /// A set of this rank's as it is held on all: of none, the caller may have said another precision.
+    /// Returns this rank's slice of a set. An empty slice gets the precision that the other ranks use.
     Objects slice(unsigned set, const Objects& given) const {
         if (given.size() > 0) return given;
         return wide[set] ? Objects{std::span<const Box3d>(), {}} : Objects{std::span<const Box3f>(), {}};
     }
     std::uint64_t objects() const { return totals[0] + totals[1]; }
-    /// Above every `b` of a pair.
+    /// Exclusive upper bound of every `b`.
     std::uint64_t columns() const { return totals[join ? 1 : 0]; }
-    /// Of an object of this rank's source.
+    /// Returns the position of object `own` of this rank's source.
     std::uint64_t position(std::uint64_t own) const {
         return own < sizes[0] ? begins[0] + own : totals[0] + begins[1] + (own - sizes[0]);
     }
-    /// Throws BadObject for the first object of this rank's source, from this one on, that is not a box.
+    /// Throws: BadObject for the first object of this rank's source, from `own` on, that is not a valid box.
     [[noreturn]] void refuse(const BoxSource& source, std::size_t own) const;
 
 private:
-    /// What to add to its number in this rank's slice for what it is called.
+    /// Returns the offset, for the set of object `own`, that turns a number in this rank's slice into the object's name.
     SetBegins named_from(std::uint64_t own) const {
         if (!indexed) return {begins[0], begins[1]};
         if (own < sizes[0]) return {indices[0][std::size_t(own)] - own, 0};
@@ -60,12 +59,13 @@ private:
     }
 };
 
-/// Collective. Throws Error, on all ranks the same: what is wrong with any rank's options and sizes, and where ranks do not
-/// ask for the same. `most_objects`: on all ranks.
-JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind, std::uint64_t most_objects);
+/// Collective. Combines the calls of all ranks into one. `most_objects`: maximum number of objects of all ranks together.
+/// Throws: the same Error on all ranks if the options or sizes of a rank are invalid, or if the ranks' calls differ.
+JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
+                    std::uint64_t most_objects);
 
-/// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank. A sample
-/// has a size and rising elements.
+/// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank.
+/// Requires: `sample` has size() and ascending elements.
 template <typename Sampled, typename Visit>
 void for_each_own(const JointCall& call, const Sampled& sample, const Visit& visit) {
     for (unsigned set = 0; set < 2; ++set) {

@@ -1,4 +1,4 @@
-// The MPI engine: the steps of the algorithm on ranks that each have a part of the objects.
+// The MPI engine: runs the steps of the algorithm on ranks that each have a part of the objects.
 
 #include <memory>
 #include <mutex>
@@ -17,18 +17,20 @@ namespace octopair {
 
 namespace {
 
-/// What would be another search on another rank must be the same. Collective.
-const MpiOptions& alike(Communicator& comm, const MpiOptions& options) {
-    struct Told {
+/// Collective. Checks that all ranks have the same arrangement and machine size. Returns `options`. Throws: Error{usage}.
+const MpiOptions& check_arrangements_agree(Communicator& comm, const MpiOptions& options) {
+    struct Settings {
         Arrangement arrangement;
         unsigned ranks_per_machine;
     };
     const bool paper = options.arrangement == Arrangement::paper;
-    const std::vector<Told> all = comm.all_gather(Told{options.arrangement, paper ? options.ranks_per_machine : 1});
-    for (const Told& told : all) {
-        if (told.ranks_per_machine == 0) throw Error(ErrorCode::usage, "machines of no ranks");
-        if (told.arrangement != all[0].arrangement || told.ranks_per_machine != all[0].ranks_per_machine) {
-            throw Error(ErrorCode::usage, "the arrangements of the ranks' engines differ");
+    const std::vector<Settings> all =
+        comm.all_gather(Settings{options.arrangement, paper ? options.ranks_per_machine : 1});
+    for (const Settings& settings : all) {
+        if (settings.ranks_per_machine == 0)
+            throw Error(ErrorCode::usage, "ranks_per_machine is 0; it must be at least 1");
+        if (settings.arrangement != all[0].arrangement || settings.ranks_per_machine != all[0].ranks_per_machine) {
+            throw Error(ErrorCode::usage, "the ranks' engines differ in arrangement or ranks_per_machine");
         }
     }
     return options;
@@ -36,7 +38,8 @@ const MpiOptions& alike(Communicator& comm, const MpiOptions& options) {
 
 class MpiEngine final : public Engine {
 public:
-    MpiEngine(MPI_Comm comm, const MpiOptions& options) : comm_(comm), search_(comm_, alike(comm_, options)) {}
+    MpiEngine(MPI_Comm comm, const MpiOptions& options)
+        : comm_(comm), search_(comm_, check_arrangements_agree(comm_, options)) {}
 
     void gather(PairList& pairs) {
         jobs_.wait_for_all();
@@ -46,7 +49,7 @@ public:
         pairs = std::move(all);
     }
 
-    // NOLINTNEXTLINE(readability-function-size): what, where to, until when.
+    // NOLINTNEXTLINE(readability-function-size): objects, output, control.
     Summary find(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
@@ -57,13 +60,13 @@ public:
     void use(MessageTape* tape) { comm_.set_tape(tape); }
 
 private:
-    /// Jobs that were submitted before come first, on all ranks.
+    /// Runs the call after all jobs that were submitted earlier, on all ranks.
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         return search_.run(request, output, control);
     }
-    /// All ranks must hear of it: run() does that.
+    /// Does nothing: run() checks the request, so that all ranks throw the same Error.
     void check(const detail::Request&) const override {}
     detail::JobQueue& jobs() override {
         if (!comm_.any_thread()) {
@@ -75,7 +78,7 @@ private:
     Communicator comm_;
     RankSearch search_;
     std::mutex calls_;
-    detail::JobQueue jobs_{*this, [this] { search_.skip(); }};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this, [this] { search_.skip(); }};  // last member, so that it is destroyed first
 };
 
 }  // namespace
@@ -87,21 +90,21 @@ std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options
 namespace {
 
 template <typename AnyEngine>
-AnyEngine& as_ranks(AnyEngine* ranks) {
-    if (ranks == nullptr) throw Error(ErrorCode::usage, "not an MPI engine");
+AnyEngine& as_mpi_engine(AnyEngine* ranks) {
+    if (ranks == nullptr) throw Error(ErrorCode::usage, "the engine was not made by make_mpi_engine");
     return *ranks;
 }
 
 }  // namespace
 
-void gather_pairs(Engine& engine, PairList& pairs) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).gather(pairs); }
+void gather_pairs(Engine& engine, PairList& pairs) { as_mpi_engine(dynamic_cast<MpiEngine*>(&engine)).gather(pairs); }
 
 namespace {
 
-/// With no half-filled list after a failure, and running out of memory an Error like any other.
+/// Runs an indexed call. Leaves `indexed.pairs` empty after a failure. Throws: also Error{resource_limit} if memory runs out.
 Summary find_indexed(Engine& engine, const detail::Request& request, const IndexedCall& indexed, std::stop_token stop) {
     const FloatingPointScope scope;
-    MpiEngine& ranks = as_ranks(dynamic_cast<MpiEngine*>(&engine));
+    MpiEngine& ranks = as_mpi_engine(dynamic_cast<MpiEngine*>(&engine));
     indexed.pairs.clear();
     try {
         return ranks.find(request, indexed, {std::move(stop), request.options.progress});
@@ -116,7 +119,7 @@ Summary find_indexed(Engine& engine, const detail::Request& request, const Index
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): as Engine::find_pairs, on an engine.
+// NOLINTNEXTLINE(readability-function-size): an engine, and the parameters of Engine::find_pairs.
 Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair64>& pairs, const Options& options,
                      std::stop_token stop) {
     const Objects* const second = input.second ? &input.second->objects : nullptr;
@@ -125,8 +128,8 @@ Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair
                         std::move(stop));
 }
 
-void use_tape(Engine& engine, MessageTape* tape) { as_ranks(dynamic_cast<MpiEngine*>(&engine)).use(tape); }
+void use_tape(Engine& engine, MessageTape* tape) { as_mpi_engine(dynamic_cast<MpiEngine*>(&engine)).use(tape); }
 
-RankCosts last_costs(const Engine& engine) { return as_ranks(dynamic_cast<const MpiEngine*>(&engine)).costs(); }
+RankCosts last_costs(const Engine& engine) { return as_mpi_engine(dynamic_cast<const MpiEngine*>(&engine)).costs(); }
 
 }  // namespace octopair

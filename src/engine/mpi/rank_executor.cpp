@@ -5,18 +5,18 @@
 
 namespace octopair {
 
-/// On the way to another writer. A share may write for minutes: it looks out as well.
+/// Renumbers and filters pairs, and passes them to another writer. Polls for stop requests, as a share may write for minutes.
 class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
     bool counting() const override { return writer_.counting(); }
     void write_count(std::uint64_t pairs) override {
-        look_out();
+        poll_stops();
         writer_.write_count(pairs);
     }
     void write(std::span<const Pair> pairs) override {
-        look_out();
+        poll_stops();
         if (executor_.numbers_.a.empty() && executor_.wanted_.marks.empty()) return writer_.write(pairs);
         std::array<Pair, 1024> numbered;
         while (!pairs.empty()) {
@@ -37,7 +37,7 @@ private:
         }
         for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = {numbers.a[pairs[i].a], numbers.b[pairs[i].b]};
     }
-    /// Returns how many are left, at the front.
+    /// Moves the wanted pairs to the front, in order. Returns their number.
     std::size_t drop_unwanted(std::span<Pair> pairs) const {
         const WantedRows& wanted = executor_.wanted_;
         if (wanted.marks.empty()) return pairs.size();
@@ -48,8 +48,8 @@ private:
         }
         return left;
     }
-    void look_out() {
-        if (++writes_ % 64 == 0) executor_.look_out();
+    void poll_stops() {
+        if (++writes_ % 64 == 0) executor_.poll_stops();
     }
 
     ShareWriter& writer_;
@@ -57,21 +57,21 @@ private:
     unsigned writes_ = 0;
 };
 
-/// MPI may have been started for one thread alone.
-void RankExecutor::look_out() {
-    if (std::this_thread::get_id() == thread_) stops_.pass_on();
+/// Polls on the calling thread only, because MPI may be limited to one thread.
+void RankExecutor::poll_stops() {
+    if (std::this_thread::get_id() == thread_) stops_.poll();
 }
 
 void RankExecutor::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
     executor_.for_each(count, [&](std::size_t i) {
-        look_out();
+        poll_stops();
         body(i);
     });
 }
 
 void RankExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
     executor_.for_each_writing(count, [&](std::size_t i, ShareWriter& writer) {
-        look_out();
+        poll_stops();
         Writer own(writer, *this);
         body(i, own);
     });

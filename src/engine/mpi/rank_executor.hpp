@@ -1,5 +1,8 @@
-// RankExecutor: an executor of one rank, whose shares look out for the stops of other ranks, and whose pairs come out with
-// the numbers that all ranks know.
+// RankExecutor: runs the shares of a rank on another executor.
+//
+// Stops      shares that run on the calling thread poll for stop requests of other ranks.
+// Pairs      objects of a pair are renumbered from the rank's own numbers to positions in the set, which are the same on all
+//            ranks. Unwanted pairs are dropped.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +16,15 @@
 
 namespace octopair {
 
-/// What the objects of a rank are called elsewhere: a pair's `a` and `b` are looked up. Empty: as they are.
+/// Position of each object of a rank, by its number on this rank. Empty: numbers stay unchanged.
 struct PairNumbers {
     std::span<const std::uint32_t> a = {}, b = {};
 };
 
-/// To be made on the thread of the call.
+/// Requires: construction on the thread of the call. Only that thread polls for stop requests.
 class RankExecutor final : public Executor {
 public:
-    /// Borrows all.
+    /// Borrows `executor`, `stops` and the arrays of `numbers` and `wanted`.
     RankExecutor(Executor& executor, StopRelay& stops, const PairNumbers& numbers = {}, const WantedRows& wanted = {})
         : executor_(executor), stops_(stops), numbers_(numbers), wanted_(wanted) {}
 
@@ -31,7 +34,7 @@ public:
 
 private:
     class Writer;
-    void look_out();
+    void poll_stops();
 
     Executor& executor_;
     StopRelay& stops_;

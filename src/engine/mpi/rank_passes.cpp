@@ -33,7 +33,7 @@ private:
     std::span<std::uint64_t> counts_;
 };
 
-/// Counts the pairs of each bin.
+/// Gives each share a writer that counts the pairs of each bin.
 class RowCountExecutor final : public TeamExecutor {
 public:
     RowCountExecutor(Team& team, const RowBins& bins, std::span<std::uint64_t> counts)

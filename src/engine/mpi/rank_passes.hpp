@@ -1,4 +1,4 @@
-// RankPasses: the linear octree of what a rank has received, and scans of the octants that it owns.
+// RankPasses: builds the linear octree of the objects that a rank received, and scans the octants that the rank owns.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace octopair {
 
-/// What a rank does of a call.
+/// Part of a call that one rank runs.
 struct RankShare {
     OctreeLayout layout;
-    OctantIndex begin = 0, end = 0;  ///< those that this rank owns
+    OctantIndex begin = 0, end = 0;  ///< range of the octants that this rank owns
     PairNumbers numbers = {};
 };
 
@@ -21,19 +21,19 @@ class RankPasses final : public ThreadPasses {
 public:
     using ThreadPasses::ThreadPasses;
 
-    /// Of the next build(). `stops` and the numbers are borrowed for all passes over it.
-    void take(RankShare share, StopRelay& stops) {
+    /// Sets the share of the next build(). Borrows `stops` and the arrays of `share.numbers` for all passes over that octree.
+    void set_share(RankShare share, StopRelay& stops) {
         share_ = std::move(share);
         stops_ = &stops;
         wanted_ = {};
     }
     Team& threads() { return team(); }
-    /// Of the passes from here to the next take(): which pairs they write. Borrowed.
-    void want(const WantedRows& wanted) { wanted_ = wanted; }
+    /// Restricts the pairs that passes write, until the next set_share(). Borrows `wanted.marks`.
+    void set_wanted_rows(const WantedRows& wanted) { wanted_ = wanted; }
     /// Adds the pairs of each bin to `counts`.
     void count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress);
 
-    /// Throws LinearOctree::Invalid.
+    /// Throws: LinearOctree::Invalid.
     void build(Call& call, double progress) override;
 
 private:

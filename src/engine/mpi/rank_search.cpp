@@ -27,12 +27,12 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // whose indices a Pair has
+constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // their indices fit into a Pair
 
 }  // namespace
 
-RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> beside)
-    : comm_(comm), beside_(std::move(beside)), passes_(options.threads) {
+RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> on_poll)
+    : comm_(comm), on_poll_(std::move(on_poll)), passes_(options.threads) {
     if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
 }
 
@@ -95,7 +95,7 @@ void RankSearch::skip() noexcept {
 
 void RankSearch::join(Task& task) {
     if (task.indexed != nullptr && master_)
-        throw Error(ErrorCode::usage, "no pairs of 64 bits in the paper's arrangement");
+        throw Error(ErrorCode::usage, "find_pairs64 does not support the paper's arrangement");
     const Metered metered(comm_, costs_.join);
     const detail::Request& asked = task.request;
     const OutputKind output_kind = task.indexed != nullptr ? OutputKind::list : output_kind_of(task.output);
@@ -125,17 +125,17 @@ void RankSearch::find(Task& task) {
     OctreeLayout layout = plan(task, own);
     if (comm_.size() == 1) {
         const OctantIndex all = OctantIndex(layout.directory.octants().size());
-        passes_.take({std::move(layout), 0, all}, task.stops);
+        passes_.set_share({std::move(layout), 0, all}, task.stops);
         return search(task, {first, second, asked.options});
     }
-    passes_.take(route(task, own, std::move(layout)), task.stops);
+    passes_.set_share(route(task, own, std::move(layout)), task.stops);
     const Objects first_received = received_[0].view(), second_received = received_[1].view();
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
 }
 
 void RankSearch::find_at_master(Task& task) {
-    const Summary summary = master_->run(
-        {task.output, task.request.options, task.joint, task.slices, task.stops, task.stop.get_token(), task.told});
+    const Summary summary = master_->run({task.output, task.request.options, task.joint, task.slices, task.stops,
+                                          task.stop.get_token(), task.progress_sink});
     task.summary.pairs = summary.pairs;
     task.summary.truncated = summary.truncated;
     task.summary.entries = summary.entries;
@@ -149,7 +149,7 @@ OctreeLayout RankSearch::plan(Task& task, const BoxSource& own) {
     return plan_together(comm_, task.joint, own, stop);
 }
 
-/// To the ranks whose octants they touch, which thus receive theirs.
+/// Sends objects to the ranks whose octants they touch, and receives those for this rank. Returns this rank's share.
 RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layout) {
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
@@ -159,7 +159,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layou
         const Metered metered(comm_, costs_.route);
         loads.resize(layout.directory.octants().size());
         routing.emplace(task.joint, own, layout, routing_, task.stop.get_token());
-        routing->find(executor, loads);
+        routing->find_homes(executor, loads);
     });
     comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});
     const unsigned sets = task.sets();
@@ -167,7 +167,7 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layou
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
         cut.emplace(layout.directory, loads, comm_.size());
-        routing->address(executor, *cut);
+        routing->assign_owners(executor, *cut);
         const Metered packing(comm_, costs_.pack);
         for (unsigned set = 0; set < sets; ++set) {
             for (ObjectArrays* arrays : {&sent_[set], &received_[set]}) {
@@ -206,7 +206,7 @@ void RankSearch::exchange_objects(Task& task, const Routing& routing) {
 
 void RankSearch::search(Task& task, const detail::Request& own_octants) {
     const BoxSource source(own_octants.first, own_octants.second, task.joint.form);
-    // Its own stop: where this rank's part of a pass is abandoned, as at a limit, the others' are not.
+    // The call has a stop source of its own: if this rank abandons its part of a pass, as at a limit, other ranks continue.
     Call call{own_octants, task.output, source, {}, task.progress, {}};
     const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
     if (task.indexed != nullptr) {
@@ -224,7 +224,8 @@ void RankSearch::search(Task& task, const detail::Request& own_octants) {
 
 namespace {
 
-/// Of pieces of these sizes, how many pairs of one rank's are within the limit; the summary gets what there are in all.
+/// Returns how many pairs of a rank's piece are within the limit. Stores the number of all pairs, limited, in `summary`.
+/// `pieces`: number of pairs of each rank.
 std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, const Options& options,
                       Summary& summary) {
     const std::uint64_t all = std::accumulate(pieces.begin(), pieces.end(), std::uint64_t(0));
@@ -235,7 +236,7 @@ std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, c
     return std::min(pieces[rank], limit - std::min(limit, before));
 }
 
-/// What `give` hands over, up to so many pairs; returns how many.
+/// Passes up to `allowance` pairs of `give` to the output. Returns their number.
 template <typename Give>
 std::uint64_t receive(const detail::Output& output, std::uint64_t allowance, const Give& give) {
     Receiver receiver(output, allowance);
@@ -261,7 +262,8 @@ std::uint64_t RankSearch::allowed(Task& task, const PiecePlan& plan) const {
     return octopair::allowed(pieces, comm_.rank(), task.request.options, task.summary);
 }
 
-/// What was found, in numbers of this rank, gets its indices; ascending, pairs go to the rank that their `a` belongs to.
+/// Finds pairs in this rank's object numbers, and replaces the numbers by indices. For ascending order, each pair is sent to
+/// the rank that its `a` belongs to.
 void RankSearch::find_indexed(Task& task, Call& call) {
     const Options& options = task.request.options;
     std::vector<Pair64>& pairs = task.indexed->pairs;
@@ -283,11 +285,12 @@ void RankSearch::find_indexed(Task& task, Call& call) {
     pairs.resize(std::size_t(octopair::allowed(pieces, comm_.rank(), options, task.summary)));
 }
 
-/// To the caller of each rank, or one rank's after another's to that of the first.
+/// Passes each rank's pairs to the caller on that rank. With a relay, passes the pairs of all ranks, one rank after another, to
+/// the caller on rank 0.
 void RankSearch::deliver(Task& task, std::uint64_t allowance, const Give& give) {
     if (!task.relay) return task.agreement.together([&] { (void)receive(task.output, allowance, give); });
     for (unsigned from = 0; from < comm_.size(); ++from) {
-        task.relay->hand_on(from, [&](const PairSink& sink) { (void)receive({.sink = &sink}, allowance, give); });
+        task.relay->forward(from, [&](const PairSink& sink) { (void)receive({.sink = &sink}, allowance, give); });
     }
 }
 
@@ -311,9 +314,9 @@ void RankSearch::gather(PairList& piece, detail::PairStorage& all) {
     if (!gathered.empty()) all.append(gathered);
 }
 
-/// In one part with the pass that comes first: what is built is then still in the cache.
+/// Call in the same Agreement::together() as the first pass, because the octree is then still in the cache.
 void RankSearch::build(Task& task, Call& call) {
-    constexpr double built = 0.3;  // of the progress
+    constexpr double built = 0.3;  // progress after the build
     const Metered metered(comm_, costs_.build);
     try {
         passes_.build(call, built);
@@ -333,11 +336,11 @@ void RankSearch::count(Task& task, Call& call) {
     (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
-/// Of one rank, how they are found: `build_first` comes before, `stream` hands them out.
+/// How a rank finds its pairs in octal order.
 struct RankSearch::OctalPairs {
-    std::function<void()> build_first;
-    Give stream;
-    std::uint64_t allowance;
+    std::function<void()> build_first;  // builds the octree if that is not done
+    Give stream;                        // passes the pairs to a receiver
+    std::uint64_t allowance;            // maximum number of pairs of this rank
 };
 
 void RankSearch::find_octal(Task& task, Call& call) {
@@ -375,8 +378,8 @@ void RankSearch::find_octal(Task& task, Call& call) {
     if (!limit) (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
 }
 
-/// While rank 0 hands on what it finds, the others list theirs, as far as that fits into their buffers; what does not is found
-/// again, when its turn has come. Returns how many of the pairs were this rank's.
+/// Rank 0 streams its pairs while each other rank lists its own. A rank whose pairs do not fit into its buffer drops them, and
+/// finds them again when it is its turn to send. Returns the number of this rank's pairs.
 std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& own) {
     bool listed = false;
     std::uint64_t pairs = 0;
@@ -393,7 +396,7 @@ std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& 
     if (comm_.rank() != 0) count_path(listed ? Path::relay_listed : Path::relay_found_again);
     const Give give = listed ? Give(hand_out(found_)) : own.stream;
     for (unsigned from = 1; from < comm_.size(); ++from) {
-        task.relay->hand_on(from, [&](const PairSink& sink) {
+        task.relay->forward(from, [&](const PairSink& sink) {
             if (own.allowance > 0) pairs = receive({.sink = &sink}, own.allowance, give);
         });
     }
@@ -411,7 +414,7 @@ void RankSearch::find_ascending(Task& task, Call& call) {
         (void)octopair::allowed({list.size}, 0, task.request.options, task.summary);
         return;
     }
-    // What is not to be a list anyway must fit into the caller's buffer.
+    // Pairs that are not returned as a whole list must fit into buffer_bytes.
     std::uint64_t over = 0;
     task.agreement.together([&] {
         build(task, call);
@@ -425,13 +428,13 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     const std::uint64_t allowance = allowed(task, plan);
     PairList sorted;
     PairList& piece = whole ? *task.output.list : sorted;
-    pieces.bring_together(found_, plan, 0, detail::storage_of(piece), task.stop.get_token());
+    pieces.exchange_and_sort(found_, plan, 0, detail::storage_of(piece), task.stop.get_token());
     if (!whole) deliver(task, allowance, hand_out(piece));
 }
 
-/// To found_; false, with nothing found, where there are more.
+/// Lists this rank's pairs in found_. Returns false, with found_ empty, if there are more than about `most` pairs.
 bool RankSearch::list_octal(Call& call, std::uint64_t most) {
-    // A list that keeps memory from an earlier call fills it unasked, so its size would not be bounded.
+    // A list that keeps memory of an earlier call fills that memory without a request, so its size would not be bounded.
     if (most < ~std::uint64_t(0)) found_ = PairList();
     detail::PairStorage& list = detail::storage_of(found_);
     std::uint64_t bytes = 0;
@@ -450,11 +453,12 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
     return all;
 }
 
-/// Where the pairs do not fit into the buffer: counts those of neighbouring objects, then finds as many at a time as fit.
+/// Used if the pairs do not fit into the buffer. Counts the pairs of each bin of objects, then finds the pairs of as many
+/// objects at a time as fit into the buffer.
 void RankSearch::find_windows(Task& task, Call& call) {
     const RowBins bins(task.joint.totals[0]);
     std::vector<std::uint64_t> counts;
-    detail::storage_of(found_).reset();  // on this rank they may have fitted
+    detail::storage_of(found_).reset();  // the pairs of this rank may have fitted into its buffer
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.scan);
         counts.resize(bins.size(), 0);
@@ -462,7 +466,7 @@ void RankSearch::find_windows(Task& task, Call& call) {
     });
     comm_.add_up(counts);
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
-    // A rank holds a window three times for a while: found, sent and received.
+    // A rank stores a window three times for a while: as found, sent and received pairs.
     const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
     const unsigned windows = unsigned(all / (fit * comm_.size()) + 1);
     const PiecePlan plan(bins, counts, {comm_.size(), windows, task.relay.has_value()});
@@ -477,10 +481,10 @@ void RankSearch::find_windows(Task& task, Call& call) {
         task.agreement.together([&] {
             const Metered metered(comm_, costs_.scan);
             marks = plan.marks(window);
-            passes_.want({bins, marks});
+            passes_.set_wanted_rows({bins, marks});
             passes_.list_octal(call, detail::storage_of(found_), 0.5 + 0.5 * double(window + 1) / double(windows));
         });
-        pieces.bring_together(found_, plan, window, detail::storage_of(sorted), task.stop.get_token());
+        pieces.exchange_and_sort(found_, plan, window, detail::storage_of(sorted), task.stop.get_token());
         deliver(task, plan.allowed(comm_.rank(), window, limit), hand_out(sorted));
     }
 }

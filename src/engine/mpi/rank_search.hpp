@@ -1,14 +1,16 @@
-// RankSearch: what a rank does in a call, from its slice of the objects to its piece of the pairs.
+// RankSearch: runs a call on one rank, from its slice of the objects to its piece of the pairs.
 //
-//   join    what all ranks ask for                                                           (joint_call.hpp)
-//   plan    the octree's octants, from the sample that the local engine would take            (planting.hpp)
-//   cut     the pre-order of octants into runs of about equal work, one for each rank         (octant_owners.hpp)
-//   route   objects to the ranks whose octants they touch                                     (routing.hpp)
-//   search  each rank the octants it owns, as the local engine would                          (rank_passes.hpp)
-//   order   ascending: pairs to the ranks that their `a` belongs to, where they are sorted    (ascending_pieces.hpp)
+//   join    combines the calls of all ranks and checks that they agree                        (joint_call.hpp)
+//   plan    chooses the octants of the octree, from the sample that the local engine takes    (octree_planning.hpp)
+//   cut     divides the pre-order of octants into one run of about equal work for each rank   (octant_owners.hpp)
+//   route   sends each object to the ranks whose octants it touches                           (routing.hpp)
+//   search  builds the rank's octree and scans the rank's octants, like the local engine      (rank_passes.hpp)
+//   order   for ascending order: sends each pair to the rank that its `a` belongs to, which
+//           sorts its pairs                                                                   (ascending_pieces.hpp)
 //
-// The pieces of all ranks, one after another, are what the local engine finds. What every rank gets to know is the shape of
-// the tree, and a few numbers for each rank and octant; nothing else is gathered, unless rank 0 is to receive all pairs.
+// Result     the pieces of all ranks, in rank order, are the pairs that the local engine finds.
+// Memory     each rank stores the shape of the whole octree and a few numbers for each rank and octant. No other data is
+//            gathered on one rank, except the pairs with Recipients::first.
 #pragma once
 
 #include <array>
@@ -32,37 +34,38 @@ namespace octopair {
 class PiecePlan;
 class Receiver;
 
-/// Who receives pairs: each rank its piece, or the first rank those of all, in order.
+/// Ranks that receive pairs. `all`: each rank receives its piece. `first`: rank 0 receives the pairs of all ranks, in order.
 enum class Recipients : std::uint8_t { all, first };
 
-/// A call for pairs of indices that are the caller's own, or of more bits than a Pair has.
+/// A call whose pairs have 64-bit indices: indices of the caller, or positions that do not fit into a Pair.
 struct IndexedCall {
-    std::array<std::span<const std::uint64_t>, 2> indices;  ///< of each set; empty: 0, 1, ... from rank to rank
+    /// Indices of this rank's objects, by set. Empty on all ranks: 0, 1, ..., counted on from rank to rank.
+    std::array<std::span<const std::uint64_t>, 2> indices;
     std::vector<Pair64>& pairs;
 };
 
 class RankSearch {
 public:
-    /// `beside`, which may be empty, is done every few milliseconds of a call, on its thread; what it throws ends the call on
-    /// this rank.
-    RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> beside = {});
+    /// `on_poll` may be empty. A call runs it every few milliseconds on the calling thread; an exception of `on_poll` ends the
+    /// call on this rank.
+    RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> on_poll = {});
 
-    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. Of the recipients that a list
-    /// or a sink is given on all ranks for, the first rank alone may get pairs.
+    /// Collective. Returns the summary of all ranks, except that its steps are those of this rank. With Recipients::first,
+    /// every rank passes a list or a sink, but only rank 0 receives pairs.
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control,
                 Recipients recipients = Recipients::all);
-    /// The same of an indexed call, whose `pairs` are the output of all ranks.
+    /// Collective. Runs an indexed call: each rank receives its piece in `indexed.pairs`.
     Summary run(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control);
-    /// In place of run() on a rank whose call was cancelled before it began: ends it on all. Does not throw.
+    /// Replaces run() on a rank whose call was cancelled before it began. Cancels the call on all ranks.
     void skip() noexcept;
-    /// Collective: this rank's piece goes to rank 0, which appends those of all ranks to `all`.
+    /// Collective. Sends this rank's piece to rank 0, which appends the pieces of all ranks to `all`, in rank order.
     void gather(PairList& piece, detail::PairStorage& all);
-    /// Of the last run().
+    /// Returns the costs of the last run().
     const RankCosts& costs() const { return costs_; }
 
 private:
     struct Task;
-    /// Hands this rank's pairs to a receiver.
+    /// Passes this rank's pairs to a receiver.
     using Give = std::function<void(Receiver&)>;
     struct OctalPairs;
     Summary run(Task& task, const detail::Control& control);
@@ -85,13 +88,13 @@ private:
     void deliver(Task& task, std::uint64_t allowance, const Give& give);
 
     Communicator& comm_;
-    std::function<void()> beside_;
+    std::function<void()> on_poll_;
     RankPasses passes_;
     std::array<ObjectArrays, 2> sent_, received_;
     Routing::Memory routing_;
     PairList found_;
     RankCosts costs_;
-    std::optional<MasterSearch> master_;  // of the paper's arrangement
+    std::optional<MasterSearch> master_;  // only with Arrangement::paper
 };
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// RankSearch::Task: one call, on its way through the steps.
+// RankSearch::Task: state of one call, which the steps of RankSearch pass on.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ struct RankSearch::Task {
     Task(RankSearch& search, const detail::Request& asked, const detail::Output& out, const ProgressSink& sink)
         : request(asked),
           output(out),
-          told(sink),
-          stops(search.comm_, stop, search.beside_),
+          progress_sink(sink),
+          stops(search.comm_, stop, search.on_poll_),
           agreement(search.comm_),
           progress(sink),
           order(search.comm_) {}
@@ -28,15 +28,15 @@ struct RankSearch::Task {
     const detail::Output& output;
     const IndexedCall* indexed = nullptr;
     Recipients recipients = Recipients::all;
-    const ProgressSink& told;
+    const ProgressSink& progress_sink;
     std::stop_source stop;
     StopRelay stops;
     Agreement agreement;
     Progress progress;
-    std::optional<Relay> relay;  // where a sink of the first rank receives all
+    std::optional<Relay> relay;  // only if a sink of rank 0 receives all pairs
     JointCall joint;
     std::array<Objects, 2> slices;
-    IndexOrder order;  // of an indexed call
+    IndexOrder order;  // used by indexed calls only
     Summary summary;
     unsigned sets() const { return joint.join ? 2 : 1; }
 };

@@ -1,4 +1,4 @@
-// The process engine: the steps of the algorithm in worker processes that share memory with the application.
+// The process engine: runs the steps of the algorithm in worker processes that share memory with the application.
 
 #include <algorithm>
 #include <memory>
@@ -6,8 +6,8 @@
 
 #include "base/floating_point.hpp"
 #include "engine/job_queue.hpp"
-#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/process_passes.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/worker_program.hpp"
 #include "engine/processes/paper/paper_passes.hpp"
 #include "engine/search.hpp"
@@ -19,11 +19,11 @@ namespace octopair {
 
 namespace {
 
-unsigned worker_count(unsigned asked) {
-    if (asked > most_workers) {
-        throw Error(ErrorCode::usage, std::to_string(asked) + " workers; at most " + std::to_string(most_workers));
+unsigned worker_count(unsigned requested) {
+    if (requested > most_workers) {
+        throw Error(ErrorCode::usage, std::to_string(requested) + " workers; at most " + std::to_string(most_workers));
     }
-    return asked > 0 ? asked : std::clamp(std::thread::hardware_concurrency(), 1u, most_workers);
+    return requested > 0 ? requested : std::clamp(std::thread::hardware_concurrency(), 1u, most_workers);
 }
 
 std::unique_ptr<Passes> make_passes(Arrangement arrangement, WorkerPool& pool, const SharedArrays& arrays) {
@@ -54,7 +54,7 @@ private:
     WorkerPool pool_;
     std::unique_ptr<Passes> passes_;
     Search search_;
-    detail::JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // last member, so it is destroyed first
 };
 
 }  // namespace
@@ -70,7 +70,8 @@ std::unique_ptr<Engine> make_process_engine(unsigned workers, detail::PackagedWo
 
 WorkerFaults worker_faults(const Engine& engine) {
     const auto* const processes = dynamic_cast<const ProcessEngine*>(&engine);
-    if (processes == nullptr) throw Error(ErrorCode::usage, "not an engine of worker processes");
+    if (processes == nullptr)
+        throw Error(ErrorCode::usage, "worker_faults: the engine was not made by make_process_engine");
     return processes->faults();
 }
 

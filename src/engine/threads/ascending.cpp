@@ -11,10 +11,10 @@ namespace octopair {
 
 namespace {
 
-/// Pages of a list's blocks.
+/// Allocates pages from the blocks of a list.
 class ListPages final : public Pages {
 public:
-    /// `left` is how many pages all threads together may still take from the list.
+    /// `left`: number of pages that all threads together may still take from the list.
     ListPages(detail::PairStorage& list, std::atomic<std::int64_t>& left) : list_(list), left_(left) {}
 
 private:
@@ -32,7 +32,7 @@ private:
     std::span<Pair> block_;
 };
 
-/// What one thread needs.
+/// State of one thread.
 struct Worker {
     Worker(const BucketPlan& plan, detail::PairStorage& list, std::atomic<std::int64_t>& pages_left)
         : pages(list, pages_left), found(plan.buckets()), sort(plan, pages) {}
@@ -42,7 +42,7 @@ struct Worker {
     BucketSort sort;
 };
 
-/// Throws pairs into one thread's buckets.
+/// Scatters pairs into the buckets of one thread.
 class BucketWriter final : public FullWriter {
 public:
     BucketWriter(const BucketPlan& plan, Worker& worker) : plan_(plan), worker_(worker) {}
@@ -58,14 +58,14 @@ private:
 class AscendingExecutor::Buckets {
 public:
     Buckets(unsigned threads, detail::PairStorage& list, const AscendingBounds& bounds)
-        : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.most / page_pairs())) {
+        : list_(list), plan_(bounds, threads), pages_left_(std::int64_t(bounds.max_pairs / page_pairs())) {
         for (unsigned i = 0; i < threads; ++i) workers_.push_back(std::make_unique<Worker>(plan_, list, pages_left_));
     }
 
     BucketWriter writer(unsigned worker) { return {plan_, *workers_[worker]}; }
 
     void append_sorted(Team& team, const std::stop_token& stop) {
-        pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting takes a few more
+        pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting a bucket takes a few more pages
         std::vector<BucketSort::Runs> sorted(plan_.buckets());
         team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
             std::vector<PageString> strings;
@@ -90,7 +90,8 @@ AscendingExecutor::AscendingExecutor(Team& team, detail::PairStorage& list, cons
 
 AscendingExecutor::~AscendingExecutor() = default;
 
-void AscendingExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
+void AscendingExecutor::for_each_writing(std::size_t count,
+                                         const std::function<void(std::size_t, ShareWriter&)>& body) {
     team().for_each(count, [&](std::size_t i, unsigned worker) {
         BucketWriter writer = buckets_->writer(worker);
         body(i, writer);

@@ -1,7 +1,7 @@
-// The ascending order of pairs, on the threads of this process: by a, then b.
+// AscendingExecutor: sorts pairs into ascending order (by a, then b) on the threads of this process.
 //
-// The scan throws its pairs into buckets, in pages of the list's own memory. Each bucket is then sorted where it lies and
-// its pages become the list, so that order takes a bucket a thread beside the pairs.
+// The scan scatters pairs into buckets, in pages of the list's own memory. Each bucket is then sorted into pages of the same
+// memory, and these pages form the list. Beside the pairs, sorting needs memory for one bucket for each thread.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,16 @@
 
 namespace octopair {
 
-/// Appends the pairs whose `a` is in a range to a list, in ascending order.
+/// Appends the pairs whose `a` is in the range of rows to a list, in ascending order.
 class AscendingExecutor final : public TeamExecutor {
 public:
     AscendingExecutor(Team& team, detail::PairStorage& list, const AscendingBounds& bounds);
     ~AscendingExecutor() override;
 
-    /// Throws OverBudget.
+    /// Throws: OverBudget.
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
-    /// To be called once, after the scan. Throws Error{cancelled}.
+    /// Sorts the buckets and appends their pairs to the list. Requires: called once, after the scan.
+    /// Throws: Error{cancelled}.
     void append_sorted(const std::stop_token& stop);
 
 private:

@@ -1,4 +1,4 @@
-// The local engine: the steps of the algorithm on the threads of this process.
+// The local engine: runs the steps of the algorithm on the threads of this process.
 
 #include "engine/job_queue.hpp"
 #include "engine/search.hpp"
@@ -44,7 +44,7 @@ private:
     TicketLock ticket_lock_;
     LocalPasses passes_;
     Search search_{passes_};
-    detail::JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // last member, so it is destroyed first
 };
 
 }  // namespace

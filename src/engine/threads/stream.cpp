@@ -1,9 +1,12 @@
-// StreamExecutor: shares run ahead on helper threads while the calling thread hands out pairs in order.
+// StreamExecutor: helper threads run shares ahead while the calling thread (the lead) delivers pairs in the order of shares.
 //
-// The calling thread hands out what is ready of the share whose turn it is, and when nothing is, runs a share itself: straight
-// to the receiver if it is that one's turn, else to a buffer. When its buffer is full it waits for the shares before, which
-// helpers run and which go on because it takes what they have ready; so a helper whose buffer is full may wait. Nobody runs a
-// share that is `ahead` or more after the one whose turn it is.
+// The head is the share whose pairs are delivered next. The lead delivers the ready pairs of the head. If there are none,
+// the lead runs a share itself: straight to the receiver if that share is the head, else into a buffer.
+//
+// Invariants
+//   No thread runs a share with a number of head + `ahead` or more.
+//   A helper whose buffer is full waits until the lead has taken its ready pairs.
+//   A lead whose buffer is full keeps delivering the pairs of earlier shares, so their helpers make progress: no deadlock.
 
 #include <algorithm>
 #include <condition_variable>
@@ -69,7 +72,7 @@ private:
         bool finished = false;
     };
 
-    /// The calling thread's. Its share is the next one that nobody has begun.
+    /// Writes a share that the calling thread runs.
     class LeadWriter final : public FullWriter {
     public:
         LeadWriter(OrderedStream& stream, const StreamExecutor::Deliver& deliver, std::size_t share)
@@ -119,7 +122,7 @@ private:
 
     Slot& slot(std::size_t share) { return slots_[share % slots_.size()]; }
 
-    /// None where all are begun, or all that may be.
+    /// Returns nothing if all shares that may run now have begun.
     std::optional<std::size_t> claim_as_lead() {
         const std::lock_guard lock(mutex_);
         if (failed_) throw Abandoned{};
@@ -144,18 +147,18 @@ private:
         changed_.notify_all();
     }
 
-    /// What is ready of the share whose turn it is, and the turn to the next one if that was all. False if nothing is, and
-    /// it need not wait.
+    /// Delivers the ready pairs of the head. Advances the head if its share is finished. Returns false if nothing is ready
+    /// and `wait` is false.
     bool hand_out(const StreamExecutor::Deliver& deliver, bool wait) {
         {
             std::unique_lock lock(mutex_);
-            Slot& turn = slot(head_);
-            const auto is_ready = [&] { return turn.finished || !turn.ready.empty(); };
+            Slot& head_slot = slot(head_);
+            const auto is_ready = [&] { return head_slot.finished || !head_slot.ready.empty(); };
             if (wait) changed_.wait(lock, [&] { return failed_ || is_ready(); });
             if (failed_) throw Abandoned{};
             if (!is_ready()) return false;
-            taken_.swap(turn.ready);
-            if (std::exchange(turn.finished, false)) ++head_;
+            taken_.swap(head_slot.ready);
+            if (std::exchange(head_slot.finished, false)) ++head_;
             changed_.notify_all();
         }
         if (!taken_.empty()) deliver(taken_);
@@ -177,9 +180,9 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Slot> slots_;
-    std::vector<Pair> lead_held_, taken_;  // the calling thread's
-    std::size_t next_ = 0;                 // the first share that nobody has begun
-    std::size_t head_ = 0;                 // the share whose turn it is; the calling thread's to change
+    std::vector<Pair> lead_held_, taken_;  // used only by the calling thread
+    std::size_t next_ = 0;                 // first share that has not begun
+    std::size_t head_ = 0;                 // share to deliver next; only the calling thread changes it
     bool failed_ = false;
     std::exception_ptr failure_;
 };
@@ -191,7 +194,7 @@ StreamExecutor::StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer
 
 void StreamExecutor::for_each_writing(std::size_t count, const Body& body) {
     const std::size_t ahead = std::size_t(width()) * tuning().output.shares_ahead;
-    // A share holds what it fills and what is ready; the calling thread has one such buffer in hand beside.
+    // Each share that runs ahead has two buffers: one being filled, one ready. The calling thread has one more.
     const std::size_t buffer = std::max<std::size_t>(1, std::size_t(buffer_pairs_ / (2 * ahead + 1)));
     OrderedStream stream(count, body, ahead, buffer);
     stream.on_failure = [&] { abandon_.request_stop(); };

@@ -1,4 +1,4 @@
-// ThreadPasses: scans of a linear octree on the threads of this process.
+// ThreadPasses: scans a linear octree on the threads of this process.
 #pragma once
 
 #include "engine/search.hpp"
@@ -21,11 +21,11 @@ public:
 
 protected:
     Team& team() { return team_; }
-    /// Of the call's objects after build().
+    /// Returns the octree of the call's objects. Requires: build() was called.
     LinearOctree& octree() { return octree_; }
-    /// One pass over the octree.
+    /// Scans the whole octree once.
     virtual void scan_into(Call& call, Executor& executor, double progress);
-    /// Over these octants.
+    /// Scans `octants` once.
     static void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
 
 private:

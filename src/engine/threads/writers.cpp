@@ -23,7 +23,7 @@ private:
 }  // namespace
 
 void CountByObjectWriter::write(std::span<const Pair> pairs) {
-    // Pairs of one object tend to come together.
+    // Consecutive pairs often have the same `a`: add a run of them with one atomic operation.
     for (std::size_t i = 0; i < pairs.size();) {
         const std::uint32_t a = pairs[i].a;
         std::uint32_t count = 0;
@@ -33,7 +33,7 @@ void CountByObjectWriter::write(std::span<const Pair> pairs) {
 }
 
 void FullWriter::write_count(std::uint64_t) {
-    throw Error(ErrorCode::engine_failed, "pairs counted where they are wanted");
+    throw Error(ErrorCode::engine_failed, "a step only counted pairs where the pairs themselves are needed");
 }
 
 void TeamExecutor::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
@@ -41,7 +41,7 @@ void TeamExecutor::for_each(std::size_t count, const std::function<void(std::siz
 }
 
 void TeamExecutor::for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) {
-    throw Error(ErrorCode::engine_failed, "a step that writes no pairs wrote some");
+    throw Error(ErrorCode::engine_failed, "a step without an output for pairs wrote pairs");
 }
 
 void CountExecutor::for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) {
@@ -60,7 +60,7 @@ void CountByObjectExecutor::for_each_writing(std::size_t count,
     });
 }
 
-/// Writes one share into its worker's block, and into further ones; remembers the runs that it wrote.
+/// Writes one share into its thread's block, and into further blocks. Records the runs that it wrote.
 class ListExecutor::Writer final : public FullWriter {
 public:
     Writer(detail::PairStorage& list, std::span<Pair>& block, std::vector<std::span<const Pair>>& runs)

@@ -1,6 +1,7 @@
-// Executors of the local engine: the threads of a team, and what becomes of the pairs that shares write.
+// Executors of the local engine. They run shares on the threads of a team and count, list or stream the pairs.
 //
-// Each keeps the promise of executor.hpp: pairs in the order of the shares, whatever thread ran them.
+// Each executor keeps the guarantee of executor.hpp: lists and streams have their pairs in the order of the shares, whatever
+// thread ran them.
 #pragma once
 
 #include <atomic>
@@ -16,14 +17,15 @@
 
 namespace octopair {
 
-/// A writer that wants the pairs themselves.
+/// Base of writers that need the pairs, not only their number.
 class FullWriter : public ShareWriter {
 public:
     bool counting() const final { return false; }
     void write_count(std::uint64_t) final;
 };
 
-/// Counts the pairs of each object as their `a`, together with other threads.
+/// Adds the number of pairs with object i as `a` to counts[i].
+/// Thread safety: several writers may share `counts`, also in shared memory; the additions are atomic.
 class CountByObjectWriter final : public FullWriter {
 public:
     explicit CountByObjectWriter(std::span<std::uint32_t> counts) : counts_(counts) {}
@@ -33,7 +35,7 @@ private:
     std::span<std::uint32_t> counts_;
 };
 
-/// Steps without pairs.
+/// Runs steps that write no pairs. Derived classes run steps that write pairs.
 class TeamExecutor : public Executor {
 public:
     explicit TeamExecutor(Team& team) : team_(team) {}
@@ -48,7 +50,7 @@ private:
     Team& team_;
 };
 
-/// Counts pairs, all together.
+/// Counts all pairs.
 class CountExecutor final : public TeamExecutor {
 public:
     using TeamExecutor::TeamExecutor;
@@ -59,7 +61,7 @@ private:
     std::atomic<std::uint64_t> pairs_ = 0;
 };
 
-/// Counts the pairs of each object as their `a`.
+/// Adds the number of pairs with object i as `a` to counts[i].
 class CountByObjectExecutor final : public TeamExecutor {
 public:
     CountByObjectExecutor(Team& team, std::span<std::uint32_t> counts) : TeamExecutor(team), counts_(counts) {}
@@ -69,7 +71,7 @@ private:
     std::span<std::uint32_t> counts_;
 };
 
-/// Appends the pairs to a list as they come.
+/// Appends the pairs to a list, in the order of the shares.
 class ListExecutor final : public TeamExecutor {
 public:
     ListExecutor(Team& team, detail::PairStorage& list);
@@ -78,14 +80,14 @@ public:
 private:
     class Writer;
     detail::PairStorage& list_;
-    std::vector<std::span<Pair>> blocks_;  // each worker's: what is free of the block in its hands
+    std::vector<std::span<Pair>> blocks_;  // for each thread: the free part of its current block
 };
 
-/// Hands pairs to a function on the calling thread, as they come, holding at most `buffer_pairs`.
+/// Passes pairs to a function on the calling thread, in the order of the shares. Buffers at most `buffer_pairs` pairs.
 class StreamExecutor final : public TeamExecutor {
 public:
     using Deliver = std::function<void(std::span<const Pair>)>;
-    /// `abandon` is asked to stop when the calling thread or a share fails, so that the other shares end soon.
+    /// Requests a stop through `abandon` when the calling thread or a share fails, so that the other shares end soon.
     StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer_pairs, std::stop_source abandon);
 
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;

@@ -36,7 +36,7 @@ Verdict parse_number(std::string_view field, double& value) {
     return Verdict::number;
 }
 
-/// Splits a line into six fields. Throws where there are not six.
+/// Splits a line into six fields. Throws: Error{bad_input} if the line does not have six fields.
 std::array<std::string_view, columns> split(std::string_view line, std::string_view place) {
     const std::size_t found = std::size_t(std::count(line.begin(), line.end(), ',')) + 1;
     if (found != columns) refuse(place, fmt::format("{} fields, not {} numbers", found, columns));
@@ -49,7 +49,7 @@ std::array<std::string_view, columns> split(std::string_view line, std::string_v
     return fields;
 }
 
-/// A field as it may stand in a message.
+/// Returns the first 40 characters of a field in printable ASCII, for messages.
 std::string shown(std::string_view field) {
     std::string text(field.substr(0, 40));
     std::replace_if(
@@ -59,7 +59,7 @@ std::string shown(std::string_view field) {
 
 using Numbers = std::array<double, columns>;
 
-/// True for the plainest form, "1,2,3,4,5,6", whose numbers are finite.
+/// Fast path: parses lines of the form "1,2,3,4,5,6" with finite numbers. Returns false for all other lines.
 bool parse_plain(std::string_view line, Numbers& numbers) {
     const char* at = line.data();
     const char* const end = at + line.size();
@@ -73,7 +73,8 @@ bool parse_plain(std::string_view line, Numbers& numbers) {
     return false;
 }
 
-/// Any other form; false for the header. `place` is the file and the line.
+/// Parses a line of any form. Returns false for the header. `place` is the file and the line.
+/// Throws: Error{bad_input}.
 bool parse_any(std::string_view line, bool first, std::string_view place, Numbers& numbers) {
     const auto fields = split(line, place);
     std::array<Verdict, columns> verdicts;
@@ -83,7 +84,8 @@ bool parse_any(std::string_view line, bool first, std::string_view place, Number
     for (std::size_t i = 0; i < columns; ++i) {
         if (verdicts[i] == Verdict::number) continue;
         refuse(place, fmt::format("field {} {}: '{}'", i + 1,
-                                  is_word(verdicts[i]) ? "is not a number" : "is beyond float64", shown(fields[i])));
+                                  is_word(verdicts[i]) ? "is not a number" : "is outside the range of float64",
+                                  shown(fields[i])));
     }
     return true;
 }

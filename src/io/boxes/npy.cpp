@@ -13,12 +13,12 @@
 
 namespace octopair::io {
 
-static_assert(std::endian::native == std::endian::little, "arrays are read as they lie in the file");
+static_assert(std::endian::native == std::endian::little, "arrays are read without conversion of their byte order");
 
 namespace {
 
-/// As many as a file name NAME.000000.npy can number.
-constexpr std::uint64_t most_frames = 1'000'000;
+/// Maximum number of frames, because frame numbers in names of result files have six digits: NAME.000000.npy.
+constexpr std::uint64_t max_frames = 1'000'000;
 
 NpyHeader read_header(const InputFile& file) {
     Buffer<std::byte> start(std::size_t(std::min<std::uint64_t>(npy_header_max_bytes, file.size())));
@@ -41,7 +41,7 @@ SceneShape scene_shape(const NpyHeader& header, std::string_view file) {
         refuse(file,
                fmt::format("its shape is {}; boxes are (n, 6) or (frames, n, 6), spheres (n, 4)", shape_text(shape)));
     }
-    if (shape[0] > most_frames) refuse(file, fmt::format("{} frames; at most {} are known", shape[0], most_frames));
+    if (shape[0] > max_frames) refuse(file, fmt::format("{} frames; the maximum is {}", shape[0], max_frames));
     return {.objects = shape[1], .frames = shape[0], .moving = true};
 }
 
@@ -71,7 +71,7 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
         boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin});
         return boxes;
     }
-    // Whole frames lie in the file as they will lie in memory.
+    // If all objects are read, the layout in memory is that of the file, so one read is enough.
     const bool whole = objects == shape_.objects;
     const std::size_t runs = whole ? 1 : std::size_t(shape_.frames), length = whole ? boxes.size() : objects;
     for (std::size_t run = 0; run < runs; ++run) {

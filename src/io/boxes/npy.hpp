@@ -1,4 +1,4 @@
-// Arrays of .npy files as boxes and paddings (npy_header.hpp has the format).
+// Reads boxes and paddings from .npy files (npy_header.hpp describes the format).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace octopair::io {
 
-/// What an array of some shape holds.
+/// Content of a scene array, by its shape.
 struct SceneShape {
     std::uint64_t objects = 0;
     std::uint64_t frames = 1;
@@ -23,26 +23,26 @@ struct SceneShape {
     bool spheres = false;
 };
 
-/// Boxes (n, 6), spheres (n, 4) or moving boxes (frames, n, 6), of floats. Throws Error{bad_input} that begins with
-/// `file`.
+/// Returns the content of an array of floats: boxes (n, 6), spheres (n, 4) or moving boxes (frames, n, 6).
+/// Throws: Error{bad_input} that begins with `file`, for other arrays.
 SceneShape scene_shape(const NpyHeader& header, std::string_view file);
 
-/// Objects [begin, end) of a file.
+/// The objects [begin, end) of a file.
 struct ObjectRows {
     std::uint64_t begin = 0, end = 0;
 };
 
-/// A scene of which some objects are read.
+/// A scene file that can be read in part.
 class NpyScene {
 public:
-    /// Throws Error{bad_input, io_failed}.
+    /// Throws: Error{bad_input, io_failed}.
     explicit NpyScene(const std::string& path);
 
     const SceneShape& shape() const { return shape_; }
     bool wide() const { return header_.type == NpyType::float64; }
 
-    /// These objects, in each frame. Boxes are read where they will lie, without a second copy. Throws
-    /// Error{bad_input, io_failed, cancelled}.
+    /// Reads the objects `rows` in each frame. Boxes are read directly into the scene, without a second copy.
+    /// Throws: Error{bad_input, io_failed, cancelled}.
     LoadedScene read(const ObjectRows& rows, const std::stop_token& stop) const;
 
 private:
@@ -56,20 +56,21 @@ private:
     SceneShape shape_;
 };
 
-/// All of its objects. Throws Error{bad_input, io_failed, cancelled}.
+/// Reads all objects of a file. Throws: Error{bad_input, io_failed, cancelled}.
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop = {});
 
-/// A moving scene, of which one frame at a time is read.
+/// A moving scene that is read one frame at a time.
 class NpyFrames {
 public:
-    /// Nothing if the file is an .npy of another shape. Throws as read_npy_scene does.
+    /// Opens a file. Returns nothing if its array has no frame axis. Throws: what read_npy_scene() throws.
     static std::optional<NpyFrames> open(const std::string& path);
 
     const SceneShape& shape() const { return shape_; }
     bool wide() const { return header_.type == NpyType::float64; }
 
-    /// Fills `boxes`, as many as there are objects, from a frame; those of float32 may be read as float64, but not the
-    /// other way. Throws Error{bad_input} if the file has been cut short, Error{io_failed, cancelled}.
+    /// Reads the boxes of a frame. Float32 files can be read as float64, but not the other way round.
+    /// Requires: `boxes` has one element per object.
+    /// Throws: Error{bad_input} if the file was truncated after it was opened; Error{io_failed, cancelled}.
     void read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const;
     void read(std::uint64_t frame, std::span<Box3d> boxes, const std::stop_token& stop) const;
 
@@ -87,7 +88,7 @@ private:
     SceneShape shape_;
 };
 
-/// Clearances: shape (n,), floats, finite and >= 0. Throws as read_npy_scene does.
+/// Reads paddings: an array of floats of shape (n,), finite and >= 0. Throws: what read_npy_scene() throws.
 Buffer<double> read_padding(const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace octopair::io

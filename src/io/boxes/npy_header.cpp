@@ -27,7 +27,7 @@ constexpr std::array<TypeRow, 4> types = {{
     {NpyType::uint64, "<u8", 8},
 }};
 
-/// What a byte sequence looks like in a message: printable, short.
+/// Returns a byte sequence in quotes, as printable ASCII of at most 40 bytes, for messages.
 std::string quoted(std::string_view text) {
     std::string out = "'";
     for (const char c : text.substr(0, 40)) {
@@ -46,7 +46,7 @@ struct Fields {
     std::optional<std::vector<std::uint64_t>> shape;
 };
 
-/// Reads the dict literal, token by token; spaces may stand between tokens, and nothing else that Python would allow.
+/// Parses the dict literal token by token. Between tokens it accepts spaces, but no other Python whitespace or comments.
 class DictParser {
 public:
     DictParser(std::string_view text, std::string_view file) : text_(text), file_(file) {}
@@ -82,7 +82,7 @@ private:
         } else if (key == "shape" && !fields.shape) {
             fields.shape = parse_shape();
         } else {
-            refuse(file_, fmt::format("its npy header has the key {} twice, or where it should not be", quoted(key)));
+            refuse(file_, fmt::format("the key {} of its npy header is repeated or unknown", quoted(key)));
         }
     }
 
@@ -118,7 +118,7 @@ private:
             shape.push_back(parse_length());
             comma = take(',');
         }
-        if (shape.size() == 1 && !comma) malformed();  // (3) is a number in Python, no tuple
+        if (shape.size() == 1 && !comma) malformed();  // (3) is a number in Python, not a tuple
         return shape;
     }
 
@@ -156,7 +156,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// The header's text, and where it ends in the file.
+/// Returns the dict literal, and the offset of the data in the file.
 std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std::string_view file) {
     if (bytes.empty()) refuse(file, "not an npy file: it is empty");
     const std::string_view start = bytes.substr(0, magic.size());
@@ -166,12 +166,13 @@ std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std
     if (bytes.size() < 12) refuse(file, "truncated npy file: it ends within the header");
     const unsigned major = std::uint8_t(bytes[6]), minor = std::uint8_t(bytes[7]);
     if (major < 1 || major > 3 || minor != 0) {
-        refuse(file, fmt::format("npy format version {}.{}; versions 1.0, 2.0 and 3.0 are known", major, minor));
+        refuse(file, fmt::format("npy format version {}.{}; versions 1.0, 2.0 and 3.0 are supported", major, minor));
     }
     const std::size_t begin = major == 1 ? 10 : 12;
     std::uint64_t length = 0;
     for (std::size_t i = begin; i-- > 8;) length = length << 8 | std::uint8_t(bytes[i]);
-    if (begin + length > npy_header_max_bytes) refuse(file, fmt::format("an npy header of {} bytes", length));
+    if (begin + length > npy_header_max_bytes)
+        refuse(file, fmt::format("its npy header has {} bytes, which is too long", length));
     if (begin + length > bytes.size()) refuse(file, "truncated npy file: it ends within the header");
     return {bytes.substr(begin, std::size_t(length)), begin + length};
 }
@@ -185,7 +186,7 @@ NpyType find_type(std::string_view descr, std::string_view file) {
                              big_endian ? " (big endian)" : ""));
 }
 
-/// The bytes of an array, or nothing where they are beyond 64 bits.
+/// Returns the size of the array in bytes, or nothing if it exceeds 64 bits.
 std::optional<std::uint64_t> data_bytes(const NpyHeader& header) {
     std::uint64_t bytes = item_bytes(header.type);
     bool empty = false, overflow = false;

@@ -35,7 +35,7 @@ template <typename Real>
                                  number_text(sphere.centre[axis])));
     }
     if (sphere.radius >= 0 && std::isfinite(sphere.radius)) {
-        refuse(file, fmt::format("object {}: its box is beyond the file's precision", object));
+        refuse(file, fmt::format("object {}: its box is outside the range of the file's number type", object));
     }
     refuse(file, fmt::format("object {}: radius is {}, not a finite number >= 0", object, number_text(sphere.radius)));
 }

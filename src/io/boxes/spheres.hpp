@@ -1,8 +1,7 @@
-// Boxes of spheres: centre - radius to centre + radius, computed in float64 and rounded outward to the file's
-// precision.
+// Computes the boxes of spheres: centre - radius to centre + radius, rounded outward to the precision of the file.
 //
-// float32: the sums are taken in float64 (rounded to nearest there); the box is the smallest of float32 that holds
-// them. float64: the box is the smallest of float64 that holds the exact sums.
+//   float32  The sums are computed in float64, rounded to nearest. The box is the smallest float32 box that holds them.
+//   float64  The box is the smallest float64 box that holds the exact sums.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +19,20 @@ struct Sphere {
     Real radius;
 };
 
-/// The box of one sphere, whose numbers are finite and whose radius is >= 0. An end beyond the range of Real is
-/// infinite.
+/// Returns the box of one sphere. A bound beyond the range of Real becomes infinite.
+/// Requires: all numbers are finite, radius >= 0.
 template <typename Real>
 Box<Real> box_of_sphere(const Sphere<Real>& sphere);
 
-/// Where spheres stand.
+/// Position of spheres in a file, for messages.
 struct SpherePlace {
     std::string_view file;
-    std::uint64_t begin = 0;  ///< the number of the first
+    std::uint64_t begin = 0;  ///< object number of the first sphere
 };
 
-/// The boxes of all. Throws Error{bad_input} that names the file and the object for a number that is not finite, a
-/// negative radius, or an end beyond the range of Real.
+/// Writes the box of each sphere to `boxes`. Requires: both spans have the same size.
+/// Throws: Error{bad_input} that names the file and the object for a number that is not finite, a negative radius, or a bound
+/// beyond the range of Real.
 template <typename Real>
 void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place);
 

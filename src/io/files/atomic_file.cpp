@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a name leads through symbolic links, the last of which may lead to nothing yet.
+/// Follows symbolic links. The target of the last link need not exist.
 fs::path resolved(const std::string& path) {
     fs::path at(path);
     std::error_code error;
@@ -78,7 +78,7 @@ AtomicFile::~AtomicFile() { remove_temporary(); }
 void AtomicFile::open_unnamed() {
 #ifdef O_TMPFILE
     descriptor_ = Descriptor(::open(directory_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-    // The file gets its name through /proc, which may not be mounted.
+    // give_name() needs /proc, which may not be mounted.
     if (descriptor_.open() && ::access(own_link(descriptor_.number()).c_str(), F_OK) != 0) descriptor_ = Descriptor();
 #endif
 }
@@ -133,7 +133,7 @@ void AtomicFile::finish() {
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail_io(path_, "cannot rename onto it", errno);
     temporary_.clear();
     const Descriptor directory(::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // The result stands; some file systems cannot sync a directory.
+    // Errors are ignored: the result is complete, and some file systems cannot sync a directory.
     if (directory.open()) (void)::fsync(directory.number());
 }
 

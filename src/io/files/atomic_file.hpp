@@ -1,9 +1,12 @@
-// A result file that appears whole or not at all.
+// AtomicFile: a result file that appears whole or not at all.
 //
-// It is written to a temporary file in the directory of its path: without a name where the system offers that
-// (O_TMPFILE), so that even a killed program leaves nothing, else under a name of its own. commit() syncs it, renames
-// it onto the path and syncs the directory; destroyed without commit(), it is removed and what was at the path stays as
-// it was. A symbolic link at the path is followed. Several processes can write one: those that did not make it, its parts.
+// - The bytes go to a temporary file in the directory of the path.
+// - The temporary file has no name where the system supports O_TMPFILE. Then even a killed program leaves no file behind.
+//   Elsewhere, and for shared files, it has a random name.
+// - commit() syncs the temporary file, renames it to the path, and syncs the directory.
+// - Without commit(), the destructor removes the temporary file, and the file at the path stays unchanged.
+// - A symbolic link at the path is followed.
+// - Several processes can write one shared file: its maker through AtomicFile, the others through FilePart.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +19,18 @@ namespace octopair::io {
 
 class AtomicFile final : public OutputStream {
 public:
-    /// Throws Error{io_failed} if no file can be made in the directory, or if something other than a regular file is at
-    /// the path.
+    /// Throws: Error{io_failed} if no file can be created in the directory, or if the path is something other than a regular
+    /// file.
     explicit AtomicFile(const std::string& path);
-    /// The same with a temporary file that others can open by its name.
+    /// Makes a shared file: other processes can open its temporary file by name.
     struct Shared {};
     AtomicFile(const std::string& path, Shared);
     ~AtomicFile() override;
 
     const std::string& path() const { return path_; }
-    /// While it is not committed: its name, of one that is shared.
+    /// Returns the path of the temporary file. Requires: the file is shared and not committed.
     const std::string& temporary() const { return temporary_; }
-    /// Replaces bytes that were written already.
+    /// Overwrites bytes that were written before.
     void write_at(std::uint64_t offset, std::string_view text);
 
 private:
@@ -42,15 +45,16 @@ private:
 
     std::string path_;
     std::string directory_;
-    std::string temporary_;  // its name while it has one
+    std::string temporary_;  // path of the temporary file, or empty if it has no name
     Descriptor descriptor_;
     std::uint64_t end_ = 0;
 };
 
-/// Part of a shared file that another process made. What is written is final with sync().
+/// Access to a shared file that another process made. The caller must sync() before that process commits the file.
 class FilePart {
 public:
-    /// `temporary` of the one that made it, `path` for messages. Throws Error{io_failed}, as the others do.
+    /// `temporary` is AtomicFile::temporary() of the maker. Messages begin with `path`.
+    /// Throws: Error{io_failed}, as all members do.
     FilePart(const std::string& temporary, const std::string& path);
 
     void write_at(std::uint64_t offset, std::span<const std::byte> bytes);

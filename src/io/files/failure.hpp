@@ -1,4 +1,4 @@
-// How this layer says that something is wrong: one line that begins with the file.
+// Errors of this layer: one line that begins with the file.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace octopair::io {
 
-/// Throws Error{bad_input} "FILE: WHAT".
+/// Throws: Error{bad_input} "FILE: WHAT".
 [[noreturn]] void refuse(std::string_view file, std::string_view what);
-/// As short as it can be written; nan without a sign.
+/// Returns the shortest text that reads back as exactly `number`; "nan" without a sign.
 std::string number_text(float number);
 std::string number_text(double number);
-/// Throws Error{cancelled}.
+/// Throws: Error{cancelled}.
 [[noreturn]] void cancel();
 
 }  // namespace octopair::io

@@ -11,7 +11,7 @@
 namespace octopair::io {
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
-    // O_NONBLOCK: opening a pipe that nobody writes to must not wait; it means nothing for a regular file.
+    // O_NONBLOCK: without it, opening a pipe without a writer would block. It has no effect on a regular file.
     descriptor_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
     struct stat status {};
@@ -21,13 +21,13 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
 }
 
 void InputFile::read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop) const {
-    constexpr std::size_t piece = std::size_t(32) << 20;  // a few ms: how long a stop request waits
+    constexpr std::size_t piece = std::size_t(32) << 20;  // takes a few ms, so a stop request is seen soon
     while (!out.empty()) {
         if (stop.stop_requested()) cancel();
         const ssize_t got = ::pread(descriptor_.number(), out.data(), std::min(piece, out.size()), off_t(offset));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) fail_io(path_, "cannot read", errno);
-        if (got == 0) refuse(path_, "the file ended early: it was cut while it was read");
+        if (got == 0) refuse(path_, "the file was truncated while it was read");
         offset += std::uint64_t(got);
         out = out.subspan(std::size_t(got));
     }

@@ -1,5 +1,6 @@
-// A regular file, open for reading. It is read, never mapped, so that a file which shrinks meanwhile is an error and
-// not a SIGBUS.
+// InputFile: a regular file that is open for reading.
+//
+// The file is read, not memory-mapped: a file that shrinks during the run must give an error, not SIGBUS.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +16,15 @@ namespace octopair::io {
 
 class InputFile {
 public:
-    /// Throws Error{io_failed} if it cannot be opened, Error{bad_input} if it is not a regular file.
+    /// Throws: Error{io_failed} if the file cannot be opened; Error{bad_input} if it is not a regular file.
     explicit InputFile(std::string path);
 
     const std::string& path() const { return path_; }
-    /// In bytes, when it was opened.
+    /// Returns the size in bytes at the time of opening.
     std::uint64_t size() const { return size_; }
 
-    /// Fills `out` from `offset` on. Throws Error{bad_input} if the file ends before, Error{io_failed}, and
-    /// Error{cancelled} soon after a stop request.
+    /// Fills `out` with the bytes from `offset` on.
+    /// Throws: Error{bad_input} if the file is too short; Error{io_failed}; Error{cancelled} soon after a stop request.
     void read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop = {}) const;
 
 private:

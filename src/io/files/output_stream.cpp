@@ -39,7 +39,7 @@ StandardOutput::StandardOutput(std::stop_token stop) : stop_(std::move(stop)) {
 }
 
 void StandardOutput::put(std::span<const std::byte> bytes) {
-    // A pipe that poll() calls writable takes this much (PIPE_BUF) without blocking; so a stop request is always seen.
+    // After poll() reports a pipe as writable, writing up to PIPE_BUF bytes does not block. So a stop request is always seen.
     constexpr std::size_t piece = 4096;
     while (!bytes.empty()) {
         if (stop_.stop_requested()) cancel();

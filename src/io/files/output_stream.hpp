@@ -1,8 +1,8 @@
-// Where results are written: a file (atomic_file.hpp) or standard output, with a buffer before it.
+// OutputStream: a buffered destination of results, which is a file (atomic_file.hpp) or standard output.
 //
-// What is written reaches its place only with commit(); a stream destroyed without it leaves no more than what its kind
-// says. Every call throws Error{io_failed} when the system refuses, as on a full disk or a closed pipe (whose SIGPIPE
-// and SIGXFSZ the program must ignore).
+// - The result is complete only after commit(). Each subclass says what remains of a stream without commit().
+// - Every call throws Error{io_failed} if the system refuses, for example on a full disk or a closed pipe.
+// - Requires: the program ignores SIGPIPE and SIGXFSZ.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,8 @@ public:
     void write(std::span<const std::byte> bytes);
     void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-    /// Room for `bytes` (at most max_room) characters, to be filled from the front; advance() says how many were.
+    /// Returns space for `bytes` characters in the buffer. The caller fills a prefix of it and passes its length to advance().
+    /// Requires: bytes <= max_room.
     char* room(std::size_t bytes) {
         if (buffer_.size() - used_ < bytes) flush();
         return buffer_.data() + used_;
@@ -34,7 +35,7 @@ public:
     static constexpr std::size_t max_room = 4096;
 
     void flush();
-    /// Flushes, and makes the result final.
+    /// Flushes the buffer, and makes the result final.
     void commit();
 
 private:
@@ -45,8 +46,8 @@ private:
     std::size_t used_ = 0;
 };
 
-/// Standard output. What did not fit the buffer has been written even without commit(). Throws Error{cancelled} within
-/// 100 ms of a stop request, also while the reader of a pipe keeps it waiting.
+/// Standard output. Without commit(), only the content of the buffer is lost.
+/// Throws: Error{cancelled} within 100 ms of a stop request, even while a pipe is full.
 class StandardOutput final : public OutputStream {
 public:
     explicit StandardOutput(std::stop_token stop);

@@ -29,7 +29,7 @@ std::array<std::string, 2> name_pair(const json& value, const std::string& place
     return {json_text(names[0], item(place, 0)), json_text(names[1], item(place, 1))};
 }
 
-/// What `read` makes of each item of an array that may be left out.
+/// Returns the results of `read` for the items of an array; empty if the object does not have the key.
 template <typename Read>
 auto each_of(const JsonFields& fields, std::string_view key, const Read& read) {
     const std::string place = fields.place_of(key);
@@ -48,14 +48,14 @@ ExclusionRules parse_exclusion_rules(std::string_view text, std::string_view fil
     const JsonFields fields(root, std::string(file));
     fields.allow({"exclude", "ignored_pairs", "same_parent"});
     ExclusionRules rules{each_of(fields, "exclude", rule), each_of(fields, "ignored_pairs", name_pair)};
-    if (fields.find("same_parent") != nullptr) rules.same_parent = fields.yes_or_no("same_parent");
+    if (fields.find("same_parent") != nullptr) rules.same_parent = fields.boolean("same_parent");
     return rules;
 }
 
 ExclusionRules read_exclusion_rules(const std::string& path) {
     const InputFile file(path);
-    constexpr std::uint64_t most = 1 << 30;
-    if (file.size() > most) refuse(path, "longer than 1 GiB");
+    constexpr std::uint64_t max_bytes = 1 << 30;
+    if (file.size() > max_bytes) refuse(path, "the file is larger than 1 GiB, the maximum for exclusion rules");
     std::string text(std::size_t(file.size()), '\0');
     file.read(0, std::as_writable_bytes(std::span(text)));
     return parse_exclusion_rules(text, path);

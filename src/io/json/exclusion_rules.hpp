@@ -1,11 +1,10 @@
-// Exclusion rules: which pairs of a scene are not asked about, by the names of their objects. A JSON file:
+// Exclusion rules: a JSON file that names pairs of objects to leave out of the result.
 //
 //     {"exclude": [{"a": "*/bolt*", "b": "*/nut*"}],
 //      "ignored_pairs": [["frame/door", "frame/hinge"]],
 //      "same_parent": true}
 //
-// docs/formats.md says what each means. Every key may be left out; one that is not known is an error, as is one that is there
-// twice.
+// docs/formats.md describes the keys. Every key is optional. An unknown key and a repeated key are errors.
 #pragma once
 
 #include <array>
@@ -19,14 +18,15 @@ namespace octopair::io {
 
 struct ExclusionRules {
     std::vector<NameRule> exclude;
-    std::vector<std::array<std::string, 2>> ignored_pairs;  ///< by whole names
+    std::vector<std::array<std::string, 2>> ignored_pairs;  ///< two exact names each
     bool same_parent = false;
 };
 
-/// Throws Error{bad_input, io_failed}; the message begins with the file and names the place: "exclude[2]: b".
+/// Reads the rules of a file.
+/// Throws: Error{bad_input, io_failed} that begins with the file and names the place in it, for example "exclude[2]: b".
 ExclusionRules read_exclusion_rules(const std::string& path);
 
-/// `file`: for messages.
+/// Parses rules. `file` is the name that messages begin with. Throws: Error{bad_input}.
 ExclusionRules parse_exclusion_rules(std::string_view text, std::string_view file);
 
 }  // namespace octopair::io

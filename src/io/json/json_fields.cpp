@@ -16,19 +16,19 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int most_levels = 16;
+constexpr int max_levels = 16;
 
-/// Watches a parser: where it is, and which keys the objects around it have had.
-class Watch {
+/// Parser callback: tracks the path to the current value, and refuses repeated keys and deep nesting.
+class ParseMonitor {
 public:
-    Watch(std::string_view file, const std::stop_token& stop) : file_(file), stop_(stop) {}
+    ParseMonitor(std::string_view file, const std::stop_token& stop) : file_(file), stop_(stop) {}
 
     bool operator()(int depth, json::parse_event_t event, const json& parsed) {
         if (++events_ % 65536 == 0 && stop_.stop_requested()) cancel();
         switch (event) {
             case json::parse_event_t::object_start:
             case json::parse_event_t::array_start:
-                if (depth >= most_levels) refuse(place(), fmt::format("more than {} levels of nesting", most_levels));
+                if (depth >= max_levels) refuse(place(), fmt::format("more than {} levels of nesting", max_levels));
                 levels_.push_back({.is_array = event == json::parse_event_t::array_start});
                 break;
             case json::parse_event_t::object_end:
@@ -45,32 +45,32 @@ public:
         return true;
     }
 
-    /// The file, and the way to the value that is being read.
+    /// Returns the file and the path to the current value, for example "f.json: objects[1].shape".
     std::string place() const {
-        std::string way;
+        std::string path;
         for (const Level& level : levels_) {
             if (level.is_array) {
-                way += fmt::format("[{}]", level.values);
+                path += fmt::format("[{}]", level.values);
             } else if (level.keys.size() > level.values) {
-                way += fmt::format("{}{}", way.empty() ? "" : ".", shown_text(level.key));
+                path += fmt::format("{}{}", path.empty() ? "" : ".", shown_text(level.key));
             }
         }
-        return way.empty() ? std::string(file_) : fmt::format("{}: {}", file_, way);
+        return path.empty() ? std::string(file_) : fmt::format("{}: {}", file_, path);
     }
 
 private:
-    /// An array or an object that has begun, and not ended.
+    /// An array or an object that has begun and not ended.
     struct Level {
         bool is_array = false;
-        std::size_t values = 0;  ///< that have ended
+        std::size_t values = 0;  ///< number of complete values
         std::set<std::string> keys = {};
-        std::string key = {};  ///< the last
+        std::string key = {};  ///< last key
     };
 
     void begin_key(const std::string& key) {
         Level& level = levels_.back();
         if (!level.keys.insert(key).second) {
-            refuse(place(), fmt::format("the key '{}' stands twice in one object", shown_text(key)));
+            refuse(place(), fmt::format("the key '{}' occurs twice in one object", shown_text(key)));
         }
         level.key = key;
     }
@@ -81,8 +81,8 @@ private:
     std::vector<Level> levels_;
 };
 
-/// The parser's words without its own name for them.
-std::string words_of(const json::exception& error) {
+/// Returns the message of the parser without the error id in brackets, as printable ASCII.
+std::string message_of(const json::exception& error) {
     std::string_view words = error.what();
     if (const std::size_t end = words.find("] "); words.starts_with('[') && end != std::string_view::npos) {
         words.remove_prefix(end + 2);
@@ -108,26 +108,26 @@ double number_of(const json& value, const std::string& place, std::string_view w
 }  // namespace
 
 json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop) {
-    Watch watch(file, stop);
+    ParseMonitor monitor(file, stop);
     try {
-        return json::parse(text, [&watch](int depth, json::parse_event_t event, const json& parsed) {
-            return watch(depth, event, parsed);
+        return json::parse(text, [&monitor](int depth, json::parse_event_t event, const json& parsed) {
+            return monitor(depth, event, parsed);
         });
-    } catch (const json::parse_error& error) {  // it says the line and the column
-        refuse(file, words_of(error));
+    } catch (const json::parse_error& error) {  // the message has the line and the column
+        refuse(file, message_of(error));
     } catch (const json::exception& error) {
-        refuse(watch.place(), words_of(error));
+        refuse(monitor.place(), message_of(error));
     }
 }
 
 std::string shown_text(std::string_view text) {
-    constexpr std::size_t most = 60;
-    std::string shown(text.substr(0, most));
-    // Not half a character of UTF-8 at the end.
-    while (text.size() > most && !shown.empty() && (shown.back() & 0x80) != 0) shown.pop_back();
+    constexpr std::size_t max_bytes = 60;
+    std::string shown(text.substr(0, max_bytes));
+    // The cut must not leave part of a UTF-8 character at the end.
+    while (text.size() > max_bytes && !shown.empty() && (shown.back() & 0x80) != 0) shown.pop_back();
     std::replace_if(
         shown.begin(), shown.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
-    return text.size() > most ? shown + "..." : shown;
+    return text.size() > max_bytes ? shown + "..." : shown;
 }
 
 const json::array_t& json_array(const json& value, const std::string& place) {
@@ -167,7 +167,7 @@ JsonFields::JsonFields(const json& object, std::string place) : object_(object),
 void JsonFields::allow(std::initializer_list<std::string_view> known) const {
     for (const auto& [key, value] : object_.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-        refuse(place_, fmt::format("the key '{}' is not known here; these are: {}", shown_text(key),
+        refuse(place_, fmt::format("unknown key '{}'; known keys: {}", shown_text(key),
                                    fmt::join(known.begin(), known.end(), ", ")));
     }
 }
@@ -211,7 +211,7 @@ const std::string& JsonFields::text(std::string_view key) const { return json_te
 
 std::uint32_t JsonFields::whole_number(std::string_view key) const { return json_index(need(key), place_of(key)); }
 
-bool JsonFields::yes_or_no(std::string_view key) const {
+bool JsonFields::boolean(std::string_view key) const {
     const json& value = need(key);
     if (!value.is_boolean()) refuse_type(place_of(key), value, "true or false");
     return value.get<bool>();

@@ -1,5 +1,6 @@
-// JSON from files that may hold anything: parsed with bounds, and taken apart key by key, so that each fault is one line
-// that names the file, the place in it, the key, and what is wrong.
+// Parses untrusted JSON with bounds, and reads the parsed objects key by key.
+//
+// Each error is one line that names the file, the place in the file, the key, and what is wrong.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +16,34 @@
 
 namespace octopair::io {
 
-/// Throws Error{bad_input} that begins with `file` for what is no JSON, a key that an object has twice, and more than 16
-/// levels of nesting; Error{cancelled} soon after a stop request.
+/// Parses `text`. `file` is the name that messages begin with.
+/// Throws: Error{bad_input} for a syntax error, a key that one object has twice, or more than 16 levels of nesting;
+/// Error{cancelled} soon after a stop request.
 nlohmann::json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop = {});
 
-/// Text from a file as it may stand in a message.
+/// Returns text of a file in a form for messages: at most 60 bytes, with '?' for control characters.
 std::string shown_text(std::string_view text);
 
-/// What a value is, or throw Error{bad_input} "PLACE: a string, not ...".
+// Each function returns the content of `value`.
+// Throws: Error{bad_input} "PLACE: a string, not ..." if `value` has another type.
 Point3d json_point(const nlohmann::json& value, const std::string& place);
 std::uint32_t json_index(const nlohmann::json& value, const std::string& place);
 const std::vector<nlohmann::json>& json_array(const nlohmann::json& value, const std::string& place);
 const std::string& json_text(const nlohmann::json& value, const std::string& place);
 
-/// The keys of a JSON object, borrowed. All calls throw Error{bad_input} that begins with the place.
+/// Reads the values of a JSON object by key. Borrows the object.
+/// Throws: each call throws Error{bad_input} that begins with the place if the value is missing or wrong.
 class JsonFields {
 public:
-    /// `place`: "FILE: object 3 ('ball')".
+    /// `place` is the beginning of messages, for example "FILE: object 3 ('ball')".
     JsonFields(const nlohmann::json& object, std::string place);
 
-    /// Refuses keys that are not among these.
+    /// Throws: Error{bad_input} for a key of the object that is not in `known`.
     void allow(std::initializer_list<std::string_view> known) const;
 
-    /// Null if the key is not there.
+    /// Returns the value of `key`, or null if the object does not have the key.
     const nlohmann::json* find(std::string_view key) const;
+    /// Returns the value of `key`. Throws: Error{bad_input} if the object does not have the key.
     const nlohmann::json& need(std::string_view key) const;
 
     double number(std::string_view key) const;
@@ -48,7 +53,7 @@ public:
     Point3d point_above_zero(std::string_view key) const;
     const std::string& text(std::string_view key) const;
     std::uint32_t whole_number(std::string_view key) const;
-    bool yes_or_no(std::string_view key) const;
+    bool boolean(std::string_view key) const;
 
     const std::string& place() const { return place_; }
     std::string place_of(std::string_view key) const { return place_ + ": " + std::string(key); }

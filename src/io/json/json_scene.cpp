@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A place and a turn.
+/// Returns the pose with the position and the rotation of the two keys. Both keys are optional.
 Pose pose_of(const JsonFields& fields, std::string_view place_key, std::string_view turn_key) {
     const Point3d place = fields.find(place_key) != nullptr ? fields.point(place_key) : Point3d{0, 0, 0};
     const json* value = fields.find(turn_key);
@@ -31,8 +31,9 @@ Pose pose_of(const JsonFields& fields, std::string_view place_key, std::string_v
         turn[i] = array[i].get<double>();
     }
     const double length = std::hypot(std::hypot(turn[0], turn[1]), std::hypot(turn[2], turn[3]));
-    if (!(length > 0)) fields.refuse_key(turn_key, "a quaternion of no length");
-    if (!std::isfinite(length)) fields.refuse_key(turn_key, "a quaternion whose length is beyond float64");
+    if (!(length > 0)) fields.refuse_key(turn_key, "the quaternion has length 0");
+    if (!std::isfinite(length))
+        fields.refuse_key(turn_key, "the length of the quaternion is outside the range of float64");
     return make_pose(place, turn);
 }
 
@@ -89,7 +90,7 @@ private:
         if (fields.find("mask") != nullptr) {
             set(loaded_.masks, number, fields.whole_number("mask"), LoadedShapes::default_mask);
         }
-        fill_up(number + 1);
+        fill_defaults(number + 1);
     }
 
     std::uint32_t shape_number(const JsonFields& fields) {
@@ -101,7 +102,7 @@ private:
         const std::string& name = fields.text("shape");
         const auto found = shape_numbers_.find(name);
         if (found == shape_numbers_.end()) {
-            fields.refuse_key("shape", fmt::format("there is none named '{}'", shown_text(name)));
+            fields.refuse_key("shape", fmt::format("no shape has the name '{}'", shown_text(name)));
         }
         return found->second;
     }
@@ -118,7 +119,7 @@ private:
         loaded_.parents.push_back(parent->second);
     }
 
-    /// What an object's end says not is as at its begin.
+    /// Adds the end pose of an object. A missing end position or end rotation equals that at the start.
     void add_end(const JsonFields& fields, std::size_t number) {
         const bool moves = fields.find("end_position") != nullptr, turns = fields.find("end_rotation") != nullptr;
         if (!moves && !turns) return;
@@ -134,8 +135,8 @@ private:
         values.push_back(value);
     }
 
-    /// Arrays that are there have one an object.
-    void fill_up(std::size_t objects) {
+    /// Fills each optional array that is in use with defaults, up to `objects` elements.
+    void fill_defaults(std::size_t objects) {
         if (!loaded_.padding.empty()) loaded_.padding.resize(objects, 0.0);
         if (!loaded_.groups.empty()) loaded_.groups.resize(objects, LoadedShapes::default_groups);
         if (!loaded_.masks.empty()) loaded_.masks.resize(objects, LoadedShapes::default_mask);

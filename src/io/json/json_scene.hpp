@@ -1,6 +1,6 @@
-// Scenes of primitives in JSON: objects with shapes and poses (docs/formats.md).
+// Parses JSON scenes: objects with shapes and poses (docs/formats.md).
 //
-// They have no boxes: these are made of the shapes, by boxes_of (octopair/shapes.hpp).
+// The loaded scene has no boxes. boxes_of() (octopair/shapes.hpp) computes the boxes from the shapes.
 #pragma once
 
 #include <stop_token>
@@ -11,8 +11,9 @@
 
 namespace octopair::io {
 
-/// Throws Error{bad_input} that begins with `file` and names the object and the key; what `load_mesh` throws;
-/// Error{cancelled} soon after a stop request.
+/// Parses the scene in `text`. `file` is the name that messages begin with.
+/// Throws: Error{bad_input} that names the object and the key; what `load_mesh` throws; Error{cancelled} soon after a stop
+/// request.
 LoadedScene parse_json_scene(std::string_view text, std::string_view file, const MeshLoader& load_mesh,
                              const std::stop_token& stop = {});
 

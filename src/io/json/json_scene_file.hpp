@@ -1,4 +1,4 @@
-// JSON scenes in files, with the mesh files that they name.
+// Reads JSON scene files and the mesh files that they name.
 #pragma once
 
 #include <stop_token>
@@ -8,8 +8,9 @@
 
 namespace octopair::io {
 
-/// Names of mesh files are relative to the scene's directory; all that such a file shows becomes one mesh. Throws as
-/// parse_json_scene does, and Error{io_failed}.
+/// Reads a JSON scene. Names of mesh files are relative to the scene's directory. All triangles of a mesh file become one
+/// mesh.
+/// Throws: what parse_json_scene() throws; Error{io_failed}.
 LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace octopair::io

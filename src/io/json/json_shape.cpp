@@ -44,7 +44,7 @@ shape::Ellipsoid ellipsoid(const JsonFields& fields) {
 shape::Plane plane(const JsonFields& fields) {
     fields.allow({"type", "normal", "offset"});
     const shape::Plane plane = {fields.point("normal"), fields.number("offset")};
-    if (plane.normal == Point3d{0, 0, 0}) fields.refuse_key("normal", "0, 0, 0 is no direction");
+    if (plane.normal == Point3d{0, 0, 0}) fields.refuse_key("normal", "0, 0, 0 is not a direction");
     return plane;
 }
 
@@ -60,7 +60,7 @@ std::vector<Point3d> points(const JsonFields& fields, std::string_view key) {
 shape::ConvexHull convex_hull(const JsonFields& fields) {
     fields.allow({"type", "points"});
     shape::ConvexHull hull{points(fields, "points")};
-    if (hull.points.empty()) fields.refuse_key("points", "none; a hull has at least one");
+    if (hull.points.empty()) fields.refuse_key("points", "the list is empty; a hull needs at least one point");
     return hull;
 }
 
@@ -70,7 +70,8 @@ std::array<std::uint32_t, 3> triangle(const json& value, const std::string& plac
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t k = 0; k < 3; ++k) {
         triangle[k] = json_index(corners[k], place);
-        if (triangle[k] >= vertices) refuse(place, fmt::format("vertex {} of {}", triangle[k], vertices));
+        if (triangle[k] >= vertices)
+            refuse(place, fmt::format("vertex {} does not exist; the mesh has {} vertices", triangle[k], vertices));
     }
     return triangle;
 }
@@ -93,7 +94,7 @@ shape::Mesh mesh(const JsonFields& fields, const MeshLoader& load_mesh) {
         return inline_mesh(fields);
     }
     for (const std::string_view key : {"vertices", "triangles"}) {
-        if (fields.find(key) != nullptr) fields.refuse_key(key, "a mesh of a file has these from there");
+        if (fields.find(key) != nullptr) fields.refuse_key(key, "not allowed together with 'file'");
     }
     fields.allow({"type", "file"});
     try {
@@ -117,7 +118,7 @@ shape::Any json_shape(const json& value, const std::string& place, const MeshLoa
     if (type == "plane") return plane(fields);
     if (type == "convex_hull") return convex_hull(fields);
     if (type == "mesh") return mesh(fields, load_mesh);
-    fields.refuse_key("type", fmt::format("'{}' is not a kind of shape; these are: sphere, box, capsule, cylinder, "
+    fields.refuse_key("type", fmt::format("'{}' is not a type of shape; types: sphere, box, capsule, cylinder, "
                                           "cone, ellipsoid, plane, convex_hull, mesh",
                                           shown_text(type)));
 }

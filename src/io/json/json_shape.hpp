@@ -1,4 +1,4 @@
-// A shape of a JSON scene (docs/formats.md).
+// Parses one shape of a JSON scene (docs/formats.md).
 #pragma once
 
 #include <functional>
@@ -10,10 +10,11 @@
 
 namespace octopair::io {
 
-/// The mesh in the file that a scene names, as the scene writes its name. Throws Error.
+/// Returns the mesh in the file `name`. `name` is the text in the scene. Throws: Error.
 using MeshLoader = std::function<shape::Mesh(const std::string& name)>;
 
-/// Throws Error{bad_input} that begins with `place`, and what `load_mesh` throws with the place before it.
+/// Returns the shape that `value` describes. `place` is the beginning of messages.
+/// Throws: Error{bad_input}; what `load_mesh` throws, with `place` before its message.
 shape::Any json_shape(const nlohmann::json& value, const std::string& place, const MeshLoader& load_mesh);
 
 }  // namespace octopair::io

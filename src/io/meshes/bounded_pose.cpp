@@ -8,7 +8,7 @@ namespace octopair {
 
 namespace {
 
-/// A sum of products; its error bounds what was rounded away, up to the bound's own rounding (see value()).
+/// A sum of products with a bound on its rounding error. value() adds the rounding error of the bound itself.
 class Sum {
 public:
     void add(const Bounded& term) {
@@ -19,7 +19,7 @@ public:
     }
 
     void add_product(const Bounded& a, const Bounded& b) {
-        // Below this the remainder may not be a float64; it is then less than the allowance.
+        // Below `tiny` the remainder may be subnormal and inexact. It is then less than `allowance`.
         constexpr double tiny = 1e-280, allowance = 1e-300;
         const double product = a.value * b.value;
         double error = std::abs(std::fma(a.value, b.value, -product));
@@ -29,7 +29,8 @@ public:
         add({product, error});
     }
 
-    /// The bound was itself added up in float64, in at most some dozens of operations; 2^-40 of it covers them.
+    /// Returns the sum. The bound was computed in float64 too, in at most a few dozen operations; adding 2^-40 of it covers
+    /// their rounding.
     Bounded value() const { return {total_, error_ * (1 + 0x1p-40)}; }
 
 private:

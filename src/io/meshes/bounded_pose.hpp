@@ -1,9 +1,10 @@
-// Poses in float64 that know how far rounding may have moved their results.
+// BoundedPose: a pose in float64 with a bound on the rounding error of each number.
 //
-// Every operation adds up what it rounds away, found exactly (two-sum; the remainder of a product by fma). So an error
-// of zero means an exact result: meshes that are not moved, or moved by whole numbers, keep exact boxes, and the others
-// are widened by no more than was rounded. The values themselves are those of plain float64 arithmetic, so a point's is
-// where a vertex is in the world (octopair/shapes.hpp).
+// - Every operation adds the rounding error of its steps to the bound. Two-sum gives the exact error of a sum, fma that of
+//   a product.
+// - A bound of zero means an exact result. So meshes without a transform, or moved by whole numbers, keep exact boxes.
+// - Other boxes grow by no more than the rounding error.
+// - The values are those of plain float64 arithmetic, so they agree with the world positions of octopair/shapes.hpp.
 //
 // Source: Ogita, Rump, Oishi 2005, "Accurate sum and dot product".
 #pragma once
@@ -14,28 +15,28 @@
 
 namespace octopair {
 
-/// A number, and a bound on its distance from the exact result.
+/// A rounded number, and an upper bound on its distance from the exact number.
 struct Bounded {
     double value = 0;
     double error = 0;
 };
 
-/// A point between whose bounds the exact one lies.
+/// A rounded point. The exact point lies between `low` and `high` on each axis.
 struct BoundedPoint {
     Point3d value, low, high;
 };
 
 class BoundedPose {
 public:
-    /// The identity.
+    /// Makes the identity.
     BoundedPose();
-    /// The rows of a 3 x 4 matrix, exact.
+    /// Makes a pose from the rows of a 3 x 4 matrix. The numbers count as exact.
     explicit BoundedPose(const std::array<std::array<double, 4>, 3>& rows);
 
-    /// What first applies `local`, then this: the pose of a child node.
+    /// Returns the pose that applies `local` first, then this pose: the pose of a child node.
     BoundedPose operator*(const BoundedPose& local) const;
     BoundedPoint apply(const Point3d& point) const;
-    /// Without the bounds.
+    /// Returns the pose without its bounds.
     Pose value() const;
 
 private:

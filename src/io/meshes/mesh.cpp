@@ -18,12 +18,12 @@ Buffer<T> copy_of(const std::vector<T>& boxes) {
     return copy;
 }
 
-Box3d box_of(const MeshFile& file, const MeshInstance& node) {
+Box3d box_of(const MeshFile& file, const MeshInstance& instance) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    for (const unsigned number : node.meshes()) {
-        for (const unsigned index : file.shown_vertices(number)) {
-            const BoundedPoint point = file.posed_vertex(node, file.mesh(number), index);
+    for (const unsigned number : instance.meshes()) {
+        for (const unsigned index : file.used_vertices(number)) {
+            const BoundedPoint point = file.posed_vertex(instance, file.mesh(number), index);
             for (int axis = 0; axis < 3; ++axis) {
                 box.min[axis] = std::min(box.min[axis], point.low[axis]);
                 box.max[axis] = std::max(box.max[axis], point.high[axis]);
@@ -36,25 +36,25 @@ Box3d box_of(const MeshFile& file, const MeshInstance& node) {
 LoadedScene node_scene(const MeshFile& file) {
     LoadedScene scene;
     std::vector<Box3d> boxes;
-    for (const MeshInstance& node : file.nodes()) {
-        boxes.push_back(box_of(file, node));
-        scene.names.push_back(node.name);
+    for (const MeshInstance& instance : file.instances()) {
+        boxes.push_back(box_of(file, instance));
+        scene.names.push_back(instance.name);
     }
     scene.objects = boxes.size();
     scene.boxes = copy_of(boxes);
     return scene;
 }
 
-void append_triangles(const MeshFile& file, const MeshInstance& node, unsigned number, std::vector<Box3f>& boxes) {
+void append_triangles(const MeshFile& file, const MeshInstance& instance, unsigned number, std::vector<Box3f>& boxes) {
     const aiMesh& mesh = file.mesh(number);
     for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
         if (face.mNumIndices != 3) continue;
         Box3f box;
         for (unsigned k = 0; k < 3; ++k) {
-            const BoundedPoint point = file.posed_vertex(node, mesh, face.mIndices[k]);
+            const BoundedPoint point = file.posed_vertex(instance, mesh, face.mIndices[k]);
             for (int axis = 0; axis < 3; ++axis) {
                 const float value = float(point.value[axis]);
-                if (!std::isfinite(value)) file.refuse_vertex(node, face.mIndices[k], double(value));
+                if (!std::isfinite(value)) file.refuse_vertex(instance, face.mIndices[k], double(value));
                 box.min[axis] = k == 0 ? value : std::min(box.min[axis], value);
                 box.max[axis] = k == 0 ? value : std::max(box.max[axis], value);
             }
@@ -65,8 +65,8 @@ void append_triangles(const MeshFile& file, const MeshInstance& node, unsigned n
 
 LoadedScene triangle_scene(const MeshFile& file) {
     std::vector<Box3f> boxes;
-    for (const MeshInstance& node : file.nodes()) {
-        for (const unsigned number : node.meshes()) append_triangles(file, node, number, boxes);
+    for (const MeshInstance& instance : file.instances()) {
+        for (const unsigned number : instance.meshes()) append_triangles(file, instance, number, boxes);
     }
     LoadedScene scene;
     scene.objects = boxes.size();
@@ -74,7 +74,7 @@ LoadedScene triangle_scene(const MeshFile& file) {
     return scene;
 }
 
-/// Without boxes.
+/// Returns a scene with triangles and without boxes.
 LoadedScene exact_triangle_scene(const MeshFile& file) {
     LoadedScene scene;
     scene.triangles = triangles_of(file);

@@ -1,15 +1,16 @@
-// Mesh files, read by Assimp: each node that shows a mesh as an object, or each triangle.
+// Reads mesh files through Assimp. An object is a node with meshes, or a triangle.
 //
-//   node      its name is the node path from the root, joined by "/"; a node without a name gives "#" and its position
-//             among its parent's children. Its box is float64: it holds the vertices that faces of its meshes use (all
-//             vertices, where a mesh has no faces), posed by the transforms along the path, and is rounded outward.
-//   triangle  node by node, mesh by mesh, face by face; faces with more corners are cut into triangles, points and
-//             lines are left out. Its box is float32: posed vertices rounded once, then their min and max. No names.
+//   node      The name is the node path from the root, joined by "/". A node without a name gives "#" and its position
+//             among its parent's children. The box is float64 and rounded outward. It encloses the vertices that faces use
+//             (all vertices, if a mesh has no faces), posed by the transforms along the path.
+//   triangle  The order is node by node, mesh by mesh, face by face. Faces with more corners are split into triangles.
+//             Points and lines are left out. The box is float32: posed vertices rounded once, then their min and max.
+//             Triangles have no names.
 //
-// With shapes: nodes have theirs beside their boxes; triangles have no boxes, but their places in float64 and the names of
-// the nodes that own them.
+// With SceneContent::shapes, nodes have shapes besides boxes. Triangles then have float64 corners and the names of their
+// nodes, and no boxes.
 //
-// Vertices are taken as Assimp gives them: not merged, not reordered. Bones and animations are left out.
+// Vertices keep the order of Assimp and are not merged. Bones and animations are ignored.
 #pragma once
 
 #include <string>
@@ -20,10 +21,11 @@
 
 namespace octopair::io {
 
-/// True if Assimp reads files with such an ending (as in ".obj", in lower case).
+/// Returns whether Assimp reads files with the ending `ending`, for example ".obj". Requires: `ending` is in lower case.
 bool is_mesh_ending(std::string_view ending);
 
-/// Throws Error{bad_input} with Assimp's words if it refuses the file, and for a vertex that is not finite;
+/// Reads a mesh file.
+/// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, and for a vertex that is not finite;
 /// Error{io_failed, resource_limit}.
 LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content);
 

@@ -16,7 +16,7 @@ namespace octopair::io {
 
 namespace {
 
-/// Importers turn what they throw into an error text; want of memory is told apart again.
+/// Throws std::bad_alloc again if Assimp caught it. Assimp turns every exception into an error text.
 void rethrow_bad_alloc(const Assimp::Importer& importer) {
     const std::exception_ptr& exception = importer.GetException();
     if (!exception) return;
@@ -38,9 +38,9 @@ std::string name_of(const aiNode& node, unsigned position) {
     return node.mName.length == 0 ? fmt::format("#{}", position) : std::string(node.mName.C_Str());
 }
 
-/// All nodes with meshes, in pre-order. They are walked with a stack of our own: files choose how deep they are.
-std::vector<MeshInstance> find_nodes(const aiScene& scene) {
-    std::vector<MeshInstance> nodes;
+/// Returns all nodes with meshes, in pre-order. The traversal has an explicit stack, because the file controls the depth.
+std::vector<MeshInstance> find_instances(const aiScene& scene) {
+    std::vector<MeshInstance> instances;
     std::vector<MeshInstance> waiting;
     waiting.push_back({scene.mRootNode, name_of(*scene.mRootNode, 0), pose_of(*scene.mRootNode)});
     while (!waiting.empty()) {
@@ -50,21 +50,21 @@ std::vector<MeshInstance> find_nodes(const aiScene& scene) {
             const aiNode& child = *at.node->mChildren[i];
             waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child)});
         }
-        if (at.node->mNumMeshes > 0) nodes.push_back(at);
+        if (at.node->mNumMeshes > 0) instances.push_back(at);
     }
-    return nodes;
+    return instances;
 }
 
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path, bool triangles) : path_(path), scene_(&import(path, triangles)) {
-    shown_.resize(scene_->mNumMeshes);
-    nodes_ = find_nodes(*scene_);
-    std::erase_if(nodes_, [this](const MeshInstance& node) { return !shows_something(node); });
+    used_vertices_.resize(scene_->mNumMeshes);
+    instances_ = find_instances(*scene_);
+    std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
 }
 
 const aiScene& MeshFile::import(const std::string& path, bool triangles) {
-    const InputFile readable(path);  // for the system's own words where it is not
+    const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
     const aiScene* scene = importer_.ReadFile(path, triangles ? unsigned(aiProcess_Triangulate) : 0u);
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
     rethrow_bad_alloc(importer_);
@@ -75,16 +75,16 @@ const aiScene& MeshFile::import(const std::string& path, bool triangles) {
            words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
 }
 
-bool MeshFile::shows_something(const MeshInstance& node) {
+bool MeshFile::has_vertices(const MeshInstance& instance) {
     bool something = false;
-    for (const unsigned number : node.meshes()) {
-        if (!shown_[number]) shown_[number] = find_shown(node, mesh(number));
-        something |= !shown_[number]->empty();
+    for (const unsigned number : instance.meshes()) {
+        if (!used_vertices_[number]) used_vertices_[number] = find_used_vertices(instance, mesh(number));
+        something |= !used_vertices_[number]->empty();
     }
     return something;
 }
 
-std::vector<unsigned> MeshFile::find_shown(const MeshInstance& node, const aiMesh& mesh) const {
+std::vector<unsigned> MeshFile::find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const {
     std::vector<unsigned> shown;
     if (mesh.mNumFaces == 0) {
         shown.resize(mesh.mNumVertices);
@@ -95,8 +95,8 @@ std::vector<unsigned> MeshFile::find_shown(const MeshInstance& node, const aiMes
     for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
         for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
             if (index >= mesh.mNumVertices) {
-                refuse(path_,
-                       fmt::format("node '{}': a face names vertex {} of {}", node.name, index, mesh.mNumVertices));
+                refuse(path_, fmt::format("node '{}': a face refers to vertex {}, but the mesh has {} vertices",
+                                          instance.name, index, mesh.mNumVertices));
             }
             if (!seen[index]) shown.push_back(index);
             seen[index] = true;
@@ -105,20 +105,20 @@ std::vector<unsigned> MeshFile::find_shown(const MeshInstance& node, const aiMes
     return shown;
 }
 
-BoundedPoint MeshFile::posed_vertex(const MeshInstance& node, const aiMesh& mesh, unsigned index) const {
+BoundedPoint MeshFile::posed_vertex(const MeshInstance& instance, const aiMesh& mesh, unsigned index) const {
     const Point3d place = vertex(mesh, index);
-    const BoundedPoint point = node.pose.apply(place);
+    const BoundedPoint point = instance.pose.apply(place);
     for (const auto& numbers : {place, point.low, point.high}) {
         for (const double number : numbers) {
-            if (!std::isfinite(number)) refuse_vertex(node, index, number);
+            if (!std::isfinite(number)) refuse_vertex(instance, index, number);
         }
     }
     return point;
 }
 
-void MeshFile::refuse_vertex(const MeshInstance& node, unsigned index, double value) const {
-    refuse(path_,
-           fmt::format("node '{}': vertex {} is at {}, not at a finite place", node.name, index, number_text(value)));
+void MeshFile::refuse_vertex(const MeshInstance& instance, unsigned index, double value) const {
+    refuse(path_, fmt::format("node '{}': vertex {} has the coordinate {}, which is not finite", instance.name, index,
+                              number_text(value)));
 }
 
 }  // namespace octopair::io

@@ -1,7 +1,7 @@
-// A mesh file in memory: the nodes of it that show something, with names, poses and vertices.
+// MeshFile: a mesh file in memory, as a list of instances with names, poses and vertices.
 //
-// A node shows the vertices that faces of its meshes use (all vertices, where a mesh has no faces). One that shows none
-// is no object.
+// - An instance is a node whose meshes have at least one used vertex.
+// - A vertex is used if a face of its mesh refers to it. If a mesh has no faces, all its vertices are used.
 #pragma once
 
 #include <cstdint>
@@ -18,45 +18,49 @@
 
 namespace octopair::io {
 
-/// A node that shows something.
+/// A node that places one or more meshes in the world.
 struct MeshInstance {
     const aiNode* node;
-    std::string name;  ///< the path to it
-    BoundedPose pose;  ///< the transforms along the path
+    std::string name;  ///< node path from the root, joined by "/"
+    BoundedPose pose;  ///< product of the transforms along the path
 
     std::span<const unsigned> meshes() const { return {node->mMeshes, node->mNumMeshes}; }
 };
 
 class MeshFile {
 public:
-    /// `triangles`: faces with more corners are cut into triangles. Throws Error{bad_input} with Assimp's words if it
-    /// refuses the file, and for a face of a vertex that is not there; Error{io_failed}.
+    /// Reads a file. With `triangles`, faces with more than three corners are split into triangles.
+    /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, and for a vertex index out of range;
+    /// Error{io_failed}.
     MeshFile(const std::string& path, bool triangles);
 
-    /// In pre-order.
-    const std::vector<MeshInstance>& nodes() const { return nodes_; }
+    /// Returns all instances, in pre-order of their nodes.
+    const std::vector<MeshInstance>& instances() const { return instances_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
-    /// What is shown of a mesh that a node names, each vertex once, in the order of their first use.
-    const std::vector<unsigned>& shown_vertices(unsigned mesh) const { return *shown_[mesh]; }
+    /// Returns the used vertices of a mesh, each once, in the order of first use. Requires: an instance has the mesh.
+    const std::vector<unsigned>& used_vertices(unsigned mesh) const { return *used_vertices_[mesh]; }
 
     static Point3d vertex(const aiMesh& mesh, unsigned index) {
         const aiVector3D& place = mesh.mVertices[index];
         return {double(place.x), double(place.y), double(place.z)};
     }
-    /// Throws Error{bad_input} that names the node and the vertex, if it or its place in the world is not finite.
-    BoundedPoint posed_vertex(const MeshInstance& node, const aiMesh& mesh, unsigned index) const;
-    [[noreturn]] void refuse_vertex(const MeshInstance& node, unsigned index, double value) const;
+    /// Returns the position of a vertex in the world.
+    /// Throws: Error{bad_input} that names the node and the vertex, if the position in the file or in the world is not finite.
+    BoundedPoint posed_vertex(const MeshInstance& instance, const aiMesh& mesh, unsigned index) const;
+    /// Throws: Error{bad_input}: `value` is a coordinate of the vertex, and not finite.
+    [[noreturn]] void refuse_vertex(const MeshInstance& instance, unsigned index, double value) const;
 
 private:
     const aiScene& import(const std::string& path, bool triangles);
-    bool shows_something(const MeshInstance& node);
-    std::vector<unsigned> find_shown(const MeshInstance& node, const aiMesh& mesh) const;
+    bool has_vertices(const MeshInstance& instance);
+    std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
 
     std::string path_;
     Assimp::Importer importer_;
     const aiScene* scene_;
-    std::vector<MeshInstance> nodes_;
-    std::vector<std::optional<std::vector<unsigned>>> shown_;  // of each mesh, once a node was seen to name it
+    std::vector<MeshInstance> instances_;
+    std::vector<std::optional<std::vector<unsigned>>>
+        used_vertices_;  // per mesh; empty until a node with the mesh is visited
 };
 
 }  // namespace octopair::io

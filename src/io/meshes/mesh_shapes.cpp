@@ -16,7 +16,7 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 std::span<const aiFace> faces_of(const aiMesh& mesh) { return {mesh.mFaces, mesh.mNumFaces}; }
 
-/// Adds the triangles of a mesh; `place` says where a vertex of it is.
+/// Appends the triangles of a mesh to `to`. `place(i)` returns the position of vertex i.
 template <typename Place>
 void append_mesh(const aiMesh& mesh, const Place& place, shape::Mesh& to) {
     std::vector<std::uint32_t> numbers(mesh.mNumVertices, none);
@@ -26,7 +26,8 @@ void append_mesh(const aiMesh& mesh, const Place& place, shape::Mesh& to) {
         for (unsigned k = 0; k < 3; ++k) {
             std::uint32_t& number = numbers[face.mIndices[k]];
             if (number == none) {
-                if (to.vertices.size() == none) throw Error(ErrorCode::resource_limit, "a mesh of 2^32 vertices");
+                if (to.vertices.size() == none)
+                    throw Error(ErrorCode::resource_limit, "a mesh has more than 2^32 - 1 vertices");
                 number = std::uint32_t(to.vertices.size());
                 to.vertices.push_back(place(face.mIndices[k]));
             }
@@ -36,9 +37,9 @@ void append_mesh(const aiMesh& mesh, const Place& place, shape::Mesh& to) {
     }
 }
 
-shape::Mesh shape_of(const MeshFile& file, const MeshInstance& node) {
+shape::Mesh shape_of(const MeshFile& file, const MeshInstance& instance) {
     shape::Mesh shape;
-    for (const unsigned number : node.meshes()) {
+    for (const unsigned number : instance.meshes()) {
         const aiMesh& mesh = file.mesh(number);
         append_mesh(
             mesh, [&](unsigned index) { return MeshFile::vertex(mesh, index); }, shape);
@@ -52,33 +53,33 @@ LoadedShapes shapes_of(const MeshFile& file) {
     LoadedShapes loaded;
     std::map<std::vector<unsigned>, std::uint32_t> numbers;
     std::map<const aiNode*, std::uint32_t> parents;
-    for (const MeshInstance& node : file.nodes()) {
-        const auto meshes = node.meshes();
+    for (const MeshInstance& instance : file.instances()) {
+        const auto meshes = instance.meshes();
         const auto [shape, is_new] = numbers.try_emplace({meshes.begin(), meshes.end()}, loaded.shapes.size());
-        if (is_new) loaded.shapes.emplace_back(shape_of(file, node));
+        if (is_new) loaded.shapes.emplace_back(shape_of(file, instance));
         loaded.geometry.push_back(shape->second);
-        loaded.poses.push_back(node.pose.value());
-        // There is one node without a parent, so it is alike none.
-        loaded.parents.push_back(parents.try_emplace(node.node->mParent, parents.size()).first->second);
+        loaded.poses.push_back(instance.pose.value());
+        // Only the root has no parent, so no other node gets its parent number.
+        loaded.parents.push_back(parents.try_emplace(instance.node->mParent, parents.size()).first->second);
     }
     return loaded;
 }
 
 LoadedTriangles triangles_of(const MeshFile& file) {
     LoadedTriangles loaded;
-    for (const MeshInstance& node : file.nodes()) {
+    for (const MeshInstance& instance : file.instances()) {
         const auto owner = std::uint32_t(loaded.owner_names.size());
-        loaded.owner_names.push_back(node.name);
-        for (const unsigned number : node.meshes()) {
+        loaded.owner_names.push_back(instance.name);
+        for (const unsigned number : instance.meshes()) {
             const aiMesh& mesh = file.mesh(number);
             for (const aiFace& face : faces_of(mesh)) {
                 if (face.mNumIndices != 3) continue;
                 Triangle3d triangle;
                 for (unsigned k = 0; k < 3; ++k) {
-                    triangle[k] = file.posed_vertex(node, mesh, face.mIndices[k]).value;
+                    triangle[k] = file.posed_vertex(instance, mesh, face.mIndices[k]).value;
                     for (const double value : triangle[k]) {
                         if (!std::isfinite(float(value)))
-                            file.refuse_vertex(node, face.mIndices[k], double(float(value)));
+                            file.refuse_vertex(instance, face.mIndices[k], double(float(value)));
                     }
                 }
                 loaded.triangles.push_back(triangle);
@@ -91,11 +92,11 @@ LoadedTriangles triangles_of(const MeshFile& file) {
 
 shape::Mesh whole_mesh_of(const MeshFile& file) {
     shape::Mesh shape;
-    for (const MeshInstance& node : file.nodes()) {
-        for (const unsigned number : node.meshes()) {
+    for (const MeshInstance& instance : file.instances()) {
+        for (const unsigned number : instance.meshes()) {
             const aiMesh& mesh = file.mesh(number);
             append_mesh(
-                mesh, [&](unsigned index) { return file.posed_vertex(node, mesh, index).value; }, shape);
+                mesh, [&](unsigned index) { return file.posed_vertex(instance, mesh, index).value; }, shape);
         }
     }
     return shape;

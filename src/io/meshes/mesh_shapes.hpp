@@ -1,7 +1,9 @@
-// What the exact stages need of a mesh file: the shapes of its nodes, or the triangles of all nodes in the world.
+// Converts a mesh file for the narrow phase: to the shapes of its nodes, or to the triangles of all nodes in the world.
 //
-// Nodes that show the same meshes share a shape, which is made of the triangles of them all, in the order of `--objects
-// triangle`, and of the vertices that these use. A node of points and lines alone has a mesh without triangles.
+// - Nodes with the same list of meshes share a shape.
+// - A shape has the triangles of all meshes of its node, in the order of `--objects triangle`, and the vertices that these
+//   triangles use.
+// - A node that has only points and lines gets a mesh without triangles.
 #pragma once
 
 #include "io/loaded_shapes.hpp"
@@ -9,13 +11,19 @@
 
 namespace octopair::io {
 
-/// Of a file that was read with `triangles`. Throws Error{resource_limit} where vertices are too many for 32-bit numbers.
+/// Returns the shapes and poses of all instances.
+/// Requires: the file was read with `triangles`.
+/// Throws: Error{resource_limit} if a shape has too many vertices for 32-bit indices.
 LoadedShapes shapes_of(const MeshFile& file);
 
-/// Throws Error{bad_input} for a vertex beyond float32, as boxes of triangles do.
+/// Returns the triangles of all instances, in the world.
+/// Requires: the file was read with `triangles`.
+/// Throws: Error{bad_input} for a vertex beyond the range of float32, because boxes of triangles are float32.
 LoadedTriangles triangles_of(const MeshFile& file);
 
-/// All triangles of the file, posed, as one mesh. Throws what the others throw.
+/// Returns all triangles of the file, in the world, as one mesh.
+/// Requires: the file was read with `triangles`.
+/// Throws: Error{bad_input} for a vertex that is not finite; Error{resource_limit} as shapes_of() does.
 shape::Mesh whole_mesh_of(const MeshFile& file);
 
 }  // namespace octopair::io

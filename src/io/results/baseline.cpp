@@ -16,29 +16,29 @@ namespace octopair::io {
 
 namespace {
 
-/// What an object is known by.
+/// Identity of an object across results.
 struct ObjectId {
     std::uint32_t number;
     std::string name;
     std::optional<std::uint32_t> triangle;
 
-    /// `set`: of those without a name.
+    /// Returns the identity as text. `set` is put before the number of an object without a name.
     std::string text(std::string_view set) const {
         if (name.empty()) return fmt::format("{}#{}", set, number);
         return triangle ? fmt::format("{}/{}", *triangle, name) : "/" + name;
     }
 };
 
-// A key begins with how the two objects stand: apart, together, or that nobody asked.
-constexpr char standing_unasked = '?', standing_apart = '-', standing_together = '+';
+// First character of a key, the contact state of the two objects: unknown, apart, or in contact.
+constexpr char state_unknown = '?', state_apart = '-', state_in_contact = '+';
 
-char standing_in(const JsonFields& row) {
-    if (row.find("class") == nullptr) return standing_unasked;
-    return row.text("class") == word_of(CollisionClass::clearance) ? standing_apart : standing_together;
+char contact_state(const JsonFields& row) {
+    if (row.find("class") == nullptr) return state_unknown;
+    return row.text("class") == word_of(CollisionClass::clearance) ? state_apart : state_in_contact;
 }
 
-/// How those may have stood that a collision of this class is like, what fits best first.
-std::string_view standings_like(CollisionClass collision_class) {
+/// Returns the contact states that match a collision of this class, the best match first.
+std::string_view matching_states(CollisionClass collision_class) {
     if (collision_class == CollisionClass::unknown) return "?+-";
     return meet(collision_class) ? "+?" : "-?";
 }
@@ -46,7 +46,7 @@ std::string_view standings_like(CollisionClass collision_class) {
 std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
     std::string first = a.text(join ? "a" : ""), second = b.text(join ? "b" : "");
     if (second < first) std::swap(first, second);
-    return fmt::format("{}{}:{}{}", standing_unasked, first.size(), first, second);
+    return fmt::format("{}{}:{}{}", state_unknown, first.size(), first, second);
 }
 
 ObjectId id_in(const JsonFields& row, const std::string& side) {
@@ -90,28 +90,28 @@ void Baseline::read(std::string_view text, std::string_view file, const std::sto
         const nlohmann::json value = parse_json(line, place, stop);
         const JsonFields row(value, place);
         if (row.find("frame") != nullptr) row.refuse_key("frame", "results of moving scenes cannot be compared");
-        // Rows of a comparison that was itself written to a file.
+        // The file may be the result of an earlier comparison. Its "gone" rows are not part of that result.
         if (row.find("change") != nullptr && row.text("change") == word_of(Change::gone)) continue;
         std::string key = key_of_ids(id_in(row, "a"), id_in(row, "b"), join_);
-        key[0] = standing_in(row);
-        waiting_[key].push_back(lines_.size());
+        key[0] = contact_state(row);
+        unmatched_[key].push_back(lines_.size());
         lines_.emplace_back(line);
     }
-    met_.resize(lines_.size());
+    matched_.resize(lines_.size());
     counts_.gone = lines_.size();
-    for (auto& [key, rows] : waiting_) std::reverse(rows.begin(), rows.end());
+    for (auto& [key, rows] : unmatched_) std::reverse(rows.begin(), rows.end());
 }
 
 std::string Baseline::key_of(Pair pair, const CollisionNames& names) const {
     return key_of_ids(id_of(pair.a, names.a), id_of(pair.b, names.b), join_);
 }
 
-bool Baseline::find_again(std::string key, CollisionClass collision_class) {
-    for (const char standing : standings_like(collision_class)) {
-        key[0] = standing;
-        const auto rows = waiting_.find(key);
-        if (rows == waiting_.end() || rows->second.empty()) continue;
-        met_[rows->second.back()] = true;
+bool Baseline::match(std::string key, CollisionClass collision_class) {
+    for (const char state : matching_states(collision_class)) {
+        key[0] = state;
+        const auto rows = unmatched_.find(key);
+        if (rows == unmatched_.end() || rows->second.empty()) continue;
+        matched_[rows->second.back()] = true;
         rows->second.pop_back();
         return true;
     }
@@ -123,7 +123,7 @@ std::vector<Change> Baseline::compare(std::span<const Pair> pairs, std::span<con
     std::vector<Change> changes(pairs.size(), Change::begun);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const CollisionClass now = findings.empty() ? CollisionClass::unknown : findings[i].collision_class;
-        if (find_again(key_of(pairs[i], names), now)) changes[i] = Change::same;
+        if (match(key_of(pairs[i], names), now)) changes[i] = Change::same;
     }
     const auto same = std::uint64_t(std::count(changes.begin(), changes.end(), Change::same));
     counts_.same += same;
@@ -135,7 +135,7 @@ std::vector<Change> Baseline::compare(std::span<const Pair> pairs, std::span<con
 std::vector<std::string_view> Baseline::gone() const {
     std::vector<std::string_view> gone;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
-        if (!met_[i]) gone.emplace_back(lines_[i]);
+        if (!matched_[i]) gone.emplace_back(lines_[i]);
     }
     return gone;
 }

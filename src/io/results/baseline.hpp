@@ -1,9 +1,10 @@
-// An older result that a new one is held against: which collisions are new, which are gone, which are the same.
+// Baseline: compares a new result with an older one, and says which collisions are new, the same, or gone.
 //
-// A collision is known by the names of its two objects, in any order, and triangles by their number within their owner as
-// well; an object without a name by its number, and in a join by its set. Where several collisions have the same names,
-// the first of the old ones is the first of the new ones, and so on. Two objects that were apart, within the margin, and
-// meet now are something new, and the other way round; a row that says nothing of its class may be either.
+// - The key of a collision is the unordered pair of its objects' names. A triangle adds its number within its owner.
+// - An object without a name is identified by its number, in a join also by its set.
+// - Collisions with the same key are matched in order: the first old row with the first new row, and so on.
+// - A pair that was apart (class "clearance") and is now in contact counts as new, and the other way round.
+// - A row without a class matches rows of any class.
 #pragma once
 
 #include <cstdint>
@@ -24,34 +25,34 @@ struct ChangeCounts {
 
 class Baseline {
 public:
-    /// A .jsonl file of collisions or pairs. Throws Error{bad_input} that names the file and the line, Error{io_failed,
-    /// cancelled}.
+    /// Reads a .jsonl file of collisions or pairs. `join` says whether the result is that of a join.
+    /// Throws: Error{bad_input} that names the file and the line; Error{io_failed, cancelled}.
     Baseline(const std::string& path, bool join, const std::stop_token& stop = {});
-    /// The same for what is in such a file.
+    /// Parses the text of such a file. `file` is the name that messages begin with.
     static Baseline of_text(std::string_view text, std::string_view file, bool join);
 
-    /// How each of the new collisions stands to the old ones; called with all of them, in order, once. `findings`: as
-    /// many, or none.
+    /// Returns the change of each new collision. Call it for consecutive parts of the new result, each part once.
+    /// `findings` has one element per pair, or is empty.
     std::vector<Change> compare(std::span<const Pair> pairs, std::span<const Finding> findings,
                                 const CollisionNames& names);
 
-    /// Of the old collisions, the lines of those that compare() has not met, in their order.
+    /// Returns the lines of the old collisions that no new one has matched, in their order.
     std::vector<std::string_view> gone() const;
-    /// After all calls of compare().
+    /// Returns the number of collisions by change. Requires: compare() has had all new collisions.
     ChangeCounts counts() const;
 
 private:
     explicit Baseline(bool join) : join_(join) {}
     void read(std::string_view text, std::string_view file, const std::stop_token& stop);
     std::string key_of(Pair pair, const CollisionNames& names) const;
-    /// Whether an old collision with this key waits for a new one of this class; it waits no more.
-    bool find_again(std::string key, CollisionClass collision_class);
+    /// Matches a new collision with the first unmatched old one. Returns whether there was one.
+    bool match(std::string key, CollisionClass collision_class);
 
     bool join_;
     std::vector<std::string> lines_;
-    std::vector<bool> met_;  // of each line
-    /// Of each key, which begins with how the two stand, the lines with it, the last one first.
-    std::unordered_map<std::string, std::vector<std::size_t>> waiting_;
+    std::vector<bool> matched_;  // per line
+    /// Unmatched lines by key, the last line first. The first character of a key is the contact state (baseline.cpp).
+    std::unordered_map<std::string, std::vector<std::size_t>> unmatched_;
     ChangeCounts counts_;
 };
 

@@ -1,5 +1,4 @@
-// What is written of a collision, whatever the form of the file: which objects, what is known of the two, and how it
-// stands to an older result.
+// Rows of a collision result, independent of the file format: objects, findings, and the change since an older result.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +12,17 @@
 
 namespace octopair::io {
 
-/// The names of what a, or b, of a pair counts. Borrowed.
+/// Names of the objects of one set. Borrowed.
 struct ObjectNames {
-    std::span<const std::string> names = {};     ///< empty, or one an object; of triangles: one an owner
-    std::span<const std::uint32_t> owners = {};  ///< empty, or of each triangle its owner, ascending
+    std::span<const std::string> names = {};     ///< empty, or one name per object; for triangles, one per owner
+    std::span<const std::uint32_t> owners = {};  ///< for triangles, the owner of each, ascending; otherwise empty
 
-    /// Empty, if it has none.
+    /// Returns the name of an object; empty if it has none.
     std::string_view of(std::uint32_t object) const {
         const std::size_t i = owners.empty() ? object : owners[object];
         return i < names.size() ? std::string_view(names[i]) : std::string_view();
     }
-    /// A triangle's number among those of its owner.
+    /// Returns the number of a triangle among those of its owner. Requires: `owners` is not empty.
     std::uint32_t triangle(std::uint32_t object) const {
         return object - std::uint32_t(std::lower_bound(owners.begin(), owners.end(), owners[object]) - owners.begin());
     }
@@ -33,17 +32,17 @@ struct CollisionNames {
     ObjectNames a, b;
 };
 
-/// How a collision stands to an older result (baseline.hpp).
+/// Change of a collision since an older result (baseline.hpp).
 enum class Change : std::uint8_t { begun, same, gone };
 
-/// Rows of a result, in order. Borrowed.
+/// Consecutive rows of a result. Borrowed.
 struct CollisionRows {
     std::span<const Pair> pairs;
-    std::span<const Finding> findings = {};  ///< as many, or none
-    std::span<const Change> changes = {};    ///< as many, or none
+    std::span<const Finding> findings = {};  ///< one per pair, or empty
+    std::span<const Change> changes = {};    ///< one per pair, or empty
 };
 
-/// As it stands in files: "penetrating".
+/// Returns the word for a class in result files, for example "penetrating".
 constexpr std::string_view word_of(CollisionClass collision_class) {
     constexpr std::string_view words[] = {"unknown", "clearance", "collision", "touching", "penetrating", "contained"};
     return words[std::size_t(collision_class)];
@@ -53,7 +52,7 @@ constexpr std::string_view word_of(Change change) {
     return words[std::size_t(change)];
 }
 
-/// Two that meet, so that a depth and contacts mean something; else there is a distance.
+/// Returns whether objects of this class meet. Then depth and contacts are defined; otherwise the distance is.
 constexpr bool meet(CollisionClass collision_class) { return collision_class > CollisionClass::clearance; }
 
 }  // namespace octopair::io

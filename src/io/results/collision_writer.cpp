@@ -146,7 +146,7 @@ private:
         return json_number(point[0]) + ' ' + json_number(point[1]) + ' ' + json_number(point[2]);
     }
 
-    /// Of contacts, or the nearest ones.
+    /// Returns the points of the contacts, or for objects that are apart, the two nearest points.
     std::string points(const Finding& finding) const {
         std::string text;
         const auto add = [&](const Point3d& point) { text += (text.empty() ? "" : ";") + point_text(point); };
@@ -221,7 +221,8 @@ std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& p
         case ResultFormat::npy:
             break;
     }
-    throw Error(ErrorCode::usage, fmt::format("{}: .npy holds pairs alone; collisions go to .csv or .jsonl", path));
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: .npy can hold only pairs; write collisions to .csv or .jsonl", path));
 }
 
 }  // namespace octopair::io

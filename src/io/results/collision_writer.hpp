@@ -1,9 +1,9 @@
-// Result files of collisions: .jsonl and .csv, written as they come (docs/formats.md).
+// Writes result files of collisions: .jsonl and .csv (docs/formats.md). The collisions are streamed, not collected.
 //
-//   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; what is not
-//          known is left out
-//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts", and ",change" where there is a
-//          baseline; a field that is not known is empty
+//   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; unknown keys
+//          are left out
+//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts", with a baseline also
+//          ",change"; unknown fields are empty
 //
 // A file appears whole, with finish(), or not at all.
 #pragma once
@@ -18,20 +18,20 @@
 
 namespace octopair::io {
 
-/// What is known of the collisions of a result.
+/// Selects the fields that the collisions of a result have.
 struct CollisionForm {
     CollisionNames names = {};
-    bool features = false;  ///< depth and contacts
-    bool times = false;     ///< when two first meet
-    bool changes = false;   ///< there is a baseline
+    bool features = false;  ///< depth and contacts are known
+    bool times = false;     ///< the time of first contact is known
+    bool changes = false;   ///< the result is compared with a baseline
 };
 
 class CollisionWriter {
 public:
     virtual ~CollisionWriter() = default;
-    /// In the order of the result.
+    /// Writes rows. Calls follow the order of the result.
     virtual void write(const CollisionRows& rows) = 0;
-    /// Old rows that are no more, after all others: lines of an older .jsonl file.
+    /// Writes the rows of a baseline that are gone. `lines` are lines of its .jsonl file. Call it after all write() calls.
     virtual void write_gone(std::span<const std::string_view> lines) = 0;
     virtual void finish() = 0;
 };
@@ -41,10 +41,11 @@ std::unique_ptr<CollisionWriter> make_collision_jsonl_writer(std::unique_ptr<Out
 std::unique_ptr<CollisionWriter> make_collision_csv_writer(std::unique_ptr<OutputStream> out,
                                                            const CollisionForm& form);
 
-/// The one for the ending of `path`. Throws Error{usage} for .npy, which holds pairs alone, and other endings.
+/// Returns the writer for the ending of `path`.
+/// Throws: Error{usage} for other endings, and for .npy, which can hold pairs only; Error{io_failed}.
 std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& path, const CollisionForm& form);
 
-/// As a field of a .csv file: in quotes where it needs them (RFC 4180); what is not UTF-8 becomes U+FFFD.
+/// Returns `text` as a field of a .csv file, quoted if needed (RFC 4180). Invalid UTF-8 becomes U+FFFD.
 std::string csv_field(std::string_view text);
 
 }  // namespace octopair::io

@@ -10,7 +10,7 @@ ResultFormat event_format(const std::string& path) {
     const ResultFormat format = result_format(path);
     if (format != ResultFormat::npy) return format;
     throw Error(ErrorCode::usage,
-                fmt::format("{}: events are rows of text; the name of their file ends in .csv or .jsonl", path));
+                fmt::format("{}: events are rows of text; the name of their file must end in .csv or .jsonl", path));
 }
 
 EventWriter::EventWriter(ResultFormat format, std::unique_ptr<OutputStream> out, const PairNames& names)

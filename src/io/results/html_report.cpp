@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view data_mark = "@DATA@";
 
-/// JSON that nothing in it can end the element around it.
+/// Escapes every "<", so that no text in the JSON can end its <script> element.
 std::string script_json(std::string text) {
     for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
         text.replace(at, 1, "\\u003c");
@@ -42,7 +42,7 @@ std::string label_of(const ObjectNames& names, std::uint32_t object) {
     return names.owners.empty() ? name : fmt::format("{}, triangle {}", name, names.triangle(object));
 }
 
-/// Where a pair is to be looked at, or null.
+/// Returns a point where the objects of a pair meet or are nearest, or "null" if none is known.
 std::string json_place(const Finding& finding, bool features) {
     const bool clear = finding.collision_class == CollisionClass::clearance;
     if (!clear && (!features || finding.contacts.empty())) return "null";
@@ -50,7 +50,7 @@ std::string json_place(const Finding& finding, bool features) {
     return fmt::format("[{},{},{}]", json_number(at[0]), json_number(at[1]), json_number(at[2]));
 }
 
-/// An object of an old row.
+/// Returns the label of one object of a row of the baseline. `side` is "a" or "b".
 nlohmann::json old_label(const nlohmann::json& row, const std::string& side) {
     const std::string name = row.value(side + "_name", "#" + dump_json(row.at(side)));
     const auto triangle = row.find(side + "_triangle");
@@ -89,7 +89,7 @@ void HtmlReport::write(const CollisionRows& rows) {
         const Finding finding = rows.findings.empty() ? Finding() : rows.findings[i];
         ++of_class_[std::size_t(finding.collision_class)];
         if (!rows.changes.empty()) ++of_change_[std::size_t(rows.changes[i])];
-        if (rows_++ >= most_rows) continue;
+        if (rows_++ >= max_rows) continue;
         named_[0][rows.pairs[i].a] = true;
         named_[scene_.join ? 1 : 0][rows.pairs[i].b] = true;
         write_row(rows.pairs[i], finding, rows.changes.empty() ? nullptr : &rows.changes[i]);
@@ -114,7 +114,7 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
     rows_ended_ = true;
     begin_list("gone");
     of_change_[std::size_t(Change::gone)] = lines.size();
-    for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), most_rows))) {
+    for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), max_rows))) {
         const nlohmann::json old = parse_json(line, "older result");
         const auto contacts = old.find("contacts"), kind = old.find("class");
         const nlohmann::json row = {old_label(old, "a"),
@@ -153,10 +153,10 @@ void HtmlReport::write_object_list(std::size_t set) {
     out_->write("]");
 }
 
-/// Every so manieth, where they are too many.
+/// Writes the boxes of the objects without a row. If there are more than max_others, only every stride-th one is written.
 void HtmlReport::write_others() {
     for (const auto& set : named_) others_ += std::uint64_t(std::count(set.begin(), set.end(), false));
-    const std::uint64_t stride = others_ / most_others + 1;
+    const std::uint64_t stride = others_ / max_others + 1;
     std::uint64_t number = 0;
     begin_list("others");
     for (std::size_t set = 0; set < 2; ++set) {
@@ -181,12 +181,12 @@ void HtmlReport::write_summary() {
     }
     for (const auto& [label, value] : facts_) facts.push_back({clean_text(label), clean_text(value)});
     nlohmann::json notes = nlohmann::json::array();
-    if (const std::uint64_t gone = of_change_[std::size_t(Change::gone)]; std::max(rows_, gone) > most_rows) {
-        notes.push_back(fmt::format("The table has the first {} rows of {}.", most_rows, std::max(rows_, gone)));
+    if (const std::uint64_t gone = of_change_[std::size_t(Change::gone)]; std::max(rows_, gone) > max_rows) {
+        notes.push_back(fmt::format("The table has the first {} rows of {}.", max_rows, std::max(rows_, gone)));
     }
     if (others_drawn_ < others_) {
         notes.push_back(
-            fmt::format("Of {} objects that the table does not name, {} are drawn.", others_, others_drawn_));
+            fmt::format("The picture shows {} of the {} objects that are not in the table.", others_drawn_, others_));
     }
     const nlohmann::json summary = {
         {"title", clean_text(scene_.title)}, {"join", scene_.join}, {"facts", facts}, {"notes", notes}};

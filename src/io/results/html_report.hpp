@@ -1,9 +1,9 @@
-// A report of collisions for people: one page that needs nothing else, with a summary, a table that sorts and filters, and
-// the boxes of the objects from three sides.
+// HtmlReport: a self-contained HTML page about the collisions of a result.
 //
-// The page is report_page.html; what is written into it is JSON in <script> elements, in which "<" is always escaped, so no
-// name can be anything but text. Rows beyond `most_rows` are counted and left out, and of objects that no row names at most
-// `most_others` are drawn; the page says so.
+// - The page has a summary, a table that sorts and filters, and drawings of the boxes from three sides.
+// - The page is report_page.html. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
+// - Rows beyond `max_rows` are counted but not written. The page says so.
+// - At most `max_others` objects without a row are drawn. The page says so.
 #pragma once
 
 #include <array>
@@ -19,23 +19,23 @@
 
 namespace octopair::io {
 
-/// What the rows are about. Boxes and names are borrowed, and must be there until finish().
+/// The scene that the rows refer to. Boxes and names are borrowed. Requires: they exist until finish().
 struct ReportScene {
-    std::string title;  ///< above the page, as the inputs' names
+    std::string title;  ///< title of the page, for example the names of the inputs
     CollisionForm form;
-    Boxes a, b;  ///< b: of a join
+    Boxes a, b;  ///< boxes of the first set; in a join, b has those of the second set
     bool join = false;
 };
 
 class HtmlReport final : public CollisionWriter {
 public:
-    static constexpr std::uint64_t most_rows = 200'000, most_others = 20'000;
+    static constexpr std::uint64_t max_rows = 200'000, max_others = 20'000;
 
     HtmlReport(std::unique_ptr<OutputStream> out, ReportScene scene);
 
     void write(const CollisionRows& rows) override;
     void write_gone(std::span<const std::string_view> lines) override;
-    /// For the summary: "time", "3.2 s". Behind the number of collisions.
+    /// Adds an entry to the summary, after the number of collisions. Example: "time", "3.2 s".
     void add_fact(std::string label, std::string value) { facts_.emplace_back(std::move(label), std::move(value)); }
     void finish() override;
 
@@ -52,11 +52,11 @@ private:
     std::unique_ptr<OutputStream> out_;
     ReportScene scene_;
     std::vector<std::pair<std::string, std::string>> facts_;
-    std::array<std::vector<bool>, 2> named_;  // of each set: the objects that rows name
+    std::array<std::vector<bool>, 2> named_;  // for each set and object: true if a row names the object
     std::array<std::uint64_t, 6> of_class_ = {};
     std::array<std::uint64_t, 3> of_change_ = {};
     std::uint64_t rows_ = 0, others_ = 0, others_drawn_ = 0;
-    bool first_ = true;  // of a list
+    bool first_ = true;  // true before the first element of the current list
     bool rows_ended_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Pairs as rows of text, behind what all rows of a call begin with: a frame, an event.
+// Writes pairs as rows of text. All rows of a call have the same beginning, for example a frame and an event.
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace octopair::io {
 
-/// Rows `BEGIN a,b`. `begin` is as it stands in the file, with its commas: at most 64 characters.
+/// Writes rows `BEGINa,b`. `begin` includes its commas. Requires: `begin` has at most 64 characters.
 void write_csv_rows(OutputStream& out, std::string_view begin, std::span<const Pair> pairs);
 
-/// Rows `{BEGIN "a":0,"b":5}`, with the names of objects that have one.
+/// Writes rows `{BEGIN"a":0,"b":5}`, with the names of objects that have one. `begin` includes its commas.
 class JsonlRows {
 public:
     explicit JsonlRows(const PairNames& names) : names_(names) {}

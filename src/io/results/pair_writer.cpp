@@ -18,7 +18,7 @@ namespace {
 class NpyWriter final : public PairWriter {
 public:
     NpyWriter(std::string path, bool moving) : path_(std::move(path)), moving_(moving) {
-        if (!moving_) open(path_);  // at once: what cannot be written is known before the work
+        if (!moving_) open(path_);  // opened now, so that an unwritable path fails before the search
     }
 
     void begin_frame(std::uint64_t frame) override {

@@ -1,11 +1,13 @@
-// Whether one convex thing lies in another, below its surface.
+// convex_contains(): whether one convex object lies inside another, below its surface.
 //
-// Outer     what is within a radius of few points, a box, a cylinder, a cone, an ellipsoid: each says how far a point is
-//           above its surface, by a function that is convex. The inner one's highest point is climbed to from many sides:
-//           to its farthest point in the direction that the surface has there, as long as that is higher. From points and
-//           flat sides this ends at the highest; between two curved surfaces, at one from which no way leads higher.
-// Hulls     hold a ball if its centre is deeper in them than its radius, an ellipsoid if that is so where this is a ball,
-//           others if they hold a polyhedron around them, of 64 sides where they are round.
+// Height    A sphere, capsule, box, cylinder, cone and ellipsoid each have a convex function: the height of a point above
+//           their surface, below 0 inside.
+// Search    Hill climbing from many directions finds the highest point of the inner object: the next point is the farthest
+//           in the direction of the height's gradient. The search ends when the height no longer increases.
+// Result    The maximum is global for points and flat sides. Between two curved surfaces it is a local maximum.
+// Hulls     A hull contains a ball if the ball's centre is deeper than its radius. It contains an ellipsoid if this holds in
+//           coordinates where the ellipsoid is a ball. It contains another solid if it contains all corners of a polyhedron
+//           around that solid, with 64 sides where the solid is round.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,8 +23,8 @@ namespace {
 using Core = ConvexSolid::Core;
 
 struct Height {
-    double above;  ///< the surface, as a length near it; below 0 inside
-    Point3d uphill;
+    double above;    ///< height above the surface, about a length near it; below 0 inside
+    Point3d uphill;  ///< direction of the gradient, of any length
 };
 
 Height above_rim(double across, double along_axis, const Point3d& at) {
@@ -63,7 +65,7 @@ Height above_ellipsoid(const Point3d& radii, const Point3d& at) {
     return {(vector::length(scaled) - 1) * least, {scaled[0] / radii[0], scaled[1] / radii[1], scaled[2] / radii[2]}};
 }
 
-/// What is within the radius of a segment; of a point, if the two ends are one.
+/// Height above a capsule, or above a sphere, whose two end points are equal.
 Height above_capsule(const ConvexSolid& solid, const Point3d& at) {
     const Point3d from = solid.points.front(), way = vector::minus(solid.points.back(), from);
     const double squared = vector::dot(way, way);
@@ -89,7 +91,7 @@ Height above(const ConvexSolid& solid, const Point3d& at) {
     return above_ellipsoid(solid.extents, at);
 }
 
-/// The faces, edges and corners of a cube around the origin.
+/// Returns the 26 directions from the centre of a cube to its faces, edges and corners.
 std::vector<Point3d> all_sides() {
     std::vector<Point3d> sides;
     for (const double x : {-1.0, 0.0, 1.0}) {
@@ -108,9 +110,9 @@ Point3d farthest(const LocalConvex& convex, const Point3d& direction) {
     return length > 0 ? vector::plus(core, vector::times(direction, convex.radius() / length)) : core;
 }
 
-/// The solid is the frame's `outer`.
+/// Returns true if all points of `inner` are more than `slack` below the surface of `outer`. `solid` is the solid of `outer`.
 bool stays_below(const ConvexSolid& solid, const LocalConvex& outer, const LocalConvex& inner, double slack) {
-    // A pose that turns things by no more than rounding off a turn is undone by its transpose.
+    // The pose is a rotation up to rounding, so its transpose is its inverse.
     const Pose& pose = outer.pose();
     const auto height_at = [&](const Point3d& point) {
         return above(solid, vector::turned_back(pose, vector::minus(point, vector::place(pose))));
@@ -137,8 +139,8 @@ bool stays_below(const ConvexSolid& solid, const LocalConvex& outer, const Local
     return stays(vector::minus(inner.middle(), vector::place(pose)));
 }
 
-/// How much a pose is off a turn, where it must be one.
-double off_turn(const Pose& pose) {
+/// Returns the largest deviation of the pose's linear part from a rotation.
+double rotation_error(const Pose& pose) {
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {
@@ -149,7 +151,7 @@ double off_turn(const Pose& pose) {
     return most;
 }
 
-/// Corners of a polyhedron around a cylinder or a cone.
+/// Returns the corners of a polyhedron that contains a cylinder or a cone.
 std::vector<Point3d> corners_around(const ConvexSolid& solid) {
     constexpr int sides = 64;
     const double radius = solid.extents[0] / std::cos(std::numbers::pi / sides) * (1 + 1e-12);
@@ -165,35 +167,35 @@ std::vector<Point3d> corners_around(const ConvexSolid& solid) {
     return corners;
 }
 
-/// Whether a point of the hull is deeper in it than this.
+/// Returns true if `point` lies in the hull and is deeper than `depth`.
 bool is_deep(const PosedConvex& hull, const Point3d& point, double depth) {
     const PosedConvex inner(point);
     if (!convex_meet(hull, inner)) return false;
-    const LocalConvexPair frame(hull, inner);
-    return convex_contact(hull, inner).depth > depth + 4 * frame.slack();
+    const LocalConvexPair pair(hull, inner);
+    return convex_contact(hull, inner).depth > depth + 4 * pair.slack();
 }
 
-/// A pose times the scaling of its shape by these, undone: where the ellipsoid is the unit ball at the origin.
-Pose seen_from_ball(const Pose& hull, const Pose& ellipsoid, const Point3d& radii) {
-    Pose seen;
+/// Returns the hull's pose in the coordinates in which the ellipsoid is the unit ball at the origin.
+Pose pose_relative_to_ball(const Pose& hull, const Pose& ellipsoid, const Point3d& radii) {
+    Pose relative;
     const Point3d place = vector::minus(vector::place(hull), vector::place(ellipsoid));
     for (std::size_t k = 0; k < 4; ++k) {
         const Point3d turned = vector::turned_back(ellipsoid, k < 3 ? vector::column(hull, k) : place);
-        for (std::size_t i = 0; i < 3; ++i) seen.rows[i][k] = turned[i] / radii[i];
+        for (std::size_t i = 0; i < 3; ++i) relative.rows[i][k] = turned[i] / radii[i];
     }
-    return seen;
+    return relative;
 }
 
-bool hull_holds(const PosedConvex& hull, const PosedConvex& inner) {
+bool hull_contains(const PosedConvex& hull, const PosedConvex& inner) {
     if (inner.point()) return is_deep(hull, *inner.point(), 0);
-    const auto holds_all = [&](const auto& points, double radius) {
+    const auto contains_all = [&](const auto& points, double radius) {
         return std::all_of(points.begin(), points.end(), [&](const Point3d& at) { return is_deep(hull, at, radius); });
     };
-    if (inner.triangle()) return holds_all(*inner.triangle(), 0);
+    if (inner.triangle()) return contains_all(*inner.triangle(), 0);
     const ConvexSolid& solid = *inner.solid();
     if (solid.core == Core::ellipsoid) {
-        const Pose seen = seen_from_ball(*hull.pose(), *inner.pose(), solid.extents);
-        return is_deep(PosedConvex(*hull.solid(), seen), {0, 0, 0}, 1 + 4 * off_turn(*inner.pose()));
+        const Pose relative = pose_relative_to_ball(*hull.pose(), *inner.pose(), solid.extents);
+        return is_deep(PosedConvex(*hull.solid(), relative), {0, 0, 0}, 1 + 4 * rotation_error(*inner.pose()));
     }
     std::vector<Point3d> points = solid.points;
     if (solid.core == Core::box) {
@@ -205,7 +207,7 @@ bool hull_holds(const PosedConvex& hull, const PosedConvex& inner) {
     }
     if (solid.core == Core::cylinder || solid.core == Core::cone) points = corners_around(solid);
     for (Point3d& point : points) point = vector::posed(*inner.pose(), point);
-    return holds_all(points, solid.radius);
+    return contains_all(points, solid.radius);
 }
 
 }  // namespace
@@ -213,12 +215,12 @@ bool hull_holds(const PosedConvex& hull, const PosedConvex& inner) {
 bool convex_contains(const PosedConvex& outer, const PosedConvex& inner) {
     if (!outer.solid()) return false;
     const ConvexSolid& solid = *outer.solid();
-    if (solid.core == Core::points && solid.radius == 0) return hull_holds(outer, inner);
-    const LocalConvexPair frame(outer, inner);
-    const LocalConvex& framed_outer = frame.swapped() ? frame.b() : frame.a();
-    const LocalConvex& framed_inner = frame.swapped() ? frame.a() : frame.b();
-    const double slack = 4 * frame.slack() + off_turn(*outer.pose()) * framed_outer.magnitude();
-    return stays_below(solid, framed_outer, framed_inner, slack);
+    if (solid.core == Core::points && solid.radius == 0) return hull_contains(outer, inner);
+    const LocalConvexPair pair(outer, inner);
+    const LocalConvex& local_outer = pair.swapped() ? pair.b() : pair.a();
+    const LocalConvex& local_inner = pair.swapped() ? pair.a() : pair.b();
+    const double slack = 4 * pair.slack() + rotation_error(*outer.pose()) * local_outer.magnitude();
+    return stays_below(solid, local_outer, local_inner, slack);
 }
 
 }  // namespace octopair

@@ -1,9 +1,11 @@
-// How deep convex things meet.
+// convex_contact(): penetration depth of two convex objects.
 //
-// For any direction, what the two overlap along it is a depth that parts them, by their supports alone; the least of all
-// directions is wanted. Cores that do not meet have it along their shortest way. Of cores that do, libccd's expanding
-// polytope proposes one, as do the axes, edges and faces that the two show, for it gives up on flat ones; the best
-// proposal is then followed downhill. So what a library gets wrong can cost depth, but a contact always parts the two.
+// Depth     The overlap along any direction, computed from two supports, is a depth that separates the objects. The search
+//           looks for the direction with the smallest overlap.
+// Apart     If the cores do not meet, that is the direction between their nearest points.
+// Meeting   If they meet, libccd's expanding polytope algorithm proposes a direction. It fails on flat objects, so axes, edges
+//           and faces of both objects are proposed as well. Gradient descent then improves the best proposal.
+// Safety    An error of libccd can make the depth larger than necessary, but the contact always separates the objects.
 #include <ccd/ccd.h>
 
 #include <algorithm>
@@ -17,25 +19,25 @@
 namespace octopair {
 namespace {
 
-/// libccd's tolerances are absolute, so it sees the pair scaled to this size. Its polytope of a pair that touches may grow
-/// for ever; after so many questions it is told of the origin alone, beyond which there is nothing to grow to.
+/// A convex object scaled for libccd, whose tolerances are absolute. The polytope of a touching pair may grow without end, so
+/// after 256 supports every support is the origin, and the polytope cannot grow further.
 struct Scaled {
     const LocalConvex* convex;
     double scale;
-    mutable int questions = 256;
+    mutable int supports_left = 256;
 };
 
 void support_scaled(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* farthest) {
     const auto& scaled = *static_cast<const Scaled*>(object);
-    if (scaled.questions-- <= 0) return ccdVec3Set(farthest, 0, 0, 0);
+    if (scaled.supports_left-- <= 0) return ccdVec3Set(farthest, 0, 0, 0);
     const Point3d point = scaled.convex->support({direction->v[0], direction->v[1], direction->v[2]});
     ccdVec3Set(farthest, point[0] * scaled.scale, point[1] * scaled.scale, point[2] * scaled.scale);
 }
 
-/// The best direction so far.
+/// The direction of smallest overlap among those proposed.
 class LeastOverlap {
 public:
-    explicit LeastOverlap(const LocalConvexPair& frame) : frame_(frame) {}
+    explicit LeastOverlap(const LocalConvexPair& pair) : pair_(pair) {}
 
     void propose(const Point3d& direction) {
         const double length = vector::length(direction);
@@ -45,7 +47,8 @@ public:
         consider(vector::times(normal, -1));
     }
 
-    /// TicketLock the direction against the way that is not along it, as long as that makes the overlap less.
+    /// Gradient descent: turns the direction against the part of the support vertex that is perpendicular to it, while that
+    /// reduces the overlap.
     void descend() {
         double step = 1;
         for (int i = 0; i < 64 && step > 1e-9; ++i) {
@@ -60,41 +63,41 @@ public:
     }
 
     const Point3d& normal() const { return normal_; }
-    /// With the radii; below 0 of two that are apart along the normal.
-    double overlap() const { return overlap_ + frame_.radii(); }
+    /// Overlap along normal(), including the radii; below 0 if the objects are apart along the normal.
+    double overlap() const { return overlap_ + pair_.radii(); }
     const Point3d& on_a() const { return on_a_; }
     const Point3d& on_b() const { return on_b_; }
 
 private:
     void consider(const Point3d& normal) {
-        const Point3d on_a = frame_.a().support(normal), on_b = frame_.b().support(vector::times(normal, -1));
+        const Point3d on_a = pair_.a().support(normal), on_b = pair_.b().support(vector::times(normal, -1));
         const Point3d vertex = vector::minus(on_a, on_b);
         const double overlap = vector::dot(vertex, normal);
         if (!(overlap < overlap_)) return;
         overlap_ = overlap, normal_ = normal, vertex_ = vertex, on_a_ = on_a, on_b_ = on_b;
     }
 
-    const LocalConvexPair& frame_;
+    const LocalConvexPair& pair_;
     double overlap_ = std::numeric_limits<double>::infinity();
     Point3d normal_ = {1, 0, 0}, vertex_ = {}, on_a_ = {}, on_b_ = {};
 };
 
-void propose_by_polytope(const LocalConvexPair& frame, LeastOverlap& least) {
-    const double size = frame.a().magnitude() + frame.b().magnitude();
-    if (!std::isfinite(1 / size)) return;  // nor are there digits for a polytope
-    const Scaled a = {&frame.a(), 1 / size}, b = {&frame.b(), 1 / size};
+void propose_by_polytope(const LocalConvexPair& pair, LeastOverlap& least) {
+    const double size = pair.a().magnitude() + pair.b().magnitude();
+    if (!std::isfinite(1 / size)) return;  // so small that float64 has no digits for a polytope
+    const Scaled a = {&pair.a(), 1 / size}, b = {&pair.b(), 1 / size};
     ccd_t settings;
     CCD_INIT(&settings);
     settings.support1 = settings.support2 = support_scaled;
     settings.max_iterations = 200;
-    // Of a difference of squares: with 1e-8, what is left of a small depth is wrong by a tenth.
+    // The tolerance applies to a difference of squares: 1e-8 makes a small depth wrong by a tenth.
     settings.epa_tolerance = 1e-11;
     ccd_real_t depth = 0;
     ccd_vec3_t way, place;
     if (ccdGJKPenetration(&a, &b, &settings, &depth, &way, &place) == 0) least.propose({way.v[0], way.v[1], way.v[2]});
 }
 
-/// Directions that a core shows: its axes and, of few points, its edges.
+/// Returns the edges between the points of a core of at most 4 points; for other cores, the axes of their pose.
 std::vector<Point3d> edges_of(const LocalConvex& convex) {
     std::vector<Point3d> edges;
     const auto points = convex.points();
@@ -106,8 +109,8 @@ std::vector<Point3d> edges_of(const LocalConvex& convex) {
     return edges;
 }
 
-/// Across the two longest ways inside: the normal of a flat one.
-Point3d thin_way(const LocalConvex& convex) {
+/// Returns a direction across the two longest extents of the core: the normal of a flat object.
+Point3d thinnest_direction(const LocalConvex& convex) {
     const Point3d from = convex.middle();
     Point3d along = {}, across = {};
     double longest = 0, widest = 0;
@@ -124,11 +127,11 @@ Point3d thin_way(const LocalConvex& convex) {
     return across;
 }
 
-void propose_by_features(const LocalConvexPair& frame, LeastOverlap& least) {
-    const Point3d between = vector::minus(frame.b().middle(), frame.a().middle());
+void propose_by_features(const LocalConvexPair& pair, LeastOverlap& least) {
+    const Point3d between = vector::minus(pair.b().middle(), pair.a().middle());
     least.propose({1, 0, 0});
     least.propose(between);
-    const std::vector<Point3d> edges_a = edges_of(frame.a()), edges_b = edges_of(frame.b());
+    const std::vector<Point3d> edges_a = edges_of(pair.a()), edges_b = edges_of(pair.b());
     for (const auto* edges : {&edges_a, &edges_b}) {
         for (const Point3d& edge : *edges) {
             least.propose(edge);
@@ -141,39 +144,40 @@ void propose_by_features(const LocalConvexPair& frame, LeastOverlap& least) {
     for (const Point3d& a : edges_a) {
         for (const Point3d& b : edges_b) least.propose(vector::cross(a, b));
     }
-    least.propose(thin_way(frame.a()));
-    least.propose(thin_way(frame.b()));
+    least.propose(thinnest_direction(pair.a()));
+    least.propose(thinnest_direction(pair.b()));
 }
 
-/// Along the way between the cores, the middle of what is within both radii; of cores that meet, a point in both.
-Point3d point_in_both(const LocalConvexPair& frame, const CoreGap& core) {
+/// Returns the middle of the part of the segment between the cores that lies within both radii; if the cores meet, a point in
+/// both.
+Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
     const Point3d way = vector::minus(core.on_b, core.on_a);
     const double length = vector::length(way);
     if (!(length > 0)) return core.on_a;
-    const double begin = std::max(0.0, length - frame.b().radius()), end = std::min(length, frame.a().radius());
+    const double begin = std::max(0.0, length - pair.b().radius()), end = std::min(length, pair.a().radius());
     return vector::plus(core.on_a, vector::times(way, (begin + end) / 2 / length));
 }
 
 }  // namespace
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
-    const LocalConvexPair frame(a, b);
-    const CoreGap core = core_gap(frame);
-    LeastOverlap least(frame);
+    const LocalConvexPair pair(a, b);
+    const CoreGap core = core_gap(pair);
+    LeastOverlap least(pair);
     const Point3d way = vector::minus(core.on_b, core.on_a);
-    // A way as short as rounding has no direction.
-    if (core.at_least > 0 && core.at_most > 1e4 * frame.slack()) {
+    // A gap close to the rounding error has no reliable direction.
+    if (core.at_least > 0 && core.at_most > 1e4 * pair.slack()) {
         least.propose(way);
     } else {
-        propose_by_polytope(frame, least);
-        propose_by_features(frame, least);
+        propose_by_polytope(pair, least);
+        propose_by_features(pair, least);
         least.descend();
     }
     const Point3d& normal = least.normal();
     ConvexContact contact;
     contact.depth = std::max(0.0, least.overlap());
-    contact.point = vector::plus(point_in_both(frame, core), frame.origin());
-    contact.normal = frame.swapped() ? vector::times(normal, -1) : normal;
+    contact.point = vector::plus(point_in_both(pair, core), pair.origin());
+    contact.normal = pair.swapped() ? vector::times(normal, -1) : normal;
     return contact;
 }
 

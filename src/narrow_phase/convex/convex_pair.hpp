@@ -1,11 +1,12 @@
-// Pairs of convex things: whether they meet, how far they are apart, and where and how deep they meet.
+// Pairs of convex objects: whether they meet, their distance, and the point and depth of their contact.
 //
-// Distances of cores (convex_solid.hpp) are found by GJK in a frame at the smaller of the two. Of every distance a lower
-// bound is proven by a plane between the two, so what is said to be apart is apart, whatever rounding and the search did:
-// a pair within the tolerance of touching counts as one that meets.
-// Tolerance the proof's rounding: about 1e-14 of the pair's size (its places are differences: not of the distance from the
-//           world's origin). Between curved things the search closes in to about 1e-8 of their size.
-// Symmetry  (a, b) and (b, a) are the same computation. Threads: all of this may be used by many at once.
+// Method    GJK finds the distance of the cores (convex_solid.hpp), in local coordinates near the pair (local_convex.hpp).
+// Safety    A plane between the two objects proves a lower bound on each distance. Objects that are reported apart are
+//           apart, whatever the rounding and the search did. A pair within the tolerance counts as a pair that meets.
+// Tolerance The rounding of the proof: about 1e-14 of the pair's size, not of the distance from the world's origin.
+//           Between curved objects the search converges to about 1e-8 of their size.
+// Symmetry  (a, b) and (b, a) are the same computation.
+// Threads   All functions may be called by many threads at once.
 #pragma once
 
 #include <array>
@@ -15,17 +16,17 @@
 
 namespace octopair {
 
-/// A solid in the world, or a triangle by its world corners; borrowed.
+/// A posed solid, or a triangle or a point in world coordinates. Borrowed.
 class PosedConvex {
 public:
     PosedConvex(const ConvexSolid& solid, const Pose& pose) : solid_(&solid), pose_(&pose) {}
     explicit PosedConvex(const std::array<Point3d, 3>& triangle) : triangle_(&triangle) {}
     explicit PosedConvex(const Point3d& point) : point_(&point) {}
 
-    const ConvexSolid* solid() const { return solid_; }                   ///< or null
-    const Pose* pose() const { return pose_; }                            ///< of a solid
-    const std::array<Point3d, 3>* triangle() const { return triangle_; }  ///< or null
-    const Point3d* point() const { return point_; }                       ///< or null
+    const ConvexSolid* solid() const { return solid_; }                   ///< null for a triangle or a point
+    const Pose* pose() const { return pose_; }                            ///< null unless solid() is set
+    const std::array<Point3d, 3>* triangle() const { return triangle_; }  ///< null for a solid or a point
+    const Point3d* point() const { return point_; }                       ///< null for a solid or a triangle
 
 private:
     const ConvexSolid* solid_ = nullptr;
@@ -35,29 +36,29 @@ private:
 };
 
 struct ConvexGap {
-    double distance = 0;  ///< between the nearest points; 0 of two that meet
-    double at_least = 0;  ///< what is proven: the distance is not below it
-    Point3d on_a = {}, on_b = {};
+    double distance = 0;           ///< distance of the nearest points; 0 if the objects meet
+    double at_least = 0;           ///< proven lower bound on the distance
+    Point3d on_a = {}, on_b = {};  ///< nearest points
 };
 
 struct ConvexContact {
     Point3d point;
-    Point3d normal;  ///< of length 1, from a to b: moving b along it by `depth` parts the two
-    double depth;    ///< >= 0; the least, as far as the search found
+    Point3d normal;  ///< length 1, from a to b: moving b along `normal` by `depth` separates the two
+    double depth;    ///< penetration depth, >= 0: the smallest that the search found
 };
 
 bool convex_meet(const PosedConvex& a, const PosedConvex& b);
 
-/// Whether they are no further apart than this; cheaper than convex_gap.
+/// Returns true if the distance is at most `margin`. Cheaper than convex_gap().
 bool convex_within(const PosedConvex& a, const PosedConvex& b, double margin);
 
 ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b);
 
-/// Of two that meet (of others, depth 0 at the point between them).
+/// Returns the contact of two objects that meet. If they do not meet, the depth is 0 and the point lies between them.
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b);
 
-/// Whether `inner` lies in `outer` and does not reach its surface (convex_contains.cpp says how that is found). Of a cylinder
-/// or a cone in a hull, a layer below the surface of 1/800 of its radius does not count. A triangle and a point hold nothing.
+/// Returns true if `inner` lies inside `outer` and does not reach its surface; convex_contains.cpp describes the method.
+/// Always false if `outer` is a triangle or a point. A cylinder or cone in a hull must be deeper than 1/800 of its radius.
 bool convex_contains(const PosedConvex& outer, const PosedConvex& inner);
 
 }  // namespace octopair

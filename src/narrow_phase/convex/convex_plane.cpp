@@ -9,12 +9,12 @@
 
 namespace octopair {
 PlaneSpan span_across(const PosedPlane& plane, const PosedConvex& convex) {
-    const LocalConvex framed(convex, plane.point);
+    const LocalConvex local(convex, plane.point);
     const Point3d down = vector::times(plane.normal, -1);
-    const Point3d highest = framed.support(plane.normal), lowest = framed.support(down);
-    const double radius = framed.radius();
-    // The rounding of supports, of the plane's own point and of its normal, over how far the thing is from that point.
-    double largest = 3 * framed.magnitude() + radius;
+    const Point3d highest = local.support(plane.normal), lowest = local.support(down);
+    const double radius = local.radius();
+    // Covers the rounding of supports, of the plane's point and of its normal, at the object's distance from that point.
+    double largest = 3 * local.magnitude() + radius;
     for (const double at : plane.point) largest = std::max(largest, std::fabs(at));
     const double slack = 16 * std::numeric_limits<double>::epsilon() * largest;
     PlaneSpan span;
@@ -37,7 +37,7 @@ ConvexGap plane_gap(const PosedPlane& plane, const PlaneSpan& span) {
 }
 
 ConvexContact plane_contact(const PosedPlane& plane, const PlaneSpan& span) {
-    // The shorter way: up until the lowest point is at the plane, or down until the highest one is.
+    // The shorter of two ways: up until the lowest point is at the plane, or down until the highest point is there.
     const bool up = -span.low <= span.high;
     ConvexContact contact;
     contact.normal = up ? plane.normal : vector::times(plane.normal, -1);

@@ -47,7 +47,7 @@ Point3d farthest(const std::vector<Point3d>& points, const Point3d& direction) {
     });
 }
 
-/// Of a disk of this radius around the z axis, at that height.
+/// Returns the support point of a disk around the z axis, with the given radius, at z = `height`.
 Point3d rim(double radius, double height, const Point3d& direction) {
     const double across = std::hypot(direction[0], direction[1]);
     if (across == 0) return {radius, 0, height};

@@ -1,8 +1,10 @@
-// GJK (Gilbert, Johnson, Keerthi 1988) on the differences of points of two cores, with van den Bergen's lower bound.
+// core_gap(): distance of two convex cores by GJK, on the Minkowski difference of the cores.
 //
-// The nearest point of a simplex is chosen among those of all its faces, as the one that is nearest: each is a sum with
-// weights that are >= 0 and add up to 1, so flat simplices cost accuracy but never truth. FCL's own search stops when a
-// step gained little, wherever it is by then, takes a touching pair for either, and throws on flat simplices.
+// Source    Gilbert, Johnson, Keerthi 1988; lower bound by van den Bergen.
+// Simplex   The nearest point of a simplex is the nearest among candidates on all its faces. Each candidate is a sum with
+//           weights >= 0 that add up to 1, so a flat simplex reduces only accuracy, not correctness.
+// FCL       FCL's search stops at any step with little progress, may report a touching pair either way, and throws on flat
+//           simplices. Therefore this file does not use it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +24,7 @@ struct Vertex {
 
 using Weights = std::array<double, 4>;
 
-/// Up to four vertices, and the nearest point that was found in them.
+/// Up to four vertices of the Minkowski difference, and the nearest point to the origin found in them.
 class Simplex {
 public:
     void add(const Vertex& vertex) { vertices_[count_++] = vertex; }
@@ -31,7 +33,7 @@ public:
                            [&](const Vertex& one) { return one.apart == vertex.apart; });
     }
 
-    /// Finds the nearest point and drops the vertices that it does not need.
+    /// Finds the nearest point and removes the vertices with weight 0.
     void reduce() {
         best_ = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < count_; ++i) {
@@ -45,12 +47,12 @@ public:
         keep_needed();
     }
 
-    /// The nearest point is inside: the origin, but for rounding.
+    /// True if the nearest point is inside a tetrahedron: then it is the origin, up to rounding.
     bool encloses() const { return count_ == 4; }
     const Point3d& nearest() const { return nearest_; }
     std::span<const Vertex> vertices() const { return {vertices_.data(), count_}; }
-    /// From the origin to the nearest point, of length 1. Where this is shorter than the simplex, it is known less well
-    /// than what it is perpendicular to.
+    /// Returns the direction from the origin to the nearest point, with length 1. If the simplex is larger than that distance,
+    /// the nearest point gives an inaccurate direction; then the direction perpendicular to the simplex is used.
     Point3d direction() const {
         const double length = vector::length(nearest_);
         const Point3d unit = vector::times(nearest_, 1 / length);
@@ -121,7 +123,7 @@ private:
         if (!(of_x > 0 && of_y > 0 && of_z > 0 && of_x + of_y + of_z < 1)) return;
         const Weights inside = {1 - of_x - of_y - of_z, of_x, of_y, of_z};
         const Point3d zero = mix(inside, &Vertex::apart);
-        // Weights of a flat simplex mean nothing: they prove themselves.
+        // Weights of a flat simplex may be meaningless: accept them only if they do give the origin.
         constexpr double close = 1e-12;
         if (vector::length(zero) <= close * vector::length(x)) offer(inside);
     }
@@ -143,17 +145,17 @@ private:
     Point3d nearest_ = {};
 };
 
-Vertex support(const LocalConvexPair& frame, const Point3d& direction) {
+Vertex support(const LocalConvexPair& pair, const Point3d& direction) {
     Vertex vertex;
-    vertex.on_a = frame.a().support(direction);
-    vertex.on_b = frame.b().support(vector::times(direction, -1));
+    vertex.on_a = pair.a().support(direction);
+    vertex.on_b = pair.b().support(vector::times(direction, -1));
     vertex.apart = vector::minus(vertex.on_a, vertex.on_b);
     return vertex;
 }
 
-/// The greatest lower bound by a face around the nearest point, or the one there is. Of two faces that lie close to each
-/// other, the way between them is too short to tell their normal, if it meets a face's edge or corner.
-double prove_by_faces(const LocalConvexPair& frame, const Simplex& simplex, double at_least) {
+/// Returns the larger of `at_least` and the best lower bound proven by a face around the nearest point. Needed for two faces
+/// close to each other: if the nearest points lie on an edge or corner, the short gap does not determine the normal.
+double prove_by_faces(const LocalConvexPair& pair, const Simplex& simplex, double at_least) {
     constexpr double aside = 1e-5, alike = 0.999;
     const Point3d direction = simplex.direction();
     std::array<Vertex, 8> around = {};
@@ -163,7 +165,7 @@ double prove_by_faces(const LocalConvexPair& frame, const Simplex& simplex, doub
     const Point3d first = vector::cross(direction, axis), second = vector::cross(direction, first);
     for (const Point3d& way : {first, second}) {
         for (const double by : {aside, -aside}) {
-            around[count++] = support(frame, vector::times(vector::plus(direction, vector::times(way, by)), -1));
+            around[count++] = support(pair, vector::times(vector::plus(direction, vector::times(way, by)), -1));
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -174,8 +176,8 @@ double prove_by_faces(const LocalConvexPair& frame, const Simplex& simplex, doub
                 const double along = vector::dot(normal, direction);
                 if (!(std::fabs(along) > alike * vector::length(normal))) continue;
                 const Point3d unit = vector::times(normal, std::copysign(1 / vector::length(normal), along));
-                const Vertex next = support(frame, vector::times(unit, -1));
-                at_least = std::max(at_least, vector::dot(next.apart, unit) - frame.slack());
+                const Vertex next = support(pair, vector::times(unit, -1));
+                at_least = std::max(at_least, vector::dot(next.apart, unit) - pair.slack());
             }
         }
     }
@@ -192,21 +194,21 @@ CoreGap gap_of(const Simplex& simplex, double at_least) {
 
 }  // namespace
 
-CoreGap core_gap(const LocalConvexPair& frame, std::optional<double> enough) {
-    constexpr int most_steps = 256;
+CoreGap core_gap(const LocalConvexPair& pair, std::optional<double> enough) {
+    constexpr int max_steps = 256;
     constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
-    const double slack = frame.slack();
+    const double slack = pair.slack();
     double at_least = 0;
     bool decided = false;
     Simplex simplex;
-    simplex.add(support(frame, vector::minus(frame.b().middle(), frame.a().middle())));
+    simplex.add(support(pair, vector::minus(pair.b().middle(), pair.a().middle())));
     simplex.reduce();
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
         const double at_most = vector::length(simplex.nearest());
         decided = simplex.encloses() || at_most <= slack || (enough && at_most <= *enough);
         if (decided) break;
         const Point3d direction = simplex.direction();
-        const Vertex next = support(frame, vector::times(direction, -1));
+        const Vertex next = support(pair, vector::times(direction, -1));
         at_least = std::max(at_least, vector::dot(next.apart, direction) - slack);
         decided = (enough && at_least > *enough) || at_most - at_least <= 2 * slack + relative * at_most;
         if (decided || simplex.has(next)) break;
@@ -216,7 +218,7 @@ CoreGap core_gap(const LocalConvexPair& frame, std::optional<double> enough) {
         if (!(vector::length(larger.nearest()) < at_most)) break;
         simplex = larger;
     }
-    return gap_of(simplex, decided ? at_least : prove_by_faces(frame, simplex, at_least));
+    return gap_of(simplex, decided ? at_least : prove_by_faces(pair, simplex, at_least));
 }
 
 }  // namespace octopair

@@ -35,7 +35,8 @@ double size_of(const PosedConvex& convex) {
     return most + solid.radius;
 }
 
-/// The smaller one comes second; of equals, the one that stands at smaller coordinates, or is turned less.
+/// Returns true if `a` is the first of the pair: the larger one. Ties are broken by place, kind, core, pose, extents and
+/// points, so the result does not depend on the order of the arguments.
 bool solid_comes_first(const PosedConvex& a, const PosedConvex& b) {
     const double size_a = size_of(a), size_b = size_of(b);
     if (size_a != size_b) return size_a > size_b;
@@ -105,7 +106,7 @@ LocalConvexPair::LocalConvexPair(const PosedConvex& a, const PosedConvex& b)
       b_(swapped_ ? a : b, origin_) {}
 
 double LocalConvexPair::slack() const {
-    // A support is right to a few roundings of each coordinate, and so are its product with a direction and the radii.
+    // A support errs by a few roundings of each coordinate; so do its product with a direction and the radii.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     return 32 * epsilon * (a_.magnitude() + b_.magnitude() + radii()) + std::numeric_limits<double>::min();
 }

@@ -1,4 +1,7 @@
-// LocalConvexPair: two convex things in a frame at the smaller of them, in an order that does not depend on which came first.
+// LocalConvexPair: two convex objects in local coordinates near the smaller of them.
+//
+// Origin    A point of the smaller object: its first corner, its first point or its centre. The axes are those of the world.
+// Order     a() is the larger object and b() the smaller one, whichever the caller passes first (see swapped()).
 #pragma once
 
 #include <array>
@@ -11,25 +14,25 @@
 
 namespace octopair {
 
-/// One of the two: its support in the frame. Neither copied nor moved.
+/// A convex object in local coordinates. Cannot be copied or moved.
 class LocalConvex {
 public:
     LocalConvex(const PosedConvex& convex, const Point3d& origin);
     LocalConvex(const LocalConvex&) = delete;
     LocalConvex& operator=(const LocalConvex&) = delete;
 
-    /// The core's farthest point.
+    /// Returns the core's farthest point in `direction`, which may have any length.
     Point3d support(const Point3d& direction) const;
     double radius() const { return solid_ ? solid_->radius : 0; }
-    /// No coordinate of the core is larger, so rounding is at most some epsilon of it.
+    /// Upper bound on the absolute value of the core's coordinates; rounding errors are a few epsilon of this.
     double magnitude() const { return magnitude_; }
-    /// A point inside.
+    /// Returns a point inside the core.
     Point3d middle() const;
-    /// The core in the frame, if it is few points.
+    /// Points of the core in local coordinates; empty if there are more than 4 or the core is not a set of points.
     std::span<const Point3d> points() const { return {points_.data(), count_}; }
-    /// However many points the core is; of other cores, none.
+    /// Returns all points of the core in local coordinates; empty if the core is not a set of points.
     std::vector<Point3d> all_points() const;
-    /// Where the frame has the solid; of a triangle and a point, which are there already, the identity.
+    /// Pose of the solid in local coordinates; the identity for triangles and points.
     const Pose& pose() const { return pose_; }
 
 private:
@@ -38,7 +41,7 @@ private:
     const ConvexSolid* solid_ = nullptr;
     Pose pose_;
     std::array<Point3d, 4> points_ = {};
-    std::size_t count_ = 0;  // 0: the support is the solid's
+    std::size_t count_ = 0;  // number of points_; 0: the support is computed from solid_
     double magnitude_ = 0;
 };
 
@@ -49,9 +52,9 @@ public:
     const LocalConvex& a() const { return a_; }
     const LocalConvex& b() const { return b_; }
     const Point3d& origin() const { return origin_; }
-    /// The frame's a is the caller's b.
+    /// True if a() is the caller's b.
     bool swapped() const { return swapped_; }
-    /// What rounding may make of a difference of two supports.
+    /// Upper bound on the rounding error of a difference of two supports.
     double slack() const;
     double radii() const { return a_.radius() + b_.radius(); }
 
@@ -61,13 +64,14 @@ private:
     LocalConvex a_, b_;
 };
 
-/// How far two cores are apart, and the points that are.
+/// Bounds on the distance of two cores, and two points that are `at_most` apart.
 struct CoreGap {
     double at_most = 0, at_least = 0;
     Point3d on_a = {}, on_b = {};
 };
 
-/// Until the bounds have met, or whether they are further apart than `enough` is decided.
-CoreGap core_gap(const LocalConvexPair& frame, std::optional<double> enough = {});
+/// Returns the distance of the two cores. With `enough`, the search ends once the bounds decide whether the distance is
+/// larger than `enough`.
+CoreGap core_gap(const LocalConvexPair& pair, std::optional<double> enough = {});
 
 }  // namespace octopair

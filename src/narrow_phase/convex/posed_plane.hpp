@@ -1,5 +1,6 @@
-// A plane in the world: a point of it and its normal, of length 1. The normal is the pose's turn of the shape's; poses of
-// planes turn and move only.
+// PosedPlane: a plane in the world, given by one of its points and its normal of length 1.
+//
+// Requires: the pose is a rotation and a translation.
 #pragma once
 
 #include "geometry/vector.hpp"
@@ -20,7 +21,7 @@ inline PosedPlane posed_plane(const shape::Plane& plane, const Pose& pose) {
     return {vector::times(turned, 1 / vector::length(turned)), vector::plus(point, vector::place(pose))};
 }
 
-/// Below 0 on the side that the normal leads away from.
+/// Returns the signed distance of `point` from the plane: above 0 on the side that the normal points to.
 inline double height_above(const PosedPlane& plane, const Point3d& point) {
     return vector::dot(vector::minus(point, plane.point), plane.normal);
 }

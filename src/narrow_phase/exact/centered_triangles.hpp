@@ -1,5 +1,6 @@
-// Two triangles moved to an origin of their own, and scaled by a power of two where their numbers are so large or so small
-// that products of them would leave float64's range.
+// CenteredTriangles: two triangles, translated so that the first corner of the first triangle is the origin.
+//
+// Coordinates are first divided by a power of two if they are so large or so small that products would leave float64's range.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 namespace octopair {
 
 struct CenteredTriangles {
-    int exponent = 0;  ///< numbers were divided by 2^exponent
-    Point3d origin;    ///< and then moved from here
+    int exponent = 0;  ///< coordinates were divided by 2^exponent
+    Point3d origin;    ///< the new origin, after that division
     Triangle3d a, b;
 
     CenteredTriangles(const Triangle3d& first, const Triangle3d& second) : a(first), b(second) {
         const double largest = std::max(largest_of(a), largest_of(b));
-        // Differences may be 2^-53 of this, and are multiplied by up to six.
+        // Differences may be as small as 2^-53 of this, and products have up to six factors.
         if (largest > 0x1p100 || (largest < 0x1p-50 && largest > 0)) exponent = std::ilogb(largest) + 1;
         origin = scaled(a[0]);
         for (auto* triangle : {&a, &b}) {
@@ -25,6 +26,7 @@ struct CenteredTriangles {
         }
     }
 
+    /// Returns a point or a length in the coordinates of the given triangles.
     Point3d back(const Point3d& place) const {
         const Point3d there = vector::plus(place, origin);
         if (exponent == 0) return there;

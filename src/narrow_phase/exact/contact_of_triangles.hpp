@@ -1,4 +1,4 @@
-// The contact of two triangles that meet, as the stages tell it.
+// contact_of(): the Contact of two triangles that meet, as the exact filters report it.
 #pragma once
 
 #include "narrow_phase/exact/triangle_contact.hpp"
@@ -6,7 +6,8 @@
 
 namespace octopair {
 
-/// In the middle of what they have in common, with the shortest way out of each other. Knows no features.
+/// Returns the contact: the mean of the common points, with the shortest translation that separates the triangles. The
+/// features are left unset. Requires: the triangles meet; `common` is triangle_contact(a, b).
 inline Contact contact_of(const Triangle3d& a, const Triangle3d& b, const TriangleContact& common) {
     Contact contact = {};
     for (unsigned i = 0; i < common.count; ++i) {

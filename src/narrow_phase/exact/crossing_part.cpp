@@ -13,12 +13,12 @@ namespace {
 using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
 using IntegerPoint = std::array<Integer, 3>;
 
-/// How many of float64's 53 bits of a height must be right.
-constexpr double sure = 0x1p30;
+/// A height in float64 is accepted if it is larger than its error bound by this factor: 30 of its 53 bits are right.
+constexpr double min_value_per_error = 0x1p30;
 
 struct RoundedHeight {
     double value, error;
-    bool is_sure() const { return std::abs(value) > sure * error; }
+    bool is_sure() const { return std::abs(value) > min_value_per_error * error; }
 };
 
 RoundedHeight rounded_height(const Triangle3d& triangle, const Point3d& place) {
@@ -45,7 +45,7 @@ RoundedHeight rounded_height(const ProjectedLine& line, const Point3d& place) {
     return {left - right, filter::line_error * (std::abs(left) + std::abs(right)) + filter::underflow};
 }
 
-/// begin / (begin - end), of heights with different signs.
+/// Returns begin / (begin - end). Requires: the heights have different signs.
 double part_of(Integer begin, Integer end) {
     begin = abs(begin), end = abs(end);
     Integer whole = begin + end;
@@ -61,7 +61,7 @@ class IntegerPoints {
 public:
     explicit IntegerPoints(const std::array<const Point3d*, count>& points) : grid_(numbers_of(points)) {}
 
-    /// Point i less point 0.
+    /// Returns point i minus point 0.
     IntegerPoint from_first(std::size_t i) const {
         IntegerPoint way;
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
-// The signs that float64 leaves open: of integers, in the narrowest type that holds the determinant. Most meshes have
-// coordinates of one or two dozen bits, whose determinants are below 2^127.
+// Signs that float64 cannot decide, computed with integers, in the narrowest type that holds the determinant.
+//
+// Most meshes have coordinates of 12 to 24 bits; their determinants are below 2^127.
 #include "narrow_phase/exact/orientation.hpp"
 
 #include <array>
@@ -16,7 +17,7 @@ template <unsigned bits>
 using Fixed = mp::number<mp::cpp_int_backend<bits, bits, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
 using Unbounded = mp::number<mp::cpp_int_backend<>, mp::et_off>;
 
-/// Rows a, b, c, d of a plane's corners: the determinant of the rows less the first.
+/// Returns the sign of the determinant of the rows b - a, c - a, d - a. The grid holds the rows a, b, c, d.
 template <typename Integer>
 int plane_sign(const Grid<12>& grid) {
     std::array<Integer, 9> m;

@@ -1,10 +1,11 @@
-// Orientation: on which side of a plane or of a line a point lies, without error, for any finite float64.
+// Orientation predicates: on which side of a plane or line a point lies. Exact for all finite float64 coordinates.
 //
-// A sign is first computed in float64. Each operation errs by at most 2^-53 of its result, so the whole by a small
-// multiple of that of the permanent: the same sums with all terms positive (Shewchuk, "Adaptive Precision Floating-Point
-// Arithmetic and Fast Robust Geometric Predicates", 1997, section 4). A term that underflows errs further, by less than
-// the smallest number times a factor, for which far more is added. What overflows leaves an infinite permanent, or none.
-// A sum beyond these bounds has the right sign; the others are computed again, in integers.
+// Filter    A sign is first computed in float64. Each operation errs by at most 2^-53 of its result. So the sum errs by at
+//           most a small multiple of 2^-53 of the permanent: the same sum with all terms positive.
+// Underflow A term that underflows errs by less than the smallest number times a factor; filter::underflow is far larger.
+// Overflow  An overflow makes the permanent infinite or NaN, so the sign counts as undecided.
+// Exact     A sum beyond the error bound has the right sign. Otherwise the sign is computed again, with integers.
+// Source    Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, section 4.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@
 
 namespace octopair {
 
-/// Of integers: -1, 0, 1. Slow.
+/// Return the sign of plane_side() and line_side(), -1, 0 or 1, computed with integers. Slow.
 int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d);
 int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis);
 
@@ -22,17 +23,17 @@ namespace filter {
 
 inline constexpr double plane_error = 0x1p-50;  ///< above (7 + 56 * 2^-53) * 2^-53
 inline constexpr double line_error = 0x1p-51;   ///< above (3 + 16 * 2^-53) * 2^-53
-inline constexpr double underflow = 0x1p-900;   ///< far above what any number of terms may lose below 2^-1022
+inline constexpr double underflow = 0x1p-900;   ///< far above the loss of all terms that underflow below 2^-1022
 
-/// -1 or 1 if the sum is that far from 0; otherwise 0, and nobody knows.
+/// Returns the sign of `sum` if its absolute value is larger than `error`; otherwise 0: float64 cannot decide the sign.
 inline int safe_sign(double sum, double error) { return int(sum > error) - int(sum < -error); }
 
 }  // namespace filter
 
-/// The plane through three corners, for the sides of several points.
+/// The plane through three corners. Decides the sides of several points.
 class PlaneSides {
 public:
-    /// The corners must outlive it.
+    /// Borrows the corners: they must outlive this object.
     PlaneSides(const Point3d& a, const Point3d& b, const Point3d& c) : a_(a), b_(b), c_(c) {
         const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
         const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
@@ -42,14 +43,14 @@ public:
     }
     explicit PlaneSides(const std::array<Point3d, 3>& triangle) : PlaneSides(triangle[0], triangle[1], triangle[2]) {}
 
-    /// 1 where (b - a) x (c - a) points to the side that d is on: a, b, c are counterclockwise, seen from d. -1 on the
-    /// other side; 0 if the four lie in one plane.
+    /// Returns 1 if d is on the side that (b - a) x (c - a) points to: a, b, c are counterclockwise, seen from d. Returns -1 if
+    /// d is on the other side, 0 if the four points lie in one plane.
     int operator()(const Point3d& d) const {
         const int sign = rounded(d);
         return sign != 0 ? sign : exact_plane_side(a_, b_, c_, d);
     }
 
-    /// The same, or 0 where float64 does not know.
+    /// Returns the same sign, or 0 if float64 cannot decide it.
     int rounded(const Point3d& d) const {
         const double dx = d[0] - a_[0], dy = d[1] - a_[1], dz = d[2] - a_[2];
         const double sum = dx * normal_[0] + dy * normal_[1] + dz * normal_[2];
@@ -63,13 +64,13 @@ private:
     Point3d normal_, largest_;
 };
 
-/// As PlaneSides, of one point.
+/// Returns PlaneSides(a, b, c)(d).
 inline int plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d) {
     return PlaneSides(a, b, c)(d);
 }
 
-/// The sign of coordinate `axis` of (b - a) x (c - a): where c lies of the line from a to b, seen along that axis, which
-/// comes towards the eye: 1 on the left, -1 on the right, 0 on the line.
+/// Returns the sign of coordinate `axis` of (b - a) x (c - a): the side of the line from a to b on which c lies, projected
+/// along `axis`, which points to the viewer. 1: left, -1: right, 0: on the line.
 inline int line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis) {
     const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
     const double left = (b[u] - a[u]) * (c[v] - a[v]), right = (b[v] - a[v]) * (c[u] - a[u]);

@@ -8,7 +8,7 @@
 namespace octopair {
 namespace {
 
-/// The two axes across the one, such that line_side sees u to the right and v upward.
+/// The two axes perpendicular to `axis`: in the projection of line_side(), u points to the right and v upward.
 struct Across {
     unsigned axis, u, v;
     explicit Across(unsigned along) : axis(along), u(along == 2 ? 0 : along + 1), v(along == 0 ? 2 : along - 1) {}
@@ -16,8 +16,8 @@ struct Across {
 
 int compare(double a, double b) { return int(a > b) - int(a < b); }
 
-/// line_side of the place, moved aside by e on v and e^2 on u; 0 only if the edge is seen as a point. Moving it upward
-/// brings it to the left of an edge that goes to the right; moving it to the right, to the right of one that goes up.
+/// Returns line_side() of `place`, moved by e on v and e^2 on u; 0 only if the edge is projected to a point. Moving it upward
+/// brings it to the left of an edge that goes right. Moving it right brings it to the right of an edge that goes up.
 int moved_line_side(const Point3d& begin, const Point3d& end, const Point3d& place, const Across& across) {
     const int side = line_side(begin, end, place, across.axis);
     if (side != 0) return side;
@@ -39,8 +39,8 @@ bool ray_crosses(const Point3d& from, const Triangle3d& triangle, unsigned axis)
     if (side == 0 || moved_line_side(b, c, from, across) != side || moved_line_side(c, a, from, across) != side) {
         return false;
     }
-    // The triangle is seen counterclockwise if `side` is 1, so its normal points along the axis: the ray comes to its
-    // plane from behind.
+    // If `side` is 1, the projected triangle is counterclockwise and its normal points along the axis. So the ray reaches the
+    // plane only from the side opposite to the normal.
     return plane_side(a, b, c, from) * side < 0;
 }
 

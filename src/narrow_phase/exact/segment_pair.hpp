@@ -1,5 +1,6 @@
-// Segments against segments and triangles, all closed and possibly degenerate: what the tests of triangles fall back on.
-// Slow: made for the few that are coplanar or degenerate.
+// Exact tests of segments against segments and triangles, all closed and possibly degenerate.
+//
+// Slow: the tests of triangles use these functions only for coplanar or degenerate triangles.
 #pragma once
 
 #include <array>
@@ -8,21 +9,23 @@
 
 namespace octopair {
 
-/// Both ends may be one place.
+/// The two ends of a segment. The ends may be equal.
 using Segment3d = std::array<Point3d, 2>;
 
-/// Along which axis a triangle is seen with an area; 3 if it is degenerate. `side`: whether it is counterclockwise then.
-struct Facing {
-    unsigned axis = 3;
-    int side = 0;
+/// Projection of a triangle along an axis, in which the triangle has an area.
+struct Projection {
+    unsigned axis = 3;  ///< 3 if the triangle is degenerate
+    int side = 0;       ///< 1: the projected triangle is counterclockwise, -1: clockwise, 0: degenerate
 };
-Facing facing(const Triangle3d& triangle);
+/// Returns the first axis along which the projected triangle has an area.
+Projection projection_of(const Triangle3d& triangle);
 
-/// The two corners that are furthest apart, if it is degenerate.
+/// Returns the two corners that are farthest apart. Requires: the triangle is degenerate.
 Segment3d hull_of_degenerate(const Triangle3d& triangle);
 
-/// An axis along which a plane that holds both is seen one to one; 3 if all lie on a line. Of segments in one plane.
-unsigned facing_axis(const Segment3d& s, const Segment3d& t);
+/// Returns an axis along which the common plane of two segments is projected one to one; 3 if all ends lie on a line.
+/// Requires: the segments lie in one plane.
+unsigned projection_axis(const Segment3d& s, const Segment3d& t);
 
 bool segments_meet(const Segment3d& s, const Segment3d& t);
 bool segment_meets_triangle(const Segment3d& segment, const Triangle3d& triangle);

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/exact/crossing_part.hpp"
 #include "narrow_phase/exact/centered_triangles.hpp"
+#include "narrow_phase/exact/crossing_part.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/exact/plane_crossing.hpp"
 #include "narrow_phase/exact/ray_parity.hpp"
@@ -24,10 +24,10 @@ Point3d between(const Point3d& from, const Point3d& to, double part) {
     return {std::lerp(from[0], to[0], part), std::lerp(from[1], to[1], part), std::lerp(from[2], to[2], part)};
 }
 
-/// Where edge 0i of a triangle passes the other's plane.
-Point3d edge_crossing(const Triangle3d& triangle, const PlaneCrossing::Turn& turn, unsigned i,
+/// Returns the point where edge 0i of a triangle crosses the other triangle's plane.
+Point3d edge_crossing(const Triangle3d& triangle, const PlaneCrossing::CornerOrder& corners, unsigned i,
                       const Triangle3d& other) {
-    const Point3d &from = triangle[turn[0]], &to = triangle[turn[i]];
+    const Point3d &from = triangle[corners[0]], &to = triangle[corners[i]];
     return between(from, to, part_to_plane(other, from, to));
 }
 
@@ -35,7 +35,8 @@ bool on_both_sides(const CornerSides& sides) {
     return std::min({sides[0], sides[1], sides[2]}) < 0 && std::max({sides[0], sides[1], sides[2]}) > 0;
 }
 
-/// Triangles in different planes have a segment of the planes' line in common: from the later begin to the earlier end.
+/// Returns the contact of triangles in different planes. Each crosses the planes' common line in a segment; the contact runs
+/// from the later begin to the earlier end of the two segments.
 TriangleContact crossing_contact(const std::array<Triangle3d, 2>& triangles, const std::array<CornerSides, 2>& sides) {
     TriangleContact contact;
     const auto& [a, b] = triangles;
@@ -53,30 +54,30 @@ TriangleContact crossing_contact(const std::array<Triangle3d, 2>& triangles, con
     return contact;
 }
 
-/// A triangle's corners and edges; of a degenerate one, those of the segment.
+/// Corners and edges of a triangle. A degenerate triangle has those of its segment or point.
 class Outline {
 public:
-    explicit Outline(const Triangle3d& triangle) : facing_(facing(triangle)), corners_(triangle) {
-        if (facing_.axis < 3) return;
+    explicit Outline(const Triangle3d& triangle) : projection_(projection_of(triangle)), corners_(triangle) {
+        if (projection_.axis < 3) return;
         const auto [low, high] = hull_of_degenerate(triangle);
         corners_ = {low, high, high};
         count_ = low == high ? 1 : 2;
     }
 
-    const Facing& seen() const { return facing_; }
+    const Projection& projection() const { return projection_; }
     std::size_t corners() const { return count_; }
     const Point3d& corner(std::size_t i) const { return corners_[i]; }
     std::size_t edges() const { return count_ == 3 ? 3 : count_ - 1; }
     Segment3d edge(std::size_t i) const { return {corners_[i], corners_[(i + 1) % count_]}; }
 
 private:
-    Facing facing_;
+    Projection projection_;
     std::size_t count_ = 3;
     Triangle3d corners_;
 };
 
-/// What triangles that lie in one plane or are degenerate have in common: a convex set whose corners are theirs, where two
-/// edges pass each other, and where a segment passes through a triangle.
+/// Contact of triangles that are coplanar or degenerate. Their intersection is a convex set. Its corners are corners of the
+/// triangles, crossings of two edges, and crossings of a segment with a triangle.
 class FlatContact {
 public:
     FlatContact(const Triangle3d& a, const Triangle3d& b) : a_(a), b_(b) {
@@ -107,11 +108,11 @@ private:
         if (std::find(contact_.points.begin(), end, corner) == end && point_on_triangle(corner, other)) add(corner);
     }
 
-    /// Inside of both edges.
+    /// Adds the crossing of two edges if it is in the interior of both.
     void try_edges(std::size_t i, std::size_t j) {
         const Segment3d s = a_.edge(i), t = b_.edge(j);
         if (plane_side(s[0], s[1], t[0], t[1]) != 0) return;
-        const unsigned axis = facing_axis(s, t);
+        const unsigned axis = projection_axis(s, t);
         if (axis == 3 || line_side(t[0], t[1], s[0], axis) * line_side(t[0], t[1], s[1], axis) >= 0 ||
             line_side(s[0], s[1], t[0], axis) * line_side(s[0], s[1], t[1], axis) >= 0) {
             return;
@@ -119,7 +120,7 @@ private:
         add(between(s[0], s[1], part_to_line({t[0], t[1], axis}, s[0], s[1])));
     }
 
-    /// Inside of the segment and of the triangle.
+    /// Adds the crossing of a segment and a triangle if it is in the interior of both.
     void try_segment(const Outline& segment, const Triangle3d& triangle) {
         const auto [begin, end] = segment.edge(0);
         const PlaneSides plane(triangle);
@@ -132,9 +133,9 @@ private:
         add(between(begin, end, part_to_plane(triangle, begin, end)));
     }
 
-    /// Around their middle, as seen along the axis.
+    /// Sorts the points by angle around their mean, in the projection along the axis.
     void put_in_order() {
-        const unsigned axis = a_.seen().axis;
+        const unsigned axis = a_.projection().axis;
         const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
         const auto begin = contact_.points.begin(), end = begin + contact_.count;
         double middle_u = 0, middle_v = 0;
@@ -165,10 +166,10 @@ struct Extent {
     }
 };
 
-/// The directions in which two triangles may leave each other shortest, and the shortest so far.
-class WayOut {
+/// The shortest translation that separates two triangles, among the directions offered.
+class MinimumTranslation {
 public:
-    explicit WayOut(const CenteredTriangles& near) : near_(near) {}
+    explicit MinimumTranslation(const CenteredTriangles& near) : near_(near) {}
 
     void offer(const Point3d& direction) {
         const double length = vector::length(direction);
@@ -191,8 +192,8 @@ private:
     TriangleDepth out_;
 };
 
-/// Across two vectors. Of such as are almost parallel, their product has a direction of its roundings, which is across
-/// neither: across the longer one it is made to be.
+/// Returns the cross product, made perpendicular to the longer vector. Rounding decides the direction of the cross product of
+/// almost parallel vectors, which is then perpendicular to neither.
 Point3d across(const Point3d& a, const Point3d& b) {
     const Point3d product = cross(a, b);
     const Point3d& longer = dot(a, a) < dot(b, b) ? b : a;
@@ -200,7 +201,7 @@ Point3d across(const Point3d& a, const Point3d& b) {
     return square > 0 ? minus(product, times(longer, dot(product, longer) / square)) : product;
 }
 
-/// Across a vector, if it is not 0.
+/// Returns a vector perpendicular to `way`; 0 if `way` is 0.
 Point3d some_normal(const Point3d& way) {
     Point3d unit = {};
     unit[std::size_t(
@@ -227,19 +228,19 @@ TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b) {
         a_edges[i] = minus(near.a[(i + 1) % 3], near.a[i]);
         b_edges[i] = minus(near.b[(i + 1) % 3], near.b[i]);
     }
-    WayOut way(near);
-    way.offer(across(a_edges[0], a_edges[1]));
-    way.offer(across(b_edges[0], b_edges[1]));
+    MinimumTranslation least(near);
+    least.offer(across(a_edges[0], a_edges[1]));
+    least.offer(across(b_edges[0], b_edges[1]));
     for (const Point3d& a_edge : a_edges) {
-        for (const Point3d& b_edge : b_edges) way.offer(across(a_edge, b_edge));
+        for (const Point3d& b_edge : b_edges) least.offer(across(a_edge, b_edge));
     }
     for (const auto* edges : {&a_edges, &b_edges}) {
-        // On one line, across which they leave each other at once.
+        // No direction found: all edges lie along one line. Any translation across that line separates the triangles.
         for (const Point3d& edge : *edges) {
-            if (!way.found()) way.offer(some_normal(edge));
+            if (!least.found()) least.offer(some_normal(edge));
         }
     }
-    return way.out();
+    return least.out();
 }
 
 }  // namespace octopair

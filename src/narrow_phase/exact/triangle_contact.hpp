@@ -1,4 +1,6 @@
-// Where, how and how deep two triangles meet. How they meet is decided by exact signs; places and depths are float64.
+// Contacts of two triangles: how they meet, the points that they have in common, and the penetration depth.
+//
+// Exact signs decide how the triangles meet. Points and depths are computed in float64.
 #pragma once
 
 #include <array>
@@ -10,25 +12,25 @@ namespace octopair {
 
 enum class TriangleMeeting : std::uint8_t {
     none,
-    touching,     ///< they meet, and no more than this
-    overlapping,  ///< they lie in one plane and have an area in common
-    crossing      ///< they lie in different planes, and their insides pass through each other
+    touching,     ///< the triangles meet, but neither overlap nor cross
+    overlapping,  ///< coplanar, with a common area
+    crossing      ///< in different planes; the interiors pass through each other
 };
 
 struct TriangleContact {
     TriangleMeeting meeting = TriangleMeeting::none;
-    unsigned count = 0;                  ///< of points: 1; 2: a segment; more: a polygon, in order
-    std::array<Point3d, 6> points = {};  ///< the corners of what they have in common
+    unsigned count = 0;                  ///< number of points: 0 none, 1 point, 2 segment, more: a polygon, in order
+    std::array<Point3d, 6> points = {};  ///< corners of the set that the triangles have in common
 };
 
 TriangleContact triangle_contact(const Triangle3d& a, const Triangle3d& b);
 
-/// The shortest way out of each other: b moved along `normal`, of length 1, by `depth` does no more than touch a. For
-/// triangles that meet.
+/// Shortest translation that separates two triangles: b moved along `normal` by `depth` at most touches a.
 struct TriangleDepth {
-    Point3d normal = {0, 0, 1};  ///< any, for two points
+    Point3d normal = {0, 0, 1};  ///< length 1; arbitrary if both triangles are points
     double depth = 0;
 };
+/// Requires: the triangles meet.
 TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b);
 
 }  // namespace octopair

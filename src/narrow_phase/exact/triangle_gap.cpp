@@ -1,6 +1,8 @@
-// The nearest points are those of two edges, of a corner and an edge, or of a corner and the inside of the other triangle.
-// All are tried, and every candidate is a point of its triangle whatever its parameters' rounding: so no distance comes
-// out too small, and where one candidate is imprecise (edges almost parallel, slivers) another is as near.
+// triangle_gap(): nearest points of two triangles.
+//
+// Cases     Two edges, a corner and an edge, or a corner and the interior of the other triangle. All cases are tried.
+// Safety    Each candidate is a point of its triangle, whatever the rounding of its parameters. So no distance is too small.
+// Accuracy  If one candidate is imprecise (almost parallel edges, slivers), another candidate is as near.
 #include "narrow_phase/exact/triangle_gap.hpp"
 
 #include <algorithm>
@@ -21,7 +23,7 @@ using vector::minus;
 using vector::plus;
 using vector::times;
 
-/// The nearest points so far.
+/// The nearest pair of points among those offered.
 struct Nearest {
     Point3d on_a = {}, on_b = {};
     double square = std::numeric_limits<double>::infinity();
@@ -34,7 +36,7 @@ struct Nearest {
     }
 };
 
-/// Where a segment from the origin comes nearest to a place: a part of it, 0 to 1.
+/// Returns the point nearest to `place` on the segment from the origin to `way`, as a fraction of the segment, 0 to 1.
 double part_nearest(const Point3d& way, const Point3d& place) {
     const double square = dot(way, way);
     return square > 0 ? std::clamp(dot(way, place) / square, 0.0, 1.0) : 0.0;
@@ -48,7 +50,7 @@ struct GapEdge {
     Point3d nearest(const Point3d& place) const { return at(part_nearest(way, minus(place, begin))); }
 };
 
-/// Between the ends of both.
+/// Offers the nearest points of the edges' lines, if both lie strictly between the ends.
 void try_edges(const GapEdge& a, const GapEdge& b, Nearest& nearest) {
     const Point3d between = minus(a.begin, b.begin);
     const double aa = dot(a.way, a.way), ab = dot(a.way, b.way), bb = dot(b.way, b.way);
@@ -60,7 +62,7 @@ void try_edges(const GapEdge& a, const GapEdge& b, Nearest& nearest) {
     if (is_inside(a_part) && is_inside(b_part)) nearest.offer(a.at(a_part), b.at(b_part));
 }
 
-/// A triangle as the corners of the other one see it.
+/// A triangle with the vectors that are needed to project a point onto its plane.
 struct Face {
     const Point3d& corner;
     GapEdge first, second;
@@ -74,7 +76,7 @@ struct Face {
           normal(cross(first.way, second.way)),
           square(dot(normal, normal)) {}
 
-    /// Whether the nearest point is inside, which is then set.
+    /// Returns true if the projection of `place` is in the interior of the triangle; then sets `nearest` to it.
     bool nearest_inside(const Point3d& place, Point3d& nearest) const {
         const Point3d way = minus(place, corner);
         const double first_part = dot(cross(way, second.way), normal) / square;
@@ -119,7 +121,7 @@ TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b) {
 double triangle_gap(const Point3d& point, const Triangle3d& triangle) {
     const Triangle3d place = {point, point, point};
     const CenteredTriangles near(place, triangle);
-    const Triangle3d& corners = near.b;  // about the point
+    const Triangle3d& corners = near.b;  // relative to `point`
     Nearest nearest;
     for (const GapEdge& edge :
          {GapEdge{corners[0], corners[1]}, GapEdge{corners[1], corners[2]}, GapEdge{corners[2], corners[0]}}) {

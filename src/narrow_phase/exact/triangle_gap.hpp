@@ -1,4 +1,4 @@
-// How far apart two triangles are, or a point and one, in float64.
+// Distance of two triangles, or of a point and a triangle, in float64.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@ namespace octopair {
 
 struct TriangleGap {
     double distance = 0;
-    std::array<Point3d, 2> nearest = {};  ///< a point of the first and one of the second, that far apart
+    std::array<Point3d, 2> nearest = {};  ///< nearest points: one of the first triangle, one of the second
 };
 
-/// 0 if they meet, by the exact test; otherwise right to a few roundings of the largest coordinate, also of degenerate
-/// triangles.
+/// Returns the distance and the nearest points. The distance is 0 if the triangles meet by the exact test. Otherwise it is
+/// right to a few roundings of the largest coordinate, for degenerate triangles too.
 TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b);
 
-/// The same distance of a point and a triangle, much cheaper.
+/// Returns the distance of a point and a triangle, with the same accuracy. Much cheaper.
 double triangle_gap(const Point3d& point, const Triangle3d& triangle);
 
 }  // namespace octopair

@@ -11,8 +11,8 @@
 namespace octopair {
 namespace {
 
-/// How far points are along a direction, from an origin. Every direction will do, so its own roundings do not matter; those
-/// of the distances are at most four of the sum of their terms' sizes.
+/// Positions of points along a direction, relative to an origin. Any direction is valid for a separation test, so rounding of
+/// the direction does not matter. A position errs by at most four roundings of the sum of its terms' absolute values.
 class Direction {
 public:
     Direction(const Point3d& origin, const Point3d& direction) : origin_(origin), direction_(direction) {}
@@ -25,7 +25,7 @@ public:
         return x + y + z;
     }
 
-    /// Whether a difference of two distances asked for is above 0 without doubt; never where one was not finite.
+    /// Returns true if a difference of two positions is certainly above 0. False if any position was not finite.
     bool clear(double difference) const { return difference > 0x1p-49 * sizes_ + filter::underflow; }
 
 private:
@@ -34,8 +34,8 @@ private:
     double sizes_ = 0;
 };
 
-/// True if float64 sees a plane across the line between their middles that separates them: what spares neighbours in a
-/// flat part of a mesh all exact arithmetic.
+/// Returns true if float64 finds a separating plane perpendicular to the line between the triangles' centroids. Saves exact
+/// arithmetic for neighbours in a flat part of a mesh.
 bool clearly_apart(const Triangle3d& a, const Triangle3d& b) {
     Point3d between;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -47,32 +47,32 @@ bool clearly_apart(const Triangle3d& a, const Triangle3d& b) {
     return along.clear(low - high);
 }
 
-/// 0 where float64 does not know.
+/// Returns the sides; 0 where float64 cannot decide.
 CornerSides rounded_sides(const PlaneSides& plane, const Triangle3d& triangle) {
     return {plane.rounded(triangle[0]), plane.rounded(triangle[1]), plane.rounded(triangle[2])};
 }
 bool are_sure(const CornerSides& sides) { return sides[0] != 0 && sides[1] != 0 && sides[2] != 0; }
 
-/// Of triangles in one plane: some edge has the other triangle on its outer side.
-bool edge_separates(const Triangle3d& a, const Facing& seen, const Triangle3d& b) {
+/// Returns true if some edge of `a` has all of `b` on its outer side. Requires: the triangles lie in one plane.
+bool edge_separates(const Triangle3d& a, const Projection& projection, const Triangle3d& b) {
     for (std::size_t i = 0; i < 3; ++i) {
         const auto outside = [&](const Point3d& corner) {
-            return line_side(a[i], a[(i + 1) % 3], corner, seen.axis) * seen.side < 0;
+            return line_side(a[i], a[(i + 1) % 3], corner, projection.axis) * projection.side < 0;
         };
         if (std::all_of(b.begin(), b.end(), outside)) return true;
     }
     return false;
 }
 
-/// Of triangles that are degenerate or lie in one plane.
+/// Requires: the triangles lie in one plane, or one of them is degenerate.
 bool flat_triangles_meet(const Triangle3d& a, const Triangle3d& b) {
-    const Facing a_seen = facing(a), b_seen = facing(b);
-    if (a_seen.axis == 3) return segment_meets_triangle(hull_of_degenerate(a), b);
-    if (b_seen.axis == 3) return segment_meets_triangle(hull_of_degenerate(b), a);
-    return !edge_separates(a, a_seen, b) && !edge_separates(b, b_seen, a);
+    const Projection a_projection = projection_of(a), b_projection = projection_of(b);
+    if (a_projection.axis == 3) return segment_meets_triangle(hull_of_degenerate(a), b);
+    if (b_projection.axis == 3) return segment_meets_triangle(hull_of_degenerate(b), a);
+    return !edge_separates(a, a_projection, b) && !edge_separates(b, b_projection, a);
 }
 
-/// Triangles with one corner in common.
+/// Two triangles with one common corner, given by their other corners.
 struct Fan {
     const Point3d& shared;
     std::array<const Point3d*, 2> a, b;
@@ -89,15 +89,15 @@ bool clearly_apart(const Fan& fan) {
     return along.clear(std::min(low, -high));
 }
 
-/// A degenerate triangle is one or two segments from the shared corner.
+/// Returns the triangle twice; if it is degenerate, the two segments from the shared corner instead.
 std::array<Triangle3d, 2> parts_of(const Point3d& shared, const std::array<const Point3d*, 2>& others) {
     const Triangle3d whole = {shared, *others[0], *others[1]};
     if (!is_degenerate(whole)) return {whole, whole};
     return {Triangle3d{shared, *others[0], *others[0]}, Triangle3d{shared, *others[1], *others[1]}};
 }
 
-/// The slow way: a common point lies on rays from the shared corner, which leave the triangles through the edges
-/// opposite to it; the nearer of the two is a common point as well.
+/// Slow version of fan_meets_beyond(), for coplanar and degenerate triangles. The ray from the shared corner through a common
+/// point leaves each triangle through the opposite edge; the nearer of the two exits is a common point as well.
 bool flat_fan_meets_beyond(const Fan& fan) {
     const auto a_parts = parts_of(fan.shared, fan.a), b_parts = parts_of(fan.shared, fan.b);
     for (const Triangle3d& a : a_parts) {
@@ -110,9 +110,10 @@ bool flat_fan_meets_beyond(const Fan& fan) {
     return false;
 }
 
-/// Both planes pass through the shared corner, and so does their line. Each triangle that has not both other corners on
-/// one side holds a part of it from the shared corner, which goes to the positive end if the first of these corners is
-/// the higher one (plane_crossing.hpp has the directions); they meet beyond if both go to the same end.
+/// Returns true if the triangles meet beyond their shared corner. Both planes and their common line pass through that corner.
+/// A triangle whose other corners are not on one side of the other plane contains a part of the line from the corner on.
+/// This part goes to the positive end if the first of these corners is the higher one (directions: plane_crossing.hpp).
+/// The triangles meet beyond the corner if both parts go to the same end.
 bool fan_meets_beyond(const Fan& fan) {
     if (clearly_apart(fan)) return false;
     const PlaneSides b_plane(fan.shared, *fan.b[0], *fan.b[1]);
@@ -125,13 +126,13 @@ bool fan_meets_beyond(const Fan& fan) {
     return (a_first > a_second) != (b_first > b_second);
 }
 
-/// Triangles with an edge in common.
+/// Two triangles with a common edge.
 struct Hinge {
     const Point3d &begin, &end;
-    const Point3d &a, &b;  ///< their third corners: no corners of the edge
+    const Point3d &a, &b;  ///< third corner of each triangle; not an end of the edge
 };
 
-/// Seen along some axis, the third corners are on different sides of the edge without doubt.
+/// Returns true if, projected along some axis, the third corners are certainly on different sides of the edge.
 bool clearly_apart(const Hinge& hinge) {
     Point3d edge, a, b;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -152,19 +153,21 @@ bool clearly_apart(const Hinge& hinge) {
     return apart;
 }
 
-/// Only in one plane, folded onto each other; on one line, if both pass the same end of the edge.
+/// Returns true if the triangles meet beyond their common edge: they are coplanar and folded onto each other. If all corners
+/// lie on one line, both triangles must extend past the same end of the edge.
 bool hinge_meets_beyond(const Hinge& hinge) {
     if (clearly_apart(hinge)) return false;
     const auto& [begin, end, a, b] = hinge;
     if (plane_side(begin, end, a, b) != 0) return false;
-    const Facing a_seen = facing({begin, end, a}), b_seen = facing({begin, end, b});
-    if (a_seen.axis < 3 && b_seen.axis < 3) return line_side(begin, end, b, a_seen.axis) * a_seen.side > 0;
-    if (a_seen.axis < 3 || b_seen.axis < 3) return false;
+    const Projection a_projection = projection_of({begin, end, a}), b_projection = projection_of({begin, end, b});
+    if (a_projection.axis < 3 && b_projection.axis < 3)
+        return line_side(begin, end, b, a_projection.axis) * a_projection.side > 0;
+    if (a_projection.axis < 3 || b_projection.axis < 3) return false;
     const auto& [low, high] = std::minmax(begin, end);
     return (a < low && b < low) || (a > high && b > high);
 }
 
-/// Bit 3 * i + j: corner i of a is corner j of b.
+/// Returns a bit mask: bit 3 * i + j is set if corner i of a equals corner j of b.
 unsigned equal_corners(const Triangle3d& a, const Triangle3d& b) {
     unsigned equal = 0;
     for (unsigned i = 0; i < 3; ++i) {
@@ -180,7 +183,7 @@ unsigned equal_corners(const Triangle3d& a, const Triangle3d& b) {
     return equal;
 }
 
-/// Corners, each place once; the shared ones first.
+/// The distinct corners of a triangle, those shared with the other triangle first.
 struct DistinctCorners {
     std::array<const Point3d*, 3> at = {};
     unsigned count = 0, shared = 0;
@@ -198,11 +201,11 @@ struct DistinctCorners {
     }
 };
 
-/// Of triangles that share corners, and may hold a place twice.
+/// General version of meet_beyond_shared(). Requires: the triangles share a corner. A triangle may have equal corners.
 bool any_meet_beyond_shared(const Triangle3d& a, const Triangle3d& b) {
     const DistinctCorners of_a(a, b), of_b(b, a);
     if (of_a.shared == 3) return !is_degenerate(a);
-    // What has no other corners is what they share.
+    // A triangle without other corners is equal to the shared feature.
     if (of_a.count == of_a.shared || of_b.count == of_b.shared) return false;
     if (of_a.shared == 2) return hinge_meets_beyond({*of_a.at[0], *of_a.at[1], *of_a.at[2], *of_b.at[2]});
     const auto last = [](const DistinctCorners& corners) { return corners.at[corners.count - 1]; };
@@ -247,6 +250,6 @@ bool meet_beyond_shared(const Triangle3d& a, const Triangle3d& b) {
     return hinge_meets_beyond({a[i], a[k], a[3 - i - k], b[3 - j - l]});
 }
 
-bool is_degenerate(const Triangle3d& triangle) { return facing(triangle).axis == 3; }
+bool is_degenerate(const Triangle3d& triangle) { return projection_of(triangle).axis == 3; }
 
 }  // namespace octopair

@@ -1,24 +1,25 @@
-// Whether two triangles meet: the one exact test of triangles, for all stages.
+// The exact triangle-triangle test, used by all stages.
 //
-// Triangles are closed sets of points; those that are degenerate are the segments and points that they are. There is no
-// epsilon: every decision is a sign of orientation.hpp, and none depends on the order of the two or of their corners.
+// Sets      Triangles are closed sets of points. A degenerate triangle is a segment or a point.
+// Exact     There is no epsilon: every decision is a sign from orientation.hpp.
+// Symmetry  The result does not depend on the order of the two triangles or of their corners.
 #pragma once
 
 #include "octopair/pose.hpp"
 
 namespace octopair {
 
-/// True if they have a point in common.
+/// Returns true if the triangles have a point in common.
 bool triangles_meet(const Triangle3d& a, const Triangle3d& b);
 
-/// How many places are a corner of both: 0 to 3. Those that share one are adjacent.
+/// Returns the number of places that are a corner of both triangles: 0 to 3. Triangles that share a corner are adjacent.
 unsigned shared_corners(const Triangle3d& a, const Triangle3d& b);
 
-/// True if they have a point in common outside of what they share by their corners: one corner, the segment between two,
-/// or the edges between three (so that equal triangles meet beyond these unless they are degenerate).
+/// Returns true if the triangles have a point in common outside their shared feature: one corner, the segment between two
+/// corners, or the edges between three. So equal triangles meet beyond it unless they are degenerate.
 bool meet_beyond_shared(const Triangle3d& a, const Triangle3d& b);
 
-/// True if all corners lie on a line.
+/// Returns true if all corners lie on a line.
 bool is_degenerate(const Triangle3d& triangle);
 
 }  // namespace octopair

@@ -1,4 +1,5 @@
-// One text for both: with numbers of one pair it is the specification, with vectors of many the fast version.
+// prefilter_pair() and prefilter_pairs(), from one template: with one lane it is the specification, with SIMD vectors the fast
+// version.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "narrow_phase/exact/triangle_prefilter.cpp"
 #include <hwy/cache_control.h>
@@ -19,7 +20,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <typename D>
-class Look {
+class PairPrefilter {
 public:
     using V = hn::Vec<D>;
     using M = hn::Mask<D>;
@@ -30,7 +31,7 @@ public:
         Corner at[3];
     };
 
-    Look(const Corners& a, const Corners& b) {
+    PairPrefilter(const Corners& a, const Corners& b) {
         M same[3][3];
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) same[i][j] = equal(a.at[i], b.at[j]);
@@ -70,17 +71,17 @@ private:
                 hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
     }
 
-    /// Above what a height over a plane errs by, which is below 2^-43 of the third power of the largest coordinate: those
-    /// err by 2^-53 of it, the edges between b's corners by four times as much, a coordinate of their cross product by 48
-    /// times that of its square, a scalar product with a corner by 240 times that of its third power. No sum is beyond 48
-    /// times that power, so that what overflows leaves an infinite error.
+    /// Returns an upper bound on the error of a height over a plane. The error is below 2^-43 * m^3, where m is the largest
+    /// coordinate. In units of 2^-53, coordinates err by m and the edges between b's corners by 4 m. A coordinate of their
+    /// cross product errs by 48 m^2, a scalar product with a corner by 240 m^3. No sum exceeds 48 m^3, so an overflow makes
+    /// the bound infinite.
     V height_error() const {
         const V power = hn::Mul(hn::Mul(largest_, set(64)), hn::Mul(largest_, largest_));
         return hn::Add(hn::Mul(power, set(0x1p-42 / 64)), lost());
     }
     V lost() const { return hn::Mul(set(filter::underflow), hn::Add(set(1), largest_)); }
 
-    /// PlaneSides of the corners that are not shared: on the same side, and there are some.
+    /// Returns true if all corners that are not shared are on the same side of the plane, and at least one is not shared.
     M on_one_side(const V (&heights)[3], const M (&shared)[3]) const {
         const V error = height_error(), below_error = hn::Neg(error);
         M above = hn::Not(hn::And(shared[0], hn::And(shared[1], shared[2]))), below = above;
@@ -115,9 +116,10 @@ private:
         return {add(a.x, b.x, c.x), add(a.y, b.y, c.y), add(a.z, b.z, c.z)};
     }
 
-    /// A direction's own roundings do not matter. Its coordinates are at most six of the largest, so that a difference of
-    /// two distances along it is below 36 of the square of that, and errs by less than 2^-45 of the square. The shared
-    /// corner has one distance, whichever triangle it is taken of.
+    /// Returns true if a plane perpendicular to the line between the centroids separates the triangles. Rounding of the
+    /// direction does not matter. Its coordinates are at most 6 m, where m is the largest coordinate. So a difference of two
+    /// positions along it is below 36 m^2 and errs by less than 2^-45 m^2. The shared corner has the same position in both
+    /// triangles.
     M middles_apart() const {
         const Corner direction = way(sum(b_), sum(a_));
         const V infinite = set(std::numeric_limits<double>::infinity());
@@ -136,34 +138,34 @@ private:
         return hn::And(apart, hn::And(at_most_one(a_shared_), at_most_one(b_shared_)));
     }
 
-    Corners a_, b_;  // as seen from a's first corner
-    V largest_;      // of their coordinates
+    Corners a_, b_;  // relative to a's first corner
+    V largest_;      // largest absolute coordinate of a_ and b_
     M a_shared_[3], b_shared_[3];
 };
 
 template <typename D>
-HWY_INLINE typename Look<D>::Corners gather(D d, std::span<const Triangle3d> triangles,
-                                            hn::Vec<hn::RebindToSigned<D>> first_numbers) {
+HWY_INLINE typename PairPrefilter<D>::Corners gather(D d, std::span<const Triangle3d> triangles,
+                                                     hn::Vec<hn::RebindToSigned<D>> first_numbers) {
     const double* base = triangles[0][0].data();
     const auto corner = [&](int i) HWY_ATTR {
-        return typename Look<D>::Corner{hn::GatherIndex(d, base + 3 * i, first_numbers),
-                                        hn::GatherIndex(d, base + 3 * i + 1, first_numbers),
-                                        hn::GatherIndex(d, base + 3 * i + 2, first_numbers)};
+        return typename PairPrefilter<D>::Corner{hn::GatherIndex(d, base + 3 * i, first_numbers),
+                                                 hn::GatherIndex(d, base + 3 * i + 1, first_numbers),
+                                                 hn::GatherIndex(d, base + 3 * i + 2, first_numbers)};
     };
     return {{corner(0), corner(1), corner(2)}};
 }
 
-/// Triangles are asked for so many pairs before they are needed.
-constexpr std::size_t far_ahead = 32;
+/// Number of pairs by which triangles are prefetched ahead.
+constexpr std::size_t prefetch_distance = 32;
 
 HWY_INLINE void prefetch(const Triangle3d& triangle) {
     hwy::Prefetch(triangle.data());
     hwy::Prefetch(triangle.data() + 2);
 }
 
-/// Looks at as many pairs as there are lanes.
+/// Tests as many pairs as the vector has lanes.
 template <typename D>
-HWY_INLINE void look_at_lanes(D d, const TrianglePairs& triangles, const Pair* pairs, std::uint8_t* looks) {
+HWY_INLINE void prefilter_lanes(D d, const TrianglePairs& triangles, const Pair* pairs, std::uint8_t* flags) {
     const hn::RebindToSigned<D> numbers;
     HWY_ALIGN std::int64_t a[hn::MaxLanes(D())], b[hn::MaxLanes(D())];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
@@ -176,42 +178,42 @@ HWY_INLINE void look_at_lanes(D d, const TrianglePairs& triangles, const Pair* p
     };
     const auto a_corners = gather(d, triangles.first, first_number(a));
     const auto b_corners = gather(d, triangles.second, first_number(b));
-    const Look<D> look(a_corners, b_corners);
+    const PairPrefilter<D> test(a_corners, b_corners);
     const hn::RebindToUnsigned<D> words;
-    const auto apart = hn::IfThenElseZero(hn::RebindMask(words, look.apart()), hn::Set(words, look_apart));
-    const auto shared = hn::IfThenElseZero(hn::RebindMask(words, look.shared()), hn::Set(words, look_shared));
+    const auto apart = hn::IfThenElseZero(hn::RebindMask(words, test.apart()), hn::Set(words, prefilter_apart));
+    const auto shared = hn::IfThenElseZero(hn::RebindMask(words, test.shared()), hn::Set(words, prefilter_shared));
     const hn::Rebind<std::uint8_t, D> bytes;
-    hn::StoreU(hn::TruncateTo(bytes, hn::Or(apart, shared)), bytes, looks);
+    hn::StoreU(hn::TruncateTo(bytes, hn::Or(apart, shared)), bytes, flags);
 }
 
 template <typename D>
-void look_with(D d, const TrianglePairs& triangles, std::span<std::uint8_t> looks) {
+void prefilter_with(D d, const TrianglePairs& triangles, std::span<std::uint8_t> flags) {
     const std::size_t lanes = hn::Lanes(d);
     const auto pairs = triangles.pairs;
     std::size_t begin = 0;
     for (; begin + lanes <= pairs.size(); begin += lanes) {
         for (std::size_t i = 0; i < lanes; ++i) {
-            const Pair soon = pairs[std::min(begin + far_ahead + i, pairs.size() - 1)];
+            const Pair soon = pairs[std::min(begin + prefetch_distance + i, pairs.size() - 1)];
             prefetch(triangles.first[soon.a]);
             prefetch(triangles.second[soon.b]);
         }
-        look_at_lanes(d, triangles, &pairs[begin], &looks[begin]);
+        prefilter_lanes(d, triangles, &pairs[begin], &flags[begin]);
     }
     if (begin == pairs.size()) return;
     std::array<Pair, hn::MaxLanes(D())> last;
-    std::array<std::uint8_t, hn::MaxLanes(D())> last_looks;
+    std::array<std::uint8_t, hn::MaxLanes(D())> last_flags;
     last.fill(pairs.back());
     std::copy(pairs.begin() + std::ptrdiff_t(begin), pairs.end(), last.begin());
-    look_at_lanes(d, triangles, last.data(), last_looks.data());
-    std::copy_n(last_looks.begin(), pairs.size() - begin, looks.begin() + std::ptrdiff_t(begin));
+    prefilter_lanes(d, triangles, last.data(), last_flags.data());
+    std::copy_n(last_flags.begin(), pairs.size() - begin, flags.begin() + std::ptrdiff_t(begin));
 }
 
-void look_at_simd(const TrianglePairs& triangles, std::span<std::uint8_t> looks) {
-    look_with(hn::ScalableTag<double>(), triangles, looks);
+void prefilter_simd(const TrianglePairs& triangles, std::span<std::uint8_t> flags) {
+    prefilter_with(hn::ScalableTag<double>(), triangles, flags);
 }
 
-void look_at_one(const TrianglePairs& triangles, std::span<std::uint8_t> looks) {
-    look_with(hn::CappedTag<double, 1>(), triangles, looks);
+void prefilter_one(const TrianglePairs& triangles, std::span<std::uint8_t> flags) {
+    prefilter_with(hn::CappedTag<double, 1>(), triangles, flags);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -222,17 +224,17 @@ HWY_AFTER_NAMESPACE();
 
 namespace octopair {
 
-HWY_EXPORT(look_at_simd);
+HWY_EXPORT(prefilter_simd);
 
-void look_at(const TrianglePairs& triangles, std::span<std::uint8_t> looks) {
-    if (!triangles.pairs.empty()) HWY_DYNAMIC_DISPATCH(look_at_simd)(triangles, looks);
+void prefilter_pairs(const TrianglePairs& triangles, std::span<std::uint8_t> flags) {
+    if (!triangles.pairs.empty()) HWY_DYNAMIC_DISPATCH(prefilter_simd)(triangles, flags);
 }
 
-std::uint8_t look_at(const Triangle3d& a, const Triangle3d& b) {
+std::uint8_t prefilter_pair(const Triangle3d& a, const Triangle3d& b) {
     const Pair pair = {0, 0};
-    std::uint8_t look = 0;
-    HWY_STATIC_DISPATCH(look_at_one)({{&a, 1}, {&b, 1}, {&pair, 1}}, {&look, 1});
-    return look;
+    std::uint8_t flags = 0;
+    HWY_STATIC_DISPATCH(prefilter_one)({{&a, 1}, {&b, 1}, {&pair, 1}}, {&flags, 1});
+    return flags;
 }
 
 }  // namespace octopair

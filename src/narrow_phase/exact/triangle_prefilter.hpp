@@ -1,5 +1,7 @@
-// A first look at many pairs of triangles: which of them float64 alone can tell to be apart, eight at a time where the
-// processor can. Most pairs of a mesh are neighbours, or near each other in a smooth part of it, and end here.
+// Prefilter of triangle pairs: finds the pairs that float64 alone proves to be apart.
+//
+// It tests up to eight pairs at a time with SIMD instructions. Most pairs of a mesh are neighbours, or close to each other in a
+// smooth part of the mesh; the prefilter decides these.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +12,23 @@
 
 namespace octopair {
 
-/// Bits of what a look has seen.
-inline constexpr std::uint8_t look_apart = 1;   ///< without doubt, they have no point in common beyond shared corners
-inline constexpr std::uint8_t look_shared = 2;  ///< they share a corner
+/// Bits of the result for one pair.
+inline constexpr std::uint8_t prefilter_apart = 1;   ///< proven: no common point other than shared corners
+inline constexpr std::uint8_t prefilter_shared = 2;  ///< the triangles share a corner
 
 struct TrianglePairs {
     std::span<const Triangle3d> first, second;
-    std::span<const Pair> pairs;  ///< a of first, b of second; in range
+    std::span<const Pair> pairs;  ///< a: index in `first`, b: index in `second`; all in range
 };
 
-/// Writes a look at each pair.
-void look_at(const TrianglePairs& triangles, std::span<std::uint8_t> looks);
+/// Writes the result bits of each pair to `flags`, which has the size of `pairs`.
+void prefilter_pairs(const TrianglePairs& triangles, std::span<std::uint8_t> flags);
 
-/// The specification of look_at.
+/// Returns the result bits of one pair. This is the specification of prefilter_pairs().
 ///
-/// Apart are triangles whose corners, but for the shared ones, are all on one side of the other's plane: what they have in
-/// common is between corners that both have. Or a plane across the line between their middles separates them; through the
-/// shared corner, if there is one.
-std::uint8_t look_at(const Triangle3d& a, const Triangle3d& b);
+/// Two triangles are apart if all corners of one, except shared ones, are on one side of the other's plane. Then all common
+/// points lie between shared corners. They are also apart if a plane perpendicular to the line between their centroids
+/// separates them. With a shared corner, that plane passes through it.
+std::uint8_t prefilter_pair(const Triangle3d& a, const Triangle3d& b);
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// What is asked of two objects that meet.
+// ContactRequest: limits of the search for contacts of two objects that meet.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 namespace octopair {
 
 struct ContactRequest {
-    std::uint32_t max_contacts;
-    /// After a stop request the search ends soon, with any answer. Borrowed.
+    std::uint32_t max_contacts;  ///< maximum number of contacts in the result
+    /// After a stop request the search ends soon; its result is then unspecified. Borrowed.
     const std::stop_token& stop;
 };
 

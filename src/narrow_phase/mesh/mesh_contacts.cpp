@@ -32,7 +32,7 @@ Box3d world_box(const PosedMesh& mesh) {
     return box;
 }
 
-bool holds(const Box3d& box, const Point3d& point) {
+bool contains(const Box3d& box, const Point3d& point) {
     for (int axis = 0; axis < 3; ++axis) {
         if (point[axis] < box.min[axis] || point[axis] > box.max[axis]) return false;
     }
@@ -45,7 +45,7 @@ Point3d middle_of_box(const Box3d& box) {
     return middle;
 }
 
-/// How deep places of the one are inside the other.
+/// Search for the deepest sample of another mesh inside the mesh `outer`.
 class DepthSearch {
 public:
     DepthSearch(const PosedMesh& outer, const std::stop_token& stop)
@@ -54,22 +54,22 @@ public:
     double deepest(const PosedMesh& inner) {
         if (!outer_.tree.parts.any_closed) return 0;
         const Point3d middle = middle_of_box(world_box(inner));
-        if (holds(box_, middle) && probe_.distance(middle, 0) > 0 && encloses(inner, middle)) look_at(middle);
+        if (contains(box_, middle) && probe_.distance(middle, 0) > 0 && encloses(inner, middle)) test_place(middle);
         const std::vector<Point3d> places = places_of(inner);
-        // Some from all over first: the deeper these are, the fewer of the others ask for more than a look.
+        // Test every 64th place first: a large depth found early makes the tests of most other places cheap.
         for (const std::size_t step : {std::size_t(64), std::size_t(1)}) {
-            for (std::size_t i = 0; i < places.size() && !stop_.stop_requested(); i += step) look_at(places[i]);
+            for (std::size_t i = 0; i < places.size() && !stop_.stop_requested(); i += step) test_place(places[i]);
         }
         return deepest_;
     }
 
 private:
-    /// Corners and middles of triangles, where they can be inside; those of one neighbourhood together.
+    /// Returns the corners and centroids of triangles that lie in the box of `outer`. Neighbours follow one another.
     std::vector<Point3d> places_of(const PosedMesh& inner) const {
         std::vector<Point3d> places;
         std::vector<bool> seen(inner.tree.vertices.size());
         const auto add = [&](const Point3d& place) {
-            if (holds(box_, place)) places.push_back(place);
+            if (contains(box_, place)) places.push_back(place);
         };
         for (std::uint32_t i = 0; i < inner.tree.triangles.size(); ++i) {
             const Triangle3d triangle = inner.tree.world_triangle(inner.pose, i);
@@ -83,8 +83,8 @@ private:
         return places;
     }
 
-    /// Few places are deeper than those before; the cheaper questions come first.
-    void look_at(const Point3d& place) {
+    /// Updates the deepest depth. Cheap tests come first, because few places are deeper than all before.
+    void test_place(const Point3d& place) {
         if (vector::length(vector::minus(place, outside_)) < outside_radius_) return;
         const double distance = probe_.distance(place, deepest_);
         if (distance <= deepest_) return;
@@ -100,12 +100,12 @@ private:
     Box3d box_;
     SurfaceProbe probe_;
     double deepest_ = 0;
-    // Around the last place outside, as far as no surface is: all of that is outside.
+    // A ball around the last place found outside; it does not reach the surface, so all of it is outside.
     Point3d outside_ = {};
     double outside_radius_ = 0;
 };
 
-/// Whether two triangles in one plane face the same side of it.
+/// Returns true if two coplanar triangles have their normals on the same side of the plane.
 bool face_alike(const Triangle3d& a, const Triangle3d& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         const int side_a = line_side(a[0], a[1], a[2], axis);
@@ -114,7 +114,7 @@ bool face_alike(const Triangle3d& a, const Triangle3d& b) {
     return false;
 }
 
-/// Before others: the deeper, then the lesser numbers.
+/// Order of the contacts: by descending depth, then by ascending triangle numbers.
 bool comes_first(const Contact& a, const Contact& b) {
     return std::tuple(-a.depth, a.feature_a, a.feature_b) < std::tuple(-b.depth, b.feature_a, b.feature_b);
 }
@@ -152,7 +152,7 @@ private:
         keep(made);
     }
 
-    /// A heap with the last one to be told in front.
+    /// Adds a contact to a heap of at most max_contacts, whose front is the last contact in order.
     void keep(const Contact& contact) {
         if (contacts_.size() == request_.max_contacts) {
             more_ = true;
@@ -168,7 +168,7 @@ private:
     const ContactRequest& request_;
     bool same_handed_;
     bool penetrating_ = false, more_ = false;
-    double deepest_ = 0;  // of the contacts
+    double deepest_ = 0;  // depth of the deepest contact, kept or not
     std::vector<Contact> contacts_;
 };
 

@@ -1,13 +1,13 @@
-// How two meshes that meet do so: class, depth and contacts.
+// Contacts of two meshes that meet: class, depth and contacts.
 //
-// Class     penetrating where two triangles pass through each other; of closed meshes also where two triangles lie in one
-//           plane with both insides on one side of it, or where a corner or the middle of a triangle of the one is inside
-//           the other, or the middle of one inside both. Else touching.
-// Depth     of those that penetrate: how far the deepest of those corners and middles, or the middle of one that lies in
-//           both, is from the other's surface, so both have to be moved by that much, or more, to end it. Where no such
-//           place is inside, and of open meshes, that of the deepest contact.
-// Contacts  one for each two triangles that meet: in the middle of what they have in common, with the normal and the depth
-//           of these two alone. The deepest come first, then by the triangles' numbers.
+// Samples   Corners and centroids of the triangles of one mesh, and the centre of its bounding box if it is inside the mesh.
+// Class     Penetrating if two triangles pass through each other. For closed meshes also if a sample of one mesh is inside the
+//           other, or if two coplanar triangles have the interiors of both meshes on the same side. Otherwise touching.
+// Depth     Of penetrating meshes: the largest distance from a sample inside the other mesh to the other's surface. A
+//           translation that separates the meshes is at least that long. If no sample is inside, or the meshes are open:
+//           the depth of the deepest contact.
+// Contacts  One for each pair of triangles that meet: the mean of their common points, with the normal and the depth of
+//           these two triangles alone. Sorted by descending depth, then by the numbers of the triangles.
 #pragma once
 
 #include <stop_token>
@@ -18,10 +18,10 @@
 
 namespace octopair {
 
-/// Sets class, depth and contacts of a finding. For meshes whose surfaces meet.
+/// Sets class, depth and contacts of `finding`. Requires: the surfaces of the meshes meet.
 void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding);
 
-/// How far the deepest of those places of either is inside the other; 0 if none is.
+/// Returns the depth of the deepest sample of either mesh inside the other; 0 if no sample is inside.
 double depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop);
 
 }  // namespace octopair

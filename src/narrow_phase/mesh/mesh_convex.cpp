@@ -11,12 +11,12 @@ namespace octopair {
 
 namespace {
 
-/// Calls tell(place in the tree, triangle) for triangles near the solid, until it returns false.
-template <typename Tell>
-void visit_near(const PosedMesh& mesh, const BoxedSolid& solid, const Tell& tell) {
+/// Calls visit(place in the tree's order, triangle) for the triangles near the solid, until `visit` returns false.
+template <typename Visit>
+void visit_near(const PosedMesh& mesh, const BoxedSolid& solid, const Visit& visit) {
     visit_leaves(mesh, solid.box, 0, [&](const MeshNode& leaf, const MeshNode&) {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            if (!tell(i, mesh.tree.world_triangle(mesh.pose, i))) return false;
+            if (!visit(i, mesh.tree.world_triangle(mesh.pose, i))) return false;
         }
         return true;
     });
@@ -34,9 +34,9 @@ bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid) {
 }
 
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
-                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& tell) {
+                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& visit) {
     visit_near(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
-        return !convex_meet(PosedConvex(triangle), solid.posed()) || tell(at, triangle);
+        return !convex_meet(PosedConvex(triangle), solid.posed()) || visit(at, triangle);
     });
 }
 
@@ -44,7 +44,7 @@ bool encloses_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
     return encloses(mesh, vector::posed(solid.box.pose, support(solid.solid, {1, 0, 0})));
 }
 
-bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
+bool contains_mesh(const BoxedSolid& solid, const PosedMesh& mesh) {
     const auto held = [&](std::uint32_t vertex) {
         const Point3d place = vector::posed(mesh.pose, mesh.tree.vertices[vertex]);
         return convex_contains(solid.posed(), PosedConvex(place));

@@ -1,5 +1,6 @@
-// A posed mesh and a posed convex solid: whether they meet, where, and how far apart they are. Each triangle is tested as
-// convex_pair.hpp does it; the hierarchy leaves out those that are too far away.
+// A posed mesh and a posed convex solid: whether they meet, which triangles meet the solid, and their distance.
+//
+// convex_pair.hpp tests each triangle. The bounding hierarchy skips triangles that are too far away.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace octopair {
 
-/// A solid with its box, as a tree of one node without triangles.
+/// A posed convex solid with its bounding box: a tree of one node without triangles.
 struct BoxedSolid {
     const ConvexSolid& solid;
     PosedMesh box;
@@ -19,21 +20,21 @@ struct BoxedSolid {
     PosedConvex posed() const { return {solid, box.pose}; }
 };
 
-/// Whether some triangle meets the solid, which is full: one that lies inside does.
+/// Returns true if some triangle meets the solid. A triangle inside the solid meets it.
 bool surface_meets(const PosedMesh& mesh, const BoxedSolid& solid);
 
-/// Tells of all triangles that meet the solid, in an order that depends on the mesh alone: where it stands in the tree. Ends
-/// where `tell` returns false.
+/// Calls visit(place in the tree's order, triangle) for each triangle that meets the solid. Ends when `visit` returns false.
+/// The order depends only on the mesh.
 void visit_meeting_triangles(const PosedMesh& mesh, const BoxedSolid& solid,
-                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& tell);
+                             const std::function<bool(std::uint32_t at, const Triangle3d&)>& visit);
 
-/// Whether the solid lies inside the mesh, whose surface must not meet it.
+/// Returns true if the solid lies inside the mesh. Requires: the mesh's surface does not meet the solid.
 bool encloses_solid(const PosedMesh& mesh, const BoxedSolid& solid);
 
-/// Whether the mesh lies inside the solid and does not reach its surface.
-bool holds_mesh(const BoxedSolid& solid, const PosedMesh& mesh);
+/// Returns true if the mesh lies inside the solid and does not reach the solid's surface.
+bool contains_mesh(const BoxedSolid& solid, const PosedMesh& mesh);
 
-/// The distance of surface and solid, if it is at most `most`, else nothing.
+/// Returns the distance of the mesh's surface and the solid if it is at most `most`, otherwise nothing.
 std::optional<ConvexGap> surface_gap(const PosedMesh& mesh, const BoxedSolid& solid, double most);
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// What a mesh encloses: a ray from the point, in the world, along x, and how the closed parts wind around it.
+// encloses(): point in mesh test, by a ray from the point along the world's x axis and the winding number of closed parts.
 #include <algorithm>
 
 #include "narrow_phase/exact/orientation.hpp"
@@ -11,7 +11,7 @@ namespace octopair {
 
 namespace {
 
-/// Whether the ray may pass a box.
+/// Returns false only if the ray misses the node's box.
 bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Point3d& from) {
     for (int row = 0; row < 3; ++row) {
         const auto [low, high] = boxes.span(node, row);
@@ -21,10 +21,10 @@ bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Point3d& from
     return true;
 }
 
-/// How often the surface was crossed: outward less inward, and of what does not know its outside, how often in all.
+/// Number of crossings of the ray and the surface.
 struct Crossings {
-    std::int64_t winding = 0;
-    std::uint64_t unoriented = 0;
+    std::int64_t winding = 0;      ///< oriented parts: outward minus inward crossings
+    std::uint64_t unoriented = 0;  ///< closed parts without a consistent orientation: all crossings
 };
 
 void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const Point3d& from, Crossings& crossings) {
@@ -69,7 +69,7 @@ bool encloses_part(const PosedMesh& outer, const PosedMesh& inner) {
            });
 }
 
-bool holds_whole(const PosedMesh& outer, const PosedMesh& inner) {
+bool contains_mesh(const PosedMesh& outer, const PosedMesh& inner) {
     const auto& corners = inner.tree.parts.corners;
     return !corners.empty() && !encloses_part(inner, outer) &&
            std::all_of(corners.begin(), corners.end(),

@@ -1,4 +1,4 @@
-// The triangles of leaves, in the world.
+// Leaves of a mesh's bounding hierarchy: pairs of leaves within reach, and the triangles of a leaf in the world.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace octopair {
 
-/// As a reach of walks: upward, so that what is within it stays so.
+/// Returns `reach` for a MeshWalk: rounded up, so that no pair within reach is lost.
 inline float reach_above(double reach) { return rounding::next_above(float(reach)); }
 
-/// Calls leaves(node of a, node of b) for leaves that may be no further apart than `reach`, until it returns false.
+/// Calls leaves(node of a, node of b) for all leaves whose distance may be at most `reach`, until `leaves` returns false.
 template <typename Leaves>
 void visit_leaves(const PosedMesh& a, const PosedMesh& b, float reach, const Leaves& leaves) {
     if (a.tree.nodes.empty() || b.tree.nodes.empty()) return;
     MeshWalk walk(a, b, reach);
-    // The first is often all that is wanted.
+    // The first search finds one pair of leaves only: often the caller needs no more.
     std::array<NodePair, 16> some;
     for (std::size_t room = 1;; room = some.size()) {
         const unsigned found = next_leaves(walk, std::span(some).first(room));
@@ -29,7 +29,7 @@ void visit_leaves(const PosedMesh& a, const PosedMesh& b, float reach, const Lea
     }
 }
 
-/// The triangles of a leaf, in the world, with their boxes.
+/// Triangles of a leaf in the world, with their boxes.
 class WorldLeaf {
 public:
     WorldLeaf(const PosedMesh& mesh, const MeshNode& leaf) : first_(leaf.first), count_(leaf.count) {
@@ -44,6 +44,7 @@ public:
     }
 
     std::uint32_t count() const { return count_; }
+    /// Returns the place of triangle i in the tree's order.
     std::uint32_t place(std::uint32_t i) const { return first_ + i; }
     const Triangle3d& triangle(std::uint32_t i) const { return triangles_[i]; }
     const Box3d& box(std::uint32_t i) const { return boxes_[i]; }

@@ -10,19 +10,19 @@ namespace octopair {
 
 namespace {
 
-/// Calls tell(triangle of a, triangle of b), as places in the leaves, for triangles that meet, until it returns false.
-template <typename Tell>
-bool tell_meeting(const WorldLeaf& a, const WorldLeaf& b, const Tell& tell) {
+/// Calls visit(i, j) for triangle i of leaf a and triangle j of leaf b that meet, until `visit` returns false.
+template <typename Visit>
+bool visit_meeting(const WorldLeaf& a, const WorldLeaf& b, const Visit& visit) {
     for (std::uint32_t i = 0; i < a.count(); ++i) {
         for (std::uint32_t j = 0; j < b.count(); ++j) {
             if (!boxes_overlap(a.box(i), b.box(j)) || !triangles_meet(a.triangle(i), b.triangle(j))) continue;
-            if (!tell(i, j)) return false;
+            if (!visit(i, j)) return false;
         }
     }
     return true;
 }
 
-/// The search for the least distance: best first where two children are to choose from.
+/// Search for the smallest distance: depth first, with the nearer of two children first.
 class GapSearch {
 public:
     GapSearch(const PosedMesh& a, const PosedMesh& b, double most)
@@ -30,17 +30,17 @@ public:
 
     std::optional<SurfaceGap> run() {
         NodeStack<Waiting> waiting;
-        waiting.push(weigh({0, 0}));
+        waiting.push(with_bound({0, 0}));
         while (!waiting.empty()) {
             const Waiting at = waiting.pop();
             if (double(at.least) > most_) continue;
             const MeshNode &node_a = a_.tree.nodes[at.nodes.a], &node_b = b_.tree.nodes[at.nodes.b];
             if (node_a.is_leaf() && node_b.is_leaf()) {
-                look_at(node_a, node_b);
+                test_leaves(node_a, node_b);
                 continue;
             }
             const auto children = children_of(at.nodes, node_a, node_b, separation_);
-            const Waiting first = weigh(children[0]), second = weigh(children[1]);
+            const Waiting first = with_bound(children[0]), second = with_bound(children[1]);
             waiting.push(first.least <= second.least ? second : first);
             waiting.push(first.least <= second.least ? first : second);
         }
@@ -53,11 +53,11 @@ private:
         float least;
     };
 
-    Waiting weigh(const NodePair& nodes) const {
+    Waiting with_bound(const NodePair& nodes) const {
         return {nodes, separation_.least_distance(a_.tree.nodes[nodes.a], b_.tree.nodes[nodes.b])};
     }
 
-    void look_at(const MeshNode& node_a, const MeshNode& node_b) {
+    void test_leaves(const MeshNode& node_a, const MeshNode& node_b) {
         const WorldLeaf leaf_a(a_, node_a), leaf_b(b_, node_b);
         for (std::uint32_t i = 0; i < leaf_a.count(); ++i) {
             for (std::uint32_t j = 0; j < leaf_b.count(); ++j) {
@@ -81,7 +81,7 @@ private:
 bool surfaces_meet(const PosedMesh& a, const PosedMesh& b) {
     bool meet = false;
     visit_leaves(a, b, 0, [&](const MeshNode& node_a, const MeshNode& node_b) {
-        tell_meeting(WorldLeaf(a, node_a), WorldLeaf(b, node_b), [&](std::uint32_t, std::uint32_t) {
+        visit_meeting(WorldLeaf(a, node_a), WorldLeaf(b, node_b), [&](std::uint32_t, std::uint32_t) {
             meet = true;
             return false;
         });
@@ -91,14 +91,14 @@ bool surfaces_meet(const PosedMesh& a, const PosedMesh& b) {
 }
 
 void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
-                             const std::function<bool(const MeetingTriangles&)>& tell) {
+                             const std::function<bool(const MeetingTriangles&)>& visit) {
     visit_leaves(a, b, 0, [&](const MeshNode& node_a, const MeshNode& node_b) {
         const WorldLeaf leaf_a(a, node_a), leaf_b(b, node_b);
-        return tell_meeting(leaf_a, leaf_b, [&](std::uint32_t i, std::uint32_t j) {
+        return visit_meeting(leaf_a, leaf_b, [&](std::uint32_t i, std::uint32_t j) {
             const std::uint32_t at_a = leaf_a.place(i), at_b = leaf_b.place(j);
             constexpr auto oriented = MeshParts::Side::oriented;
-            return tell({a.tree.numbers[at_a], b.tree.numbers[at_b], leaf_a.triangle(i), leaf_b.triangle(j),
-                         a.tree.parts.sides[at_a] == oriented && b.tree.parts.sides[at_b] == oriented});
+            return visit({a.tree.numbers[at_a], b.tree.numbers[at_b], leaf_a.triangle(i), leaf_b.triangle(j),
+                          a.tree.parts.sides[at_a] == oriented && b.tree.parts.sides[at_b] == oriented});
         });
     });
 }

@@ -1,7 +1,7 @@
-// Two posed meshes: whether they meet, where, and how far apart they are.
+// Two posed meshes: whether they meet, which triangles meet, whether one lies inside the other, and their distance.
 //
-// What meets is judged on the triangles' places in the world (shapes.hpp) by the exact test of triangles; the hierarchies
-// only leave out what cannot matter. So the answer is that of testing all pairs of triangles.
+// The exact triangle test decides, on the triangles' world coordinates (shapes.hpp). The bounding hierarchies only skip pairs
+// that cannot change the result. So the result equals that of testing all pairs of triangles.
 #pragma once
 
 #include <array>
@@ -18,37 +18,37 @@ struct PosedMesh {
     const Pose& pose;
 };
 
-/// Whether some triangle of the one meets one of the other: their surfaces, not what they enclose.
+/// Returns true if some triangle of a meets some triangle of b. Only the surfaces count, not the enclosed space.
 bool surfaces_meet(const PosedMesh& a, const PosedMesh& b);
 
-/// Two triangles that meet: by their numbers in the meshes as they were given, and in the world.
+/// Two triangles that meet.
 struct MeetingTriangles {
-    std::uint32_t number_a, number_b;
-    const Triangle3d& a;
+    std::uint32_t number_a, number_b;  ///< indices in the given meshes
+    const Triangle3d& a;               ///< in the world
     const Triangle3d& b;
-    bool both_oriented;  ///< parts of closed surfaces that know their outside
+    bool both_oriented;  ///< both triangles belong to closed, consistently oriented surfaces
 };
-/// Tells of all pairs of triangles that meet, in an order that depends on meshes and poses alone. Ends where `tell` returns
-/// false.
+/// Calls `visit` for each pair of triangles that meet, in an order that depends only on meshes and poses. Ends when `visit`
+/// returns false.
 void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
-                             const std::function<bool(const MeetingTriangles&)>& tell);
+                             const std::function<bool(const MeetingTriangles&)>& visit);
 
-/// Whether a point that is not on the surface lies inside: in a closed part whose surface winds around it; of parts whose
-/// triangles do not agree which side is out, in an odd number.
+/// Returns true if the point is inside the mesh: the winding number of the closed, oriented parts is not 0, or an odd number of
+/// closed parts without a consistent orientation contains the point. Requires: the point is not on the surface.
 bool encloses(const PosedMesh& mesh, const Point3d& point);
 
-/// Whether a part of `inner` lies inside `outer`; their surfaces must not meet.
+/// Returns true if some part of `inner` lies inside `outer`. Requires: the surfaces do not meet.
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner);
 
-/// Whether all of `inner`, with what it encloses, lies inside `outer`; their surfaces must not meet.
-bool holds_whole(const PosedMesh& outer, const PosedMesh& inner);
+/// Returns true if all of `inner`, with the space that it encloses, lies inside `outer`. Requires: the surfaces do not meet.
+bool contains_mesh(const PosedMesh& outer, const PosedMesh& inner);
 
 struct SurfaceGap {
     double distance;
     std::array<Point3d, 2> nearest;
-    std::uint32_t number_a, number_b;  ///< the triangles
+    std::uint32_t number_a, number_b;  ///< indices of the nearest triangles in the given meshes
 };
-/// The distance of the surfaces if it is at most `most`, else nothing.
+/// Returns the distance of the surfaces if it is at most `most`, otherwise nothing.
 std::optional<SurfaceGap> surface_gap(const PosedMesh& a, const PosedMesh& b, double most);
 
 }  // namespace octopair

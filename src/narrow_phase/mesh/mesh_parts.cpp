@@ -1,4 +1,4 @@
-// The parts of a mesh: which triangles hang together, and which parts are closed.
+// find_parts(): connected components of a mesh, and which of them are closed.
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -10,7 +10,7 @@ namespace octopair {
 
 namespace {
 
-/// Numbers that are joined to sets; a set goes by its least number.
+/// Union-find over numbers. The representative of a set is its smallest number.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0u); }
@@ -32,7 +32,7 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-/// Of each vertex: the first one at the same place.
+/// Returns for each vertex the first vertex at the same place.
 std::vector<std::uint32_t> merge_places(const std::vector<Point3d>& vertices) {
     std::vector<std::uint32_t> order(vertices.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -47,18 +47,19 @@ std::vector<std::uint32_t> merge_places(const std::vector<Point3d>& vertices) {
     return first;
 }
 
-/// An edge of a triangle, its ends ascending; `forward`: as the triangle runs through it.
+/// An edge of a triangle.
 struct SharedEdge {
-    std::uint32_t low, high;
+    std::uint32_t low, high;  ///< vertices, low < high
     std::uint32_t part;
-    bool forward;
+    bool forward;  ///< the triangle's boundary runs from low to high
 };
 
 struct PartState {
     bool closed = true, oriented = true;
 };
 
-/// Each edge of a closed part is in an even number of triangles; of an oriented one, as often forward as backward.
+/// Sets the states of the parts. Closed: each edge is in an even number of triangles. Oriented: each edge is as often forward
+/// as backward.
 void judge_edges(std::vector<SharedEdge>& edges, std::vector<PartState>& states) {
     std::sort(edges.begin(), edges.end(), [](const SharedEdge& a, const SharedEdge& b) {
         return a.low != b.low ? a.low < b.low : a.high < b.high;

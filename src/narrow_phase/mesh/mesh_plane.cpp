@@ -6,12 +6,12 @@ namespace octopair {
 
 namespace {
 
-/// Calls tell(span of a triangle) for all, until it returns false.
-template <typename Tell>
-void visit_spans(const PosedPlane& plane, const PosedMesh& mesh, const Tell& tell) {
+/// Calls visit(span) for each triangle of the mesh, until `visit` returns false.
+template <typename Visit>
+void visit_spans(const PosedPlane& plane, const PosedMesh& mesh, const Visit& visit) {
     for (std::uint32_t i = 0; i < mesh.tree.triangles.size(); ++i) {
         const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
-        if (!tell(span_across(plane, PosedConvex(triangle)))) return;
+        if (!visit(span_across(plane, PosedConvex(triangle)))) return;
     }
 }
 

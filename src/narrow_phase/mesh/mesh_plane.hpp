@@ -1,4 +1,4 @@
-// A posed mesh and a plane.
+// A posed mesh and a plane: whether they meet, and their distance.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace octopair {
 
-/// Whether a triangle meets the plane.
+/// Returns true if some triangle meets the plane.
 bool surface_meets(const PosedMesh& mesh, const PosedPlane& plane);
 
-/// From where to where the mesh reaches across the plane; nothing of a mesh without triangles.
+/// Returns the interval that the mesh covers along the plane's normal; nothing for a mesh without triangles.
 std::optional<PlaneSpan> span_across(const PosedPlane& plane, const PosedMesh& mesh);
 
-/// The triangle that is nearest to the plane, as a gap from the plane to it. Nothing of a mesh without triangles.
+/// Returns the gap between the plane (a) and the triangle nearest to it (b); nothing for a mesh without triangles.
 std::optional<ConvexGap> plane_gap(const PosedPlane& plane, const PosedMesh& mesh);
 
 }  // namespace octopair

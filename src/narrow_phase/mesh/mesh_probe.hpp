@@ -1,5 +1,7 @@
-// How far points are from the surface of a posed mesh. The triangle that was nearest to the last point is the first to be
-// looked at, so it is well to ask for neighbours one after the other.
+// SurfaceProbe: distances of points from the surface of a posed mesh.
+//
+// The search starts with the triangle that was nearest to the last point. So queries are cheaper if neighbouring points follow
+// one another.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +16,11 @@ namespace octopair {
 
 class SurfaceProbe {
 public:
-    /// Of a mesh with triangles, which is borrowed.
+    /// Borrows the mesh. Requires: the mesh has triangles.
     explicit SurfaceProbe(const PosedMesh& mesh) : mesh_(mesh), boxes_(mesh) {}
 
-    /// The distance, 0 on the surface. Where it is no more than `enough`, any number from it to there: much cheaper.
+    /// Returns the distance, 0 on the surface. If the distance is at most `enough`, returns any number from the distance to
+    /// `enough`, which is much cheaper.
     double distance(const Point3d& point, double enough) {
         double least = gap(point, nearest_);
         NodeStack<Waiting> waiting;
@@ -27,10 +30,10 @@ public:
             if (at.at_least >= least) continue;
             const MeshNode& node = mesh_.tree.nodes[at.node];
             if (node.is_leaf()) {
-                look_at(node, point, least);
+                test_leaf(node, point, least);
                 continue;
             }
-            const Waiting first = weigh(node.first, point), second = weigh(node.first + 1, point);
+            const Waiting first = with_bound(node.first, point), second = with_bound(node.first + 1, point);
             waiting.push(first.at_least <= second.at_least ? second : first);
             waiting.push(first.at_least <= second.at_least ? first : second);
         }
@@ -47,14 +50,14 @@ private:
         return triangle_gap(point, mesh_.tree.world_triangle(mesh_.pose, triangle));
     }
 
-    void look_at(const MeshNode& leaf, const Point3d& point, double& least) {
+    void test_leaf(const MeshNode& leaf, const Point3d& point, double& least) {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const double found = gap(point, i);
             if (found < least) least = found, nearest_ = i;
         }
     }
 
-    Waiting weigh(std::uint32_t node, const Point3d& point) const {
+    Waiting with_bound(std::uint32_t node, const Point3d& point) const {
         double square = 0, largest = 0;
         for (int row = 0; row < 3; ++row) {
             const auto [low, high] = boxes_.span(mesh_.tree.nodes[node], row);
@@ -62,7 +65,7 @@ private:
             square += away * away;
             largest = std::max(largest, away);
         }
-        // Squares that are beyond float64 tell nothing, and roots are rounded.
+        // Squares may overflow or underflow; then use the largest coordinate. The factor covers the rounding of the root.
         const bool fits = square > 0x1p-900 && square < 0x1p900;
         return {node, fits ? std::sqrt(square) * (1 - 0x1p-50) : largest * (1 - 0x1p-50)};
     }

@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-/// A place of the core that is deep in it: the mean of its points, or the origin of its space.
+/// Returns a point deep inside the core: the mean of its points, or the origin of its coordinates.
 Point3d deep_place_of(const ConvexSolid& solid) {
     Point3d middle = {};
     for (const Point3d& point : solid.points) {
@@ -22,7 +22,7 @@ Point3d deep_place_of(const ConvexSolid& solid) {
     return middle;
 }
 
-/// Its middle, and what is outermost along the axes and between them; of the core.
+/// Returns samples of the core in the world: its middle, and the support points along the 6 axis and 8 diagonal directions.
 std::vector<Point3d> places_of(const BoxedSolid& solid) {
     std::vector<Point3d> places = {vector::posed(solid.box.pose, deep_place_of(solid.solid))};
     for (int x = -1; x <= 1; ++x) {
@@ -48,24 +48,25 @@ double deepest_in_mesh(const PosedMesh& mesh, const BoxedSolid& solid) {
     return deepest;
 }
 
-/// Of very many places not all are looked at.
+/// Returns the depth of the deepest corner or centroid in the solid. Tests at most about 1024 triangles, at a fixed stride.
 double deepest_in_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
-    constexpr std::size_t most_triangles = 1024;
-    const std::size_t step = mesh.tree.triangles.size() / most_triangles + 1;
+    constexpr std::size_t max_triangles = 1024;
+    const std::size_t step = mesh.tree.triangles.size() / max_triangles + 1;
     double deepest = 0;
-    const auto look_at = [&](const Point3d& place) {
+    const auto test_place = [&](const Point3d& place) {
         const PosedConvex point(place);
         if (convex_meet(point, solid.posed())) deepest = std::max(deepest, convex_contact(point, solid.posed()).depth);
     };
     for (std::size_t i = 0; i < mesh.tree.triangles.size(); i += step) {
         const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, std::uint32_t(i));
-        look_at(triangle[0]);  // the others are the first ones of neighbours
-        look_at(middle_of(triangle));
+        test_place(triangle[0]);  // other corners are first corners of neighbours
+        test_place(middle_of(triangle));
     }
     return deepest;
 }
 
-/// Of length 1, or 0 of a degenerate one; counterclockwise from outside, unless the pose mirrors.
+/// Returns the outward normal of an oriented triangle, with length 1; 0 for a degenerate triangle. Accounts for poses that
+/// mirror.
 Point3d outward_of(const Triangle3d& triangle, const Pose& pose) {
     const Point3d normal =
         vector::cross(vector::minus(triangle[1], triangle[0]), vector::minus(triangle[2], triangle[0]));
@@ -74,8 +75,8 @@ Point3d outward_of(const Triangle3d& triangle, const Pose& pose) {
     return vector::times(normal, (mirrors(pose) ? -1 : 1) / length);
 }
 
-/// A way out that leads into the mesh is none: then it is the one along the triangle's own side.
-void lead_out(const Triangle3d& triangle, const Point3d& outward, const BoxedSolid& solid, Contact& contact) {
+/// Replaces a contact whose normal leads into the mesh by one along the triangle's outward normal.
+void turn_outward(const Triangle3d& triangle, const Point3d& outward, const BoxedSolid& solid, Contact& contact) {
     if (vector::dot(contact.normal, outward) >= 0) return;
     contact.normal = outward;
     const PosedPlane side{outward, triangle[0]};
@@ -98,7 +99,7 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
         const ConvexContact least = convex_contact(PosedConvex(triangle), solid.posed());
         Contact contact = {least.point, least.normal, least.depth, mesh.tree.numbers[at]};
         deepest = std::max(deepest, least.depth);
-        if (least.depth > request.touch) lead_out(triangle, outward, solid, contact);
+        if (least.depth > request.touching_depth) turn_outward(triangle, outward, solid, contact);
         finding.contacts.push_back(contact);
         return !request.stop.stop_requested();
     });

@@ -1,10 +1,11 @@
-// How a mesh and a convex solid that meet do so: depth and contacts.
+// Contacts of a mesh and a convex solid that meet: depth and contacts.
 //
-// Depth     that of the triangle that needs the longest way out of the solid. Of a closed mesh also how far the deepest place of
-//           the one is inside the other, if that is more: corners and middles of triangles, and of the solid its middle and
-//           what is outermost in 14 directions.
-// Contacts  one for each triangle that meets the solid: the least way that parts the two, but out of a closed mesh, never
-//           into it. The deepest come first, then by number.
+// Samples   Corners and centroids of triangles, and the middle and the support points in 14 directions of the solid.
+// Depth     The largest penetration depth of a triangle in the solid. For a closed mesh also the depth of the deepest sample
+//           of one object inside the other, if that is larger.
+// Contacts  One for each triangle that meets the solid, with the shortest translation that separates the two. For a closed
+//           mesh the translation of the solid leads out of the mesh, never into it. Sorted by descending depth, then by the
+//           number of the triangle.
 #pragma once
 
 #include <stop_token>
@@ -15,14 +16,14 @@
 namespace octopair {
 
 struct MeshSolidRequest {
-    double touch;                 ///< depths below it are none
-    const std::stop_token& stop;  ///< after a request the search ends soon, with any answer
+    double touching_depth;        ///< a contact that is at most this deep only touches
+    const std::stop_token& stop;  ///< after a stop request the search ends soon; its result is then unspecified
 };
-/// Sets depth and contacts of a finding; a is the mesh.
+/// Sets depth and contacts of `finding`; object a is the mesh.
 void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
                               Finding& finding);
 
-/// How far the deepest place of either is inside the other; 0 if none is.
+/// Returns the depth of the deepest sample of either object inside the other; 0 if no sample is inside.
 double depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid);
 
 }  // namespace octopair

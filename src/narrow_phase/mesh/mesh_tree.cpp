@@ -36,7 +36,7 @@ struct TriangleBounds {
         for (int axis = 0; axis < 3; ++axis) c[axis] = min[axis] / 2 + max[axis] / 2;
         return c;
     }
-    /// Half the surface: what the chance to be met grows with.
+    /// Half the surface area, to which the surface area heuristic takes the probability of a hit to be proportional.
     double area() const {
         const double x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
         return x < 0 ? 0 : x * y + y * z + z * x;
@@ -48,7 +48,7 @@ void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& o
         const double low = bounds.min[axis] - origin[axis], high = bounds.max[axis] - origin[axis];
         node.centre[axis] = float(low / 2 + high / 2);
         if (!std::isfinite(node.centre[axis])) node.centre[axis] = 0;
-        // What was rounded so far is far below one part in 2^40 of what it was made of.
+        // All rounding errors so far are far below 2^-40 of the numbers that they come from.
         const double centre = double(node.centre[axis]);
         const double made_of = std::abs(low) + std::abs(high) + std::abs(origin[axis]) * 0x1p-8;
         const double half = std::max(high - centre, centre - low) + made_of * 0x1p-44;
@@ -56,7 +56,7 @@ void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& o
     }
 }
 
-/// A triangle while the tree is made.
+/// A triangle during the construction of the tree.
 struct Item {
     TriangleBounds bounds;
     Point3d centre;
@@ -94,7 +94,7 @@ private:
         std::uint32_t node, begin, end, depth;
     };
 
-    /// With a list of tasks of our own: a mesh chooses how deep its tree is.
+    /// Uses an explicit stack instead of recursion, because the mesh determines the depth of its tree.
     void divide(const Task& root) {
         std::vector<Task> tasks = {root};
         while (!tasks.empty()) {
@@ -122,7 +122,7 @@ private:
         set_node_box(tree_.nodes[task.node], bounds, tree_.origin);
     }
 
-    /// Where the items are cut, after they were put in order: each side gets at least one.
+    /// Partitions the items of a node and returns the begin of the second part. Neither part is empty.
     std::uint32_t split(const Task& task) {
         const std::span items(items_.data() + task.begin, task.end - task.begin);
         TriangleBounds centres;
@@ -132,8 +132,8 @@ private:
             if (centres.max[other] - centres.min[other] > centres.max[axis] - centres.min[axis]) axis = other;
         }
         const double low = centres.min[axis], width = centres.max[axis] - low;
-        // Past this depth halves bound it; so they do what lies at one place, or where float64 ends.
-        if (task.depth + std::bit_width(items.size()) < MeshTree::most_depth && width > 0 && std::isfinite(width)) {
+        // Beyond this depth, halving keeps the tree within max_depth. Equal centres, and extents that overflow, are halved too.
+        if (task.depth + std::bit_width(items.size()) < MeshTree::max_depth && width > 0 && std::isfinite(width)) {
             const double scale = bins / width;
             const auto bin_of = [&](const Item& item) {
                 return std::min(int((item.centre[axis] - low) * scale), bins - 1);
@@ -154,7 +154,7 @@ private:
 
     static constexpr int bins = 16;
 
-    /// The first bin of the right side, by the least sum of area times count.
+    /// Returns the first bin of the right side, for the smallest sum of area times count of both sides.
     template <typename BinOf>
     static int best_cut(std::span<const Item> items, const BinOf& bin_of) {
         std::array<TriangleBounds, bins> bounds;

@@ -1,10 +1,10 @@
-// A mesh's bounding hierarchy: a binary tree of boxes in the mesh's own space, made once and shared by its instances.
+// MeshTree: bounding hierarchy of a mesh, a binary tree of boxes in the mesh's own coordinates. Built once for all instances.
 //
-// Node 0 is the root; the two children of an inner node stand side by side. The triangles below a node are consecutive in
-// `triangles`, which are the mesh's in another order. A node's box holds all corners of its triangles, whatever was
-// rounded. Boxes are float32, about an origin of their own, so that a mesh that was drawn far out keeps tight ones.
-//
-// Source: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies" (binning).
+// Nodes     Node 0 is the root. The two children of an inner node are adjacent.
+// Triangles `triangles` holds the mesh's triangles in another order. The triangles below a node are consecutive in it.
+// Boxes     A node's box contains all corners of its triangles, rounding included. Boxes are float32, relative to `origin`,
+//           so they stay tight for a mesh far from the origin of its coordinates.
+// Source    Wald 2007, "On fast construction of SAH-based bounding volume hierarchies" (binning).
 #pragma once
 
 #include <array>
@@ -17,35 +17,34 @@
 
 namespace octopair {
 
-/// Laid out so that four numbers can be fetched at once from `centre` and `half`.
+/// The layout allows SIMD loads of four numbers from `centre` and `half`.
 struct alignas(32) MeshNode {
-    float centre[3];      ///< about MeshTree::origin
-    std::uint32_t first;  ///< of a leaf: its first triangle; of an inner node: its first child
-    float half[3];        ///< half extents; infinite where float32 does not reach
-    std::uint32_t count;  ///< triangles of a leaf; 0 of an inner node
+    float centre[3];      ///< relative to MeshTree::origin
+    std::uint32_t first;  ///< leaf: its first triangle; inner node: its first child
+    float half[3];        ///< half extents; infinite beyond the range of float32
+    std::uint32_t count;  ///< leaf: number of triangles; inner node: 0
 
     bool is_leaf() const { return count > 0; }
 };
 
-/// Parts of a mesh: what hangs together by shared corners, by position.
+/// Connected components of a mesh. Triangles are connected by shared corners, compared by position.
 struct MeshParts {
-    /// A corner of each part.
-    std::vector<Point3d> corners;
-    /// Of each triangle, in the tree's order: how it bounds an inside.
+    std::vector<Point3d> corners;  ///< one corner of each part
+    /// Kind of the part that a triangle belongs to: not closed, closed and consistently oriented, or closed only.
     enum class Side : std::uint8_t { open, oriented, unoriented };
-    std::vector<Side> sides;
+    std::vector<Side> sides;  ///< by triangle, in the tree's order
     bool any_closed = false;
 };
 
 struct MeshTree {
     static constexpr std::uint32_t leaf_size = 4;
-    static constexpr std::uint32_t most_depth = 96;
+    static constexpr std::uint32_t max_depth = 96;
 
     Point3d origin = {};
     std::vector<Point3d> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<std::uint32_t> numbers;  ///< of each triangle: its place in the mesh as it was given
-    std::vector<MeshNode> nodes;         ///< none of a mesh without triangles
+    std::vector<std::uint32_t> numbers;  ///< index of each triangle in the given mesh
+    std::vector<MeshNode> nodes;         ///< empty for a mesh without triangles
     MeshParts parts;
 
     Triangle3d world_triangle(const Pose& pose, std::uint32_t triangle) const {
@@ -54,13 +53,13 @@ struct MeshTree {
     }
 };
 
-/// Indices must be in range, and vertices finite.
+/// Requires: indices are in range, and vertices are finite.
 std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh);
 
-/// One node that holds a box, and no triangles: what is not a mesh is met by one of these.
+/// Returns a tree of one node with the given box and without triangles, to test a mesh against another kind of object.
 MeshTree make_box_tree(const Box3d& box);
 
-/// Of a tree whose triangles are in order.
+/// Returns the parts of the tree's mesh. Requires: vertices and triangles of `tree` are set.
 MeshParts find_parts(const MeshTree& tree);
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// next_leaves(): Separation's comparisons with vectors, compiled for each instruction set by Highway.
+// next_leaves(): the SIMD version of Separation's comparisons, compiled for each instruction set by Highway.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "narrow_phase/mesh/mesh_walk_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -53,7 +53,7 @@ unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) { return n
 using D = hn::FixedTag<float, 4>;
 using V = hn::Vec<D>;
 
-/// Separation::Map.
+/// SIMD version of Separation::Map.
 struct VectorMap {
     explicit VectorMap(const Separation::Map& map) {
         for (int i = 0; i < 3; ++i) {
@@ -71,7 +71,7 @@ struct VectorMap {
     V column[3], magnitude[3];
 };
 
-/// Separation::Axes.
+/// SIMD version of Separation::Axes.
 struct VectorAxes {
     explicit VectorAxes(const Separation::Axes& axes)
         : other(axes.other),

@@ -1,4 +1,4 @@
-// Whether a pose mirrors: then what was counterclockwise from outside is clockwise in the world.
+// mirrors(): whether a pose mirrors. Then triangles that are counterclockwise from outside are clockwise in the world.
 #pragma once
 
 #include "geometry/vector.hpp"
@@ -6,7 +6,7 @@
 
 namespace octopair {
 
-/// A pose that flattens does not.
+/// Returns true if the determinant of the pose's linear part is negative. A pose that flattens does not mirror.
 inline bool mirrors(const Pose& pose) {
     return plane_side({0, 0, 0}, vector::column(pose, 0), vector::column(pose, 1), vector::column(pose, 2)) < 0;
 }

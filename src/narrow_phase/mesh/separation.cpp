@@ -6,9 +6,9 @@ namespace octopair {
 
 namespace {
 
-/// Float64 rounds by at most so much of a number.
+/// Unit roundoff: largest relative error of a float64 operation.
 constexpr double unit = 0x1p-53;
-/// Every bound below adds up fewer than so many roundings.
+/// Upper bound on the number of roundings in each error bound below.
 constexpr double roundings = 64;
 
 double largest_row_sum(const std::array<std::array<double, 3>, 3>& m) {
@@ -25,7 +25,7 @@ std::array<std::array<double, 3>, 3> linear_part(const Pose& pose) {
     return m;
 }
 
-/// By cofactors; infinite or not a number where there is none.
+/// Returns the inverse, by cofactors; infinite or NaN numbers if there is none.
 std::array<std::array<double, 3>, 3> inverse_of(const std::array<std::array<double, 3>, 3>& m) {
     std::array<std::array<double, 3>, 3> inverse;
     for (int row = 0; row < 3; ++row) {
@@ -41,7 +41,7 @@ std::array<std::array<double, 3>, 3> inverse_of(const std::array<std::array<doub
     return inverse;
 }
 
-/// The largest number that goes into a world place of what the boxes hold.
+/// Returns an upper bound on the terms, summed by absolute value, of the world coordinates of the boxes' contents.
 double reach_in_world(const PosedBoxes& boxes) {
     double largest = 0;
     for (int row = 0; row < 3; ++row) {
@@ -56,7 +56,7 @@ double reach_in_world(const PosedBoxes& boxes) {
     return largest;
 }
 
-/// From a's origin to b's.
+/// Returns the world vector from a's origin to b's origin.
 Point3d between_origins(const PosedBoxes& a, const PosedBoxes& b) {
     const Point3d from = vector::posed(a.pose, a.origin), to = vector::posed(b.pose, b.origin);
     return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -69,14 +69,14 @@ Separation::Map Separation::map_of(const Matrix& matrix) {
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) {
             map.column[column].at[row] = float(matrix[row][column]);
-            // Upward, so that half extents are.
+            // Rounded up, so that half extents are rounded up too.
             map.magnitude[column].at[row] = std::abs(map.column[column].at[row]) * (1 + 0x1p-20F);
         }
     }
     return map;
 }
 
-/// What float32 needs is added to the slack: a part of the largest numbers that meet along an axis.
+/// The slack also covers the float32 rounding error: 2^-19 of the sum of the largest numbers along an axis.
 void Separation::round_to_lanes(const PosedBoxes& own, const PosedBoxes& other, double room, Axes& axes) {
     const auto reach = [](const MeshNode& node, int axis) {
         return double(std::abs(node.centre[axis])) + double(node.half[axis]);
@@ -106,7 +106,7 @@ std::optional<Separation::OwnAxes> Separation::axes_of(const PosedBoxes& own, co
             to_own[i][j] = undo[i][0] * others[0][j] + undo[i][1] * others[1][j] + undo[i][2] * others[2][j];
         }
         axes.offset.at[i] = float(undo[i][0] * way[0] + undo[i][1] * way[1] + undo[i][2] * way[2]);
-        // A step of length 1 in the world is one of at most the row's length along this axis.
+        // A vector of length 1 in the world has at most the row's length along this axis.
         const double row = std::sqrt(undo[i][0] * undo[i][0] + undo[i][1] * undo[i][1] + undo[i][2] * undo[i][2]);
         axes.scale.at[i] = float((1 - 0x1p-20) / row);
     }
@@ -124,7 +124,7 @@ Separation::WorldAxes Separation::axes_of_world(const PosedBoxes& a, const Posed
         axes.offset.at[i] = float(way[i]);
         axes.scale.at[i] = 1 - 0x1p-20F;
     }
-    // Here a is mapped as well: what it reaches to is at most that in the world.
+    // The boxes of a are mapped to the world too, so the float32 error is bounded by their reach in the world.
     const double world = reach_in_world(a) + reach_in_world(b);
     round_to_lanes(a, b, (roundings * unit + 0x1p-19) * world, axes);
     return axes;

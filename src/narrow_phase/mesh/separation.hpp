@@ -1,10 +1,10 @@
-// Boxes of two posed shapes: how far apart they are at least, in the world.
+// Separation: lower bounds on the world distance of boxes of two posed shapes.
 //
-// Each shape has boxes in its own space, about an origin (mesh_tree.hpp). A pair of them is compared along the axes of both
-// spaces, or of the world where a pose cannot be undone. Bounds hold for the places that vector::posed gives, whatever was
-// rounded there and here: every comparison leaves room for it. What is not a number tells nothing apart.
-//
-// Float32, four numbers at a time, of which the last is not used: mesh_walk_kernel.cpp does the same with vectors.
+// Boxes     Each shape has boxes in its own coordinates, relative to an origin (mesh_tree.hpp).
+// Axes      A pair of boxes is compared along the axes of both shapes. If a pose cannot be inverted well, along the world axes.
+// Rounding  Bounds hold for the places that vector::posed computes. Every comparison has slack for the rounding there and here.
+// NaN       A comparison with NaN never separates two boxes.
+// Lanes     All numbers are float32, four at a time; the last is not used. mesh_walk_kernel.cpp is the SIMD version.
 #pragma once
 
 #include <algorithm>
@@ -18,30 +18,30 @@
 
 namespace octopair {
 
-/// A posed shape's boxes: their origin, and one that holds them all.
+/// The boxes of a posed shape.
 struct PosedBoxes {
     const Pose& pose;
-    const Point3d& origin;
-    const MeshNode& root;
+    const Point3d& origin;  ///< origin of all boxes
+    const MeshNode& root;   ///< contains all other boxes
 };
 
 class Separation {
 public:
     Separation(const PosedBoxes& a, const PosedBoxes& b);
 
-    /// At most the distance between what is in the one and in the other; 0 where they may meet.
+    /// Returns a lower bound on the distance of the contents of two boxes; 0 if they may meet.
     float least_distance(const MeshNode& a, const MeshNode& b) const {
         if (world_) return std::max(0.0F, greatest(world_->gaps_between(a, b)));
         return std::max({0.0F, greatest(of_a_.gaps_to(a, b)), greatest(of_b_.gaps_to(b, a))});
     }
 
-    /// True only if that is more than `reach`.
+    /// Returns true only if the distance of the contents is larger than `reach`.
     bool apart(const MeshNode& a, const MeshNode& b, float reach) const {
         if (world_) return greatest(world_->gaps_between(a, b)) > reach;
         return greatest(of_a_.gaps_to(a, b)) > reach || greatest(of_b_.gaps_to(b, a)) > reach;
     }
 
-    /// Whether a is the one to be looked into: the larger of the two.
+    /// Returns true if a is the larger of the two boxes in the world, or as large as b.
     bool first_is_larger(const MeshNode& a, const MeshNode& b) const {
         return std::max({a.half[0], a.half[1], a.half[2]}) * size_[0] >=
                std::max({b.half[0], b.half[1], b.half[2]}) * size_[1];
@@ -72,13 +72,14 @@ public:
         }
     };
 
-    /// Three axes: where the other's boxes are along them, how much room rounding needs there, and how many times as long a
-    /// gap is in the world, at least.
+    /// Three axes along which boxes are compared.
     struct Axes {
-        Map other;
-        Lanes offset, slack, scale;
+        Map other;     ///< maps boxes of the other shape to these axes
+        Lanes offset;  ///< from the own origin to the other origin
+        Lanes slack;   ///< bound on the rounding error; infinite in the last lane
+        Lanes scale;   ///< lower bound on the world length of a gap of length 1
 
-        /// The last one's slack is infinite, so it is no gap.
+        /// Returns the gaps along the axes, below 0 for an overlap. The last lane is -infinity: its slack is infinite.
         Lanes gaps(const Lanes& own_centre, const Lanes& own_half, const MeshNode& node) const {
             const Lanes centre = other.centre(node), half = other.half(node);
             Lanes gap;
@@ -91,21 +92,21 @@ public:
         }
     };
 
-    /// Not that which is no number.
+    /// Returns the largest of the three gaps; ignores NaN.
     static float greatest(const Lanes& gaps) {
         float most = -std::numeric_limits<float>::infinity();
         for (int i = 0; i < 3; ++i) most = gaps.at[i] > most ? gaps.at[i] : most;
         return most;
     }
 
-    /// Those of the space of one shape.
+    /// Axes of one shape's own coordinates.
     struct OwnAxes : Axes {
         Lanes gaps_to(const MeshNode& own, const MeshNode& node) const {
             return gaps(fetch(own.centre), fetch(own.half), node);
         }
     };
 
-    /// Those of the world.
+    /// Axes of the world.
     struct WorldAxes : Axes {
         Map own;
 
@@ -114,15 +115,15 @@ public:
 
     const OwnAxes& of_a() const { return of_a_; }
     const OwnAxes& of_b() const { return of_b_; }
-    /// Instead of these, where one of the poses cannot be undone well.
+    /// Replaces of_a() and of_b() if one of the poses cannot be inverted well.
     const std::optional<WorldAxes>& of_world() const { return world_; }
 
 private:
     using Matrix = std::array<std::array<double, 3>, 3>;
     static Map map_of(const Matrix& matrix);
-    /// `room`: what float64 needs along each axis.
+    /// Sets slack and the last lane of `axes`. `room` is the bound on the float64 rounding error along each axis.
     static void round_to_lanes(const PosedBoxes& own, const PosedBoxes& other, double room, Axes& axes);
-    /// Nothing where the pose of `own` cannot be undone well.
+    /// Returns nothing if the pose of `own` cannot be inverted well.
     static std::optional<OwnAxes> axes_of(const PosedBoxes& own, const PosedBoxes& other);
     static WorldAxes axes_of_world(const PosedBoxes& a, const PosedBoxes& b);
 

@@ -1,4 +1,4 @@
-// The boxes of a posed mesh's hierarchy, axis by axis in the world, widened by what rounding may have taken.
+// WorldBoxes: world boxes of the nodes of a posed mesh's hierarchy, axis by axis, widened by the rounding error.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace octopair {
 
 class WorldBoxes {
 public:
-    /// Of a mesh with triangles; its pose is borrowed.
+    /// Borrows the pose. Requires: the mesh has triangles.
     explicit WorldBoxes(const PosedMesh& mesh) : pose_(mesh.pose), origin_(vector::posed(mesh.pose, mesh.tree.origin)) {
         const MeshNode& root = mesh.tree.nodes[0];
         for (int row = 0; row < 3; ++row) {
@@ -24,7 +24,7 @@ public:
         }
     }
 
-    /// NaN or infinite where float32 does not reach.
+    /// Interval of a node's box along a world axis; NaN or infinite beyond the range of float32.
     struct Span {
         double low, high;
     };

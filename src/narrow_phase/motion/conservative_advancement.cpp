@@ -14,45 +14,49 @@ namespace octopair {
 
 namespace {
 
-/// The same pair with its objects in the other order.
-Passing turned_round(const Passing& passing) {
-    Passing other = passing;
-    other.way = vector::times(passing.way, -1);
+/// Returns the motion of b relative to a.
+RelativeMotion reversed(const RelativeMotion& motion) {
+    RelativeMotion other = motion;
+    other.displacement = vector::times(motion.displacement, -1);
     return other;
 }
 
-/// Of two convex things, `nearest` being a place of each.
-double time_of_convex(const PosedConvex& a, const PosedConvex& b, const Passing& passing,
+/// Returns the safe time of two convex objects. `nearest` holds one point of each; the planes are perpendicular to the line
+/// between these points.
+double time_of_convex(const PosedConvex& a, const PosedConvex& b, const RelativeMotion& motion,
                       const std::array<Point3d, 2>& nearest) {
     const Point3d way = vector::minus(nearest[1], nearest[0]);
     const double length = vector::length(way);
     if (!(length > 0)) return 0;
     const Point3d direction = vector::times(way, 1 / length);
     const PosedPlane plane = {direction, nearest[0]};
-    return passing.time_across(span_across(plane, b).low - span_across(plane, a).high, direction);
+    return motion.time_across(span_across(plane, b).low - span_across(plane, a).high, direction);
 }
 
-/// The least of the times of many pairs, none of which needs more than `most`.
+/// The smallest safe time over many pairs of convex objects, at most `most`.
 class LeastTime {
 public:
-    LeastTime(const Passing& passing, double most) : passing_(passing), least_(most) {}
+    LeastTime(const RelativeMotion& motion, double most) : motion_(motion), least_(most) {}
 
-    /// Pairs that are further apart than this do not matter any more.
-    float reach() const { return reach_above(passing_.reach + passing_.keep + least_ * passing_.fastest() * 2); }
+    /// Returns the distance beyond which a pair cannot reduce the smallest time.
+    float reach() const {
+        return reach_above(motion_.reach + motion_.remaining_gap + least_ * motion_.max_speed() * 2);
+    }
     double least() const { return least_; }
 
     void add(const PosedConvex& a, const PosedConvex& b, double gap, const std::array<Point3d, 2>& nearest) {
-        const double anyhow = passing_.time_for(gap, passing_.fastest());
-        if (anyhow < least_) least_ = std::min(least_, std::max(anyhow, time_of_convex(a, b, passing_, nearest)));
+        const double time_by_speed = motion_.time_for(gap, motion_.max_speed());
+        if (time_by_speed < least_)
+            least_ = std::min(least_, std::max(time_by_speed, time_of_convex(a, b, motion_, nearest)));
     }
 
 private:
-    const Passing& passing_;
+    const RelativeMotion& motion_;
     double least_;
 };
 
-double time_of_meshes(const PosedMesh& a, const PosedMesh& b, const Passing& passing, double most) {
-    LeastTime time(passing, most);
+double time_of_meshes(const PosedMesh& a, const PosedMesh& b, const RelativeMotion& motion, double most) {
+    LeastTime time(motion, most);
     MeshWalk walk(a, b, time.reach());
     std::array<NodePair, 1> at;
     while (next_leaves(walk, at) > 0) {
@@ -69,8 +73,9 @@ double time_of_meshes(const PosedMesh& a, const PosedMesh& b, const Passing& pas
     return time.least();
 }
 
-double time_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, const Passing& passing, double most) {
-    LeastTime time(passing, most);
+double time_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, const RelativeMotion& motion,
+                              double most) {
+    LeastTime time(motion, most);
     const PosedConvex posed(solid.solid, solid.box.pose);
     MeshWalk walk(mesh, solid.box, time.reach());
     std::array<NodePair, 1> at;
@@ -86,37 +91,37 @@ double time_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, co
     return time.least();
 }
 
-/// The plane is b. What is on one side of it is parted from it as a whole.
-double time_beside_plane(const PlaneSpan& span, const PosedPlane& plane, const Passing& passing) {
+/// Returns the safe time of an object a, with the given span, and the plane b. The plane itself separates the two.
+double time_to_plane(const PlaneSpan& span, const PosedPlane& plane, const RelativeMotion& motion) {
     const Point3d down = vector::times(plane.normal, -1);
-    return std::max(passing.time_across(span.low, down), passing.time_across(-span.high, plane.normal));
+    return std::max(motion.time_across(span.low, down), motion.time_across(-span.high, plane.normal));
 }
 
-/// The kinds of both ascending.
-double time_in_order(const ObjectsApart& pair, const Passing& passing, double most) {
+/// Requires: the kind of a is not after the kind of b.
+double time_in_order(const ObjectsApart& pair, const RelativeMotion& motion, double most) {
     const auto& [a, b, gap] = pair;
     const Kind kind_a = kind_of(a), kind_b = kind_of(b);
     if (kind_b == Kind::plane) {
         const PosedPlane plane = plane_of(b);
         const auto span = kind_a == Kind::mesh ? span_across(plane, mesh_of(a)) : span_across(plane, solid_of(a));
-        return time_beside_plane(*span, plane, passing);
+        return time_to_plane(*span, plane, motion);
     }
-    if (kind_a == Kind::solid) return time_of_convex(solid_of(a), solid_of(b), passing, gap.nearest);
-    return kind_b == Kind::mesh ? time_of_meshes(mesh_of(a), mesh_of(b), passing, most)
-                                : time_of_mesh_and_solid(mesh_of(a), boxed_solid_of(b), passing, most);
+    if (kind_a == Kind::solid) return time_of_convex(solid_of(a), solid_of(b), motion, gap.nearest);
+    return kind_b == Kind::mesh ? time_of_meshes(mesh_of(a), mesh_of(b), motion, most)
+                                : time_of_mesh_and_solid(mesh_of(a), boxed_solid_of(b), motion, most);
 }
 
 }  // namespace
 
-double safe_time(const ObjectsApart& pair, const Passing& passing, double most) {
+double safe_time(const ObjectsApart& pair, const RelativeMotion& motion, double most) {
     const auto& [a, b, gap] = pair;
-    const double anyhow = passing.time_for(gap.at_least, passing.fastest());
-    if (!(anyhow < most)) return most;
+    const double time_by_speed = motion.time_for(gap.at_least, motion.max_speed());
+    if (!(time_by_speed < most)) return most;
     const bool in_order = kind_of(a) <= kind_of(b);
     const ObjectGap other = {gap.at_least, {gap.nearest[1], gap.nearest[0]}};
     const double time =
-        in_order ? time_in_order(pair, passing, most) : time_in_order({b, a, other}, turned_round(passing), most);
-    return std::min(std::max(anyhow, time), most);
+        in_order ? time_in_order(pair, motion, most) : time_in_order({b, a, other}, reversed(motion), most);
+    return std::min(std::max(time_by_speed, time), most);
 }
 
 }  // namespace octopair

@@ -1,7 +1,8 @@
-// How long two moving objects may go on without coming within reach of each other.
+// safe_time(): the step of conservative advancement, a time during which two moving objects cannot come within reach.
 //
-// Of two convex things that two planes part, the planes go with them: what counts is how fast these close. So things that
-// pass each other go far in one step. Meshes are taken triangle by triangle; the least time of all is theirs.
+// Convex    Two parallel planes separate two convex objects and move with them. The speed at which the planes approach bounds
+//           the time. So objects that pass each other take long steps.
+// Meshes    The result is the smallest time over all pairs of triangles.
 #pragma once
 
 #include <algorithm>
@@ -11,31 +12,36 @@
 
 namespace octopair {
 
-struct Passing {
-    Point3d way;     ///< of a, seen from b, in the whole time
-    double turning;  ///< what turning adds to the speeds of points of both
-    double reach;    ///< what does not count as apart
-    double keep;     ///< what of the rest should be left
-    double fastest() const { return vector::length(way) + turning; }
+/// Motion of object a relative to object b. Times are fractions of the whole motion, 0 to 1.
+struct RelativeMotion {
+    Point3d displacement;  ///< displacement of a relative to b during the whole motion
+    double turning_speed;  ///< sum of the speeds that rotation adds to points of a and of b
+    double reach;          ///< distance at which the objects count as meeting
+    double remaining_gap;  ///< gap beyond `reach` that should remain after a step
+    /// Upper bound on the relative speed of two points.
+    double max_speed() const { return vector::length(displacement) + turning_speed; }
 
-    /// Of a gap that closes so fast: most of it, and at least half of it.
+    /// Returns the time in which `gap - reach` shrinks at `speed` to `remaining_gap` or to half of itself, whichever takes
+    /// longer; 0 if the gap is at most `reach`.
     double time_for(double gap, double speed) const {
         const double left = gap - reach;
-        return left > 0 ? std::max(left - keep, left / 2) * (1 - 1e-9) / speed : 0;
+        return left > 0 ? std::max(left - remaining_gap, left / 2) * (1 - 1e-9) / speed : 0;
     }
-    /// A gap between two planes across a direction of length 1, from a to b.
+    /// Returns the same time for the gap between two planes perpendicular to `direction`, which has length 1 and points from
+    /// a to b.
     double time_across(double gap, const Point3d& direction) const {
-        return time_for(gap, (std::max(0.0, vector::dot(way, direction)) + turning) * (1 + 1e-9));
+        return time_for(gap, (std::max(0.0, vector::dot(displacement, direction)) + turning_speed) * (1 + 1e-9));
     }
 };
 
-/// Two objects, as they are now, and the gap between them; borrowed.
+/// Two objects at the current time and the gap between them. Borrowed.
 struct ObjectsApart {
     const PosedObject &a, &b;
     const ObjectGap& gap;
 };
 
-/// At most `most`. The gap must be more than the reach.
-double safe_time(const ObjectsApart& pair, const Passing& passing, double most);
+/// Returns a time, at most `most`, during which the objects cannot come within `motion.reach`.
+/// Requires: the gap is larger than the reach.
+double safe_time(const ObjectsApart& pair, const RelativeMotion& motion, double most);
 
 }  // namespace octopair

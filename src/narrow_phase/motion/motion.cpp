@@ -73,7 +73,7 @@ double Motion::speed(double reach) const {
 }
 
 double Motion::sagitta(double reach, double step) const {
-    // A straight line between two points of a curve errs by at most its second derivative's bound, by step^2 / 8.
+    // A chord of a curve errs by at most step^2 / 8 times the bound of the curve's second derivative.
     return angle_ * (angle_ * stretch_ + 2 * change_) * reach * step * step / 8 * (1 + 1e-12);
 }
 

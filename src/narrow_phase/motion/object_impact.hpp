@@ -1,10 +1,12 @@
-// When two moving objects first meet: conservative advancement (Mirtich 1996). From where they are, both go on for as long
-// as they cannot possibly meet: their distance over the most that their speeds can add up to; or the gap between two planes
-// that part them over how fast these close, so that two that pass each other take few steps.
+// first_time_within(): time of impact of two moving objects, by conservative advancement (Mirtich 1996).
 //
-// Never too late: what is said not to meet does not, at any time. Tolerance: two that come closer than a millionth of the
-// smaller one's size are taken to meet. Turning things, and meshes that no plane parts, may pass each other at so small a
-// part of their way that steps never end; after each 16,384 the tolerance grows fourfold.
+// Steps     Both objects advance by a time in which they cannot meet (conservative_advancement.hpp). This is their distance
+//           divided by an upper bound on their relative speed. Or it is the gap between two separating planes divided by the
+//           speed at which the planes approach: objects that pass each other take few steps.
+// Safety    The result is never too late. Objects that are reported not to meet do not meet at any time.
+// Tolerance Objects that come closer than 1e-6 of the smaller object's size count as meeting. Rotating objects, and meshes
+//           that no plane separates, may pass at so small a gap that steps never end. So the tolerance grows fourfold after
+//           every 16,384 steps.
 #pragma once
 
 #include <optional>
@@ -19,8 +21,8 @@ struct MovingObject {
     Motion motion;
 };
 
-/// The first time, 0 to 1, at which they are no further apart than `reach`; nothing if they never are. `stop` is looked at
-/// between steps: after a request there is nothing, too.
+/// Returns the first time, 0 to 1, at which the distance of the objects is at most `reach`; nothing if there is no such time.
+/// `stop` is checked between steps; after a stop request the function returns nothing.
 std::optional<double> first_time_within(const MovingObject& a, const MovingObject& b, double reach,
                                         const std::stop_token& stop);
 

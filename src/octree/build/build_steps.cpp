@@ -14,19 +14,19 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+constexpr std::size_t check_interval = 1 << 15;  // objects between checks for a stop request
 constexpr std::size_t most_batch = default_tuning.build.batch;
-constexpr std::size_t prefetched = 32;           // objects ahead whose places are fetched,
-constexpr std::size_t prefetched_ghosts = 8;     // and ghosts
-constexpr std::size_t ghosts_at_once = 1 << 14;  // committed; more than a batch can have
+constexpr std::size_t prefetched = 32;           // objects: distance at which their places are prefetched
+constexpr std::size_t prefetched_ghosts = 8;     // ghosts: the same distance
+constexpr std::size_t ghosts_at_once = 1 << 14;  // ghosts committed at a time; more than a batch can have
 
-/// A block's ghosts, in the order in which they are found.
+/// Collects the ghosts of a block, in the order in which they are found.
 class GhostList {
 public:
     GhostList(BuildMemory& memory, const ObjectBlock& block)
         : ghosts_(memory.ghosts), begin_(most_ghosts * block.begin), end_(most_ghosts * block.end) {}
 
-    /// Makes room for a batch.
+    /// Makes room for the ghosts of one batch.
     void prepare() {
         if (size_ + most_ghosts * most_batch <= committed_) return;
         const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
@@ -46,8 +46,8 @@ private:
 
 }  // namespace
 
-void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t node_count, std::size_t octant_ranges) {
-    octants = node_count;
+void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t octant_count, std::size_t octant_ranges) {
+    octants = octant_count;
     homes.resize_discard(objects);
     ghosts.reserve_discard(most_ghosts * objects);
     ghost_counts.resize_discard(blocks);
@@ -61,7 +61,7 @@ void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t no
 void BuildSteps::encode(const NumberedBlock& block) const {
     const auto above = OctantIndex(memory.octants);
     const ObjectBlock& objects = block.objects;
-    std::vector<std::uint64_t> home_counts(above + 1, 0);  // the last one: boxes too large for the leaf they begin in
+    std::vector<std::uint64_t> home_counts(above + 1, 0);  // last: boxes too large for the leaf that they begin in
     std::vector<std::uint64_t> ghost_counts(above, 0);
     GhostList ghosts(memory, objects);
     const std::size_t batch_size = tuning().build.batch;
@@ -82,7 +82,7 @@ void BuildSteps::encode(const NumberedBlock& block) const {
         directory.leaves(std::span(cells).first(count), leaves);
         std::size_t crossing = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            // No branch on whether a box crosses: mispredicting it cost more than everything else here.
+            // No branch on whether a box crosses a border: its mispredictions cost more than all else in this loop.
             const bool crosses = !within(cells[i], leaves[i].level());
             const OctantIndex octant = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].octant();
             memory.homes[begin + i] = Home(octant, crosses);
@@ -125,7 +125,7 @@ void BuildSteps::count(const NumberedOctants& octants, std::span<const std::size
 
 namespace {
 
-/// Where the next entry of each octant goes, of one block.
+/// Returns the index of the next entry of each octant, for one block.
 std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const ScatterTarget& target) {
     std::vector<std::uint64_t> places(part.begin(), part.end());
     for (const NumberedOctants& range : target.ranges) {
@@ -178,7 +178,7 @@ void BuildSteps::scatter(const NumberedBlock& block, const ScatterTarget& target
                 entry = entries[i];
                 if ((entry.mask & begins_before) != 0) count_path(Path::class_bits_brought);
                 if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;
-                entry.mask |= ghosts[ghost].begins();  // on top of the bits that it brought: see entry.hpp
+                entry.mask |= ghosts[ghost].begins();  // added to the bits that it has (boxes/entry.hpp)
             }
         }
     }

@@ -1,11 +1,13 @@
-// The steps that make a linear octree, each over a range of objects or of octants.
+// The steps that build a linear octree, each over a block of objects or a range of octants.
 //
-//   encode  a block of objects -> the home octant of each, its further entries (ghosts), and counts per octant
-//   merge   the counts of all blocks, of a range of octants -> where each block's entries of these octants go
-//   sort    a block's entries to their places: with the counts before it, an MSD radix sort by octal code
+//   encode   a block of objects -> the home octant of each object, its ghosts (further entries), and counts per octant
+//   count    the counts of all blocks, for a range of octants -> the places of each block's entries (a prefix sum)
+//   scatter  a block's entries -> their places. Counting and scattering are an MSD radix sort by octal code.
 //
-// A step reads what earlier steps wrote and writes memory that no other range writes, so that threads or processes can
-// share the ranges out, and do one again.
+// Invariants
+//   A step reads only what earlier steps wrote.
+//   A step writes memory that no other block or range writes. So threads or processes can run the shares of a step
+//   concurrently, and can run a share again.
 //
 // Source: Lucchesi, Egbert, Harris 2014, sections 3.2 and 3.3.
 #pragma once
@@ -22,7 +24,8 @@
 
 namespace octopair {
 
-/// The leaf that a box begins in, or none if it is too large for it, and whether it reaches into further ones.
+/// Home of a box: the leaf that it begins in, or the number of octants if the box is too large for that leaf.
+/// `crosses`: the box reaches into further octants.
 class Home {
 public:
     Home() = default;
@@ -34,16 +37,16 @@ private:
     std::uint32_t packed_;
 };
 
-/// An entry of a box beyond the one in its home. Those of a box stand together, boxes ascending.
+/// An entry of a box outside its home. The ghosts of a box are adjacent; boxes ascend.
 class Ghost {
 public:
     Ghost() = default;
     Ghost(OctantIndex octant, unsigned begins) : packed_(octant << 4 | begins) {}
 
     OctantIndex octant() const { return packed_ >> 4; }
-    /// The class bits.
+    /// Returns the class bits.
     unsigned begins() const { return packed_ & begins_before; }
-    /// Whether it is the last one of its box.
+    /// True for the last ghost of a box.
     bool last() const { return (packed_ & last_bit) != 0; }
     void set_last() { packed_ |= last_bit; }
 
@@ -51,16 +54,16 @@ private:
     static constexpr std::uint32_t last_bit = 8;
     std::uint32_t packed_;
 };
-inline constexpr std::size_t most_ghosts = 8;  // of a box
+inline constexpr std::size_t most_ghosts = 8;  ///< maximum number of ghosts of a box
 
 /// Objects [begin, end).
 struct ObjectBlock {
     std::size_t begin = 0, end = 0;
 };
 
-/// What steps leave for each other.
+/// Data that steps pass to later steps.
 struct BuildMemory {
-    /// `scratch`: for what nobody reads after the sort.
+    /// `scratch`: pages for data that is not read after the scatter step.
     BuildMemory(PageSource& pages, PageSource& scratch)
         : homes(scratch),
           ghosts(scratch),
@@ -71,20 +74,20 @@ struct BuildMemory {
           totals(pages),
           valid(pages) {}
 
-    /// Room for these.
+    /// Makes room for the given numbers of objects, blocks, octants and ranges of octants.
     void resize(std::size_t objects, std::size_t blocks, std::size_t octants, std::size_t octant_ranges);
 
-    Buffer<Home> homes;                  // of each object
-    Buffer<Ghost> ghosts;                // a block's from most_ghosts * begin on; committed as it grows
-    Buffer<std::uint64_t> ghost_counts;  // of each block
-    Buffer<std::uint64_t> counts;        // of each block: entries per octant that are home, then ghosts per octant
-    Buffer<std::uint64_t> places;        // likewise: where the first goes, from the begin of the octant's range
-    Buffer<std::uint64_t> begins;        // of each octant's entries, from the begin of its range
-    Buffer<std::uint64_t> totals;        // of each range of octants: entries
-    Buffer<std::uint8_t> valid;          // of each block, after sort: whether all of its objects are boxes
+    Buffer<Home> homes;                  // by object
+    Buffer<Ghost> ghosts;                // by block, from most_ghosts * its first object on; committed as needed
+    Buffer<std::uint64_t> ghost_counts;  // by block
+    Buffer<std::uint64_t> counts;        // by block: home entries of each octant, then ghosts of each octant
+    Buffer<std::uint64_t> places;        // laid out as `counts`: place of the first entry, relative to the range
+    Buffer<std::uint64_t> begins;        // by octant: place of its first entry, relative to the octant's range
+    Buffer<std::uint64_t> totals;        // by range of octants: number of entries
+    Buffer<std::uint8_t> valid;          // by block, after scatter: 1 if all its objects are valid boxes
 
     std::size_t octants = 0;
-    /// Of block `b`: what `counts` or `places` hold for homes, and for ghosts.
+    /// Returns the part of `counts` or `places` for the home entries of block `b`; ghost_part() the part for its ghosts.
     std::span<std::uint64_t> home_part(Buffer<std::uint64_t>& of, std::size_t b) const {
         return of.span().subspan(2 * b * octants, octants);
     }
@@ -103,15 +106,15 @@ struct NumberedOctants {
     OctantIndex begin, end;
 };
 
-/// Where a block's entries go.
+/// Destination of a block's entries.
 struct ScatterTarget {
     std::span<Entry> entries;
-    std::span<const std::uint64_t> range_begins;  ///< of the ranges of octants: what their places are counted from
+    std::span<const std::uint64_t> range_begins;  ///< by range of octants: index of its first entry
     std::span<const NumberedOctants> ranges;
-    std::size_t spare;  ///< the index of an entry that is free: boxes too large for a leaf are written there
+    std::size_t spare;  ///< index of an unused entry, where boxes too large for a leaf are written
 };
 
-/// The steps on some objects and octants. Borrows all.
+/// The steps over some objects and octants. Borrows all members.
 struct BuildSteps {
     const EntrySource& source;
     const Space& space;
@@ -119,11 +122,12 @@ struct BuildSteps {
     BuildMemory& memory;
     const std::stop_token& stop;
 
-    /// Throws Error{cancelled}, as sort() does.
+    /// Throws: Error{cancelled}.
     void encode(const NumberedBlock& block) const;
-    /// `blocks`: those whose entries go to one list, first to last.
+    /// `blocks`: numbers of the blocks whose entries go into one list, in order.
     void count(const NumberedOctants& octants, std::span<const std::size_t> blocks) const;
-    /// Sets memory.valid; stops at an object that is not a box.
+    /// Sets memory.valid, and stops at an object that is not a valid box.
+    /// Throws: Error{cancelled}.
     void scatter(const NumberedBlock& block, const ScatterTarget& target) const;
 };
 

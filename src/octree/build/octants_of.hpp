@@ -1,4 +1,4 @@
-// Which octants of a linear octree get an entry of a box.
+// Finds the octants of a linear octree that get an entry of a box.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace octopair {
 
-/// Whether a box lies within the octant of `level` that its low corner lies in.
+/// True if `box` lies within the octant of `level` that holds its low corner.
 inline bool within(const CellBox& box, unsigned level) {
     return ((box.lo[0] ^ box.hi[0]) | (box.lo[1] ^ box.hi[1]) | (box.lo[2] ^ box.hi[2])) >> (deepest - level) == 0;
 }
 
-/// The axes, as bits, on which a box reaches into further octants of `level`.
+/// Returns the axes, as bits, on which `box` reaches into further octants of `level`.
 inline unsigned crossed_axes(const CellBox& box, unsigned level) {
     const unsigned shift = deepest - level;
     unsigned crossed = 0;
@@ -34,15 +34,16 @@ inline Cell corner_of(const CellBox& box, unsigned corner) {
     return cell;
 }
 
-/// Calls place(octant, class bits) for each octant that gets an entry of a box which crosses octants, first the one that it
-/// begins in; `home` is the leaf it begins in. At its natural level and above, the corners of a box reach all octants that
-/// it touches; where several lie in one coarser leaf, the lowest counts.
+/// Calls place(octant, class bits) for each octant that gets an entry of `box`, first for the octant that the box begins in.
+/// `home`: the leaf that the box begins in. At its natural level and above, the corners of a box reach all octants that the
+/// box touches. If several corners lie in one coarser leaf, the lowest corner counts.
+/// Requires: `box` reaches beyond `home`.
 template <typename Place>
 void for_each_octant_of(const CellBox& box, const Directory& directory, Directory::Leaf home, Place&& place) {
     const unsigned natural = natural_level(box);
     std::array<std::pair<unsigned, OctantIndex>, 8> corners;
     std::size_t count = 0;
-    // The corners at the level of the leaves; a finer leaf among them asks for those of its level.
+    // Starts with the corners at the level of the home leaf. If a finer leaf is found, starts again at that leaf's level.
     unsigned level = std::min(natural, home.level());
     for (bool again = true; again;) {
         const unsigned crossed = crossed_axes(box, level);

@@ -1,5 +1,5 @@
-// Sorted lists: the entries of some objects by octant, made apart and merged. The paper's arrangement has them; whoever
-// else builds an octree counts first, and puts each entry straight to its place (build_steps.hpp).
+// SortedList: entries sorted by octant. The paper's arrangement makes such lists separately for parts of the objects, and then
+// merges them. All other builds count first, and scatter each entry to its place (build_steps.hpp).
 //
 // Source: Lucchesi, Egbert, Harris 2014, section 3.3.
 #pragma once
@@ -12,20 +12,21 @@
 
 namespace octopair {
 
-/// The entries of some objects, sorted by octant: in each those of boxes whose home it is, then the others.
+/// The entries of some objects, sorted by octant: in each octant home entries, then ghosts.
 struct SortedList {
     std::span<const Entry> entries;
-    std::span<const std::uint64_t> home_begins, ghost_begins;  ///< in each octant
+    std::span<const std::uint64_t> home_begins, ghost_begins;  ///< by octant: position of the first entry of this kind
 };
 
-/// Where a merged list goes, which may then be merged itself.
+/// Memory for a merged list, which can be merged again.
 struct MergedList {
-    std::span<Entry> entries;                            ///< as many as the lists have
-    std::span<std::uint64_t> home_begins, ghost_begins;  ///< of each octant; nobody may want the second: empty
+    std::span<Entry> entries;                            ///< room for the entries of all lists
+    std::span<std::uint64_t> home_begins, ghost_begins;  ///< by octant; ghost_begins may be empty: not wanted
 };
 
-/// Merges lists of the same octants whose objects follow each other, one octant after another. Returns how many entries there
-/// are. Throws Error{cancelled}.
+/// Merges lists of the same octants, one octant after another. Returns the number of entries.
+/// Requires: the objects of each list precede those of the next.
+/// Throws: Error{cancelled}.
 std::uint64_t merge_lists(std::span<const SortedList> lists, const MergedList& merged, const std::stop_token& stop);
 
 }  // namespace octopair

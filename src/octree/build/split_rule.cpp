@@ -14,7 +14,8 @@ namespace {
 
 using SampledBoxes = SampledOctant::Boxes;
 
-/// Gives boxes, all of which touch `octant`, to those of the octants below that they touch; `list` is where.
+/// Copies boxes into the `list` of each child of `octant` that they touch.
+/// Requires: all boxes touch `octant`.
 void hand_down(const OctantCube& octant, const SampledBoxes& boxes, std::array<SampledOctant, 8>& below,
                SampledBoxes SampledOctant::*list) {
     for (SampledOctant& child : below) (child.*list).reserve(boxes.size() / 6);

@@ -1,11 +1,12 @@
-// SplitRule: which octants of a linear octree are divided, decided on a sample of the scene.
+// SplitRule: decides on a sample of the scene which octants of a linear octree are divided.
 //
-// An octant is divided while it is crowded: while it holds too many objects, or a sweep along its best axis would test too
-// many; but not where dividing would multiply entries (boxes as large as the octant), nor where the boxes handed down from
-// above would be copied into the children without being thinned.
+// An octant is divided if it is crowded: it holds too many objects, or a sweep along its best axis would test too many. It is
+// not divided if the division
+//   would multiply entries (boxes as large as the octant), or
+//   would copy the boxes handed down from above into the children without thinning them.
 //
-// All that a decision asks of a sample are sums over its boxes, and least and greatest cells: so a sample's parts can be
-// counted apart, and their order does not matter.
+// Decisions depend only on sums over the sampled boxes, and on their least and greatest cells. So parts of a sample can be
+// counted separately, and the order of boxes does not matter.
 #pragma once
 
 #include <array>
@@ -17,15 +18,16 @@
 
 namespace octopair {
 
-/// An octant by its first cell on each axis; its side is 2^(21 - level) cells.
+/// An octant by its position alone: first cell on each axis, and level. The side is 2^(21 - level) cells.
 struct OctantCube {
     Cell lo = {};
     unsigned level = 0;
 
     OctantCube child(unsigned digit) const;
-    /// As bits, the octants below that a box touches which touches this one.
+    /// Returns a bit mask of the children that `box` touches.
+    /// Requires: `box` touches this octant.
     unsigned touched_below(const CellBox& box) const {
-        // Per axis those of the lower and of the upper half.
+        // By axis: the children in the lower half and those in the upper half.
         constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
         const std::uint32_t half = (cells_per_axis >> level) / 2;
         unsigned touched = 0xFF;
@@ -35,51 +37,53 @@ struct OctantCube {
         }
         return touched;
     }
-    /// Whether a box that touches it begins in it.
+    /// True if `box` begins in this octant.
+    /// Requires: `box` touches this octant.
     bool holds_begin(const CellBox& box) const {
         return box.lo[0] >= lo[0] && box.lo[1] >= lo[1] && box.lo[2] >= lo[2];
     }
-    /// Whether a box is too large for the octants below.
+    /// True if `box` is too large for the octants below.
     bool keeps(const CellBox& box) const { return natural_level(box) <= level; }
 };
 
-/// In pre-order, of each octant of a subtree: whether it is divided.
+/// Shape of a subtree: for each octant, in pre-order, 1 if it is divided, otherwise 0.
 using SplitFlags = std::vector<std::uint8_t>;
 
-/// The sampled boxes that touch an octant.
+/// An octant and the sampled boxes that touch it.
 struct SampledOctant {
     using Boxes = std::vector<CellBox>;
     OctantCube octant;
-    Boxes inside;  ///< those that fit into the octants below,
-    Boxes kept;    ///< and those that octants above keep, or this one
+    Boxes inside;  ///< boxes that fit into the octants below
+    Boxes kept;    ///< boxes that this octant or an octant above keeps
 
-    /// Takes what does not fit into the octants below from the one to the other. To be called first.
+    /// Moves the boxes that do not fit into the octants below from `inside` to `kept`. Must be called before divided().
     void keep();
-    /// The octants below, not yet kept.
+    /// Returns the children and their boxes, before keep() of each child.
     std::array<SampledOctant, 8> divided() const;
 };
 
-/// Of a sample in an octant, after keep(), and of what it would make in the octants below.
+/// Numbers of sampled boxes in an octant, after keep(), and in the children that a division would make.
 struct OctantCounts {
     std::uint64_t inside = 0, kept = 0;
-    std::uint64_t beginning = 0;                     ///< of those inside: which begin in it
-    std::uint64_t inside_below = 0, kept_below = 0;  ///< boxes for each octant below that they touch, added up
+    std::uint64_t beginning = 0;                     ///< boxes of `inside` that begin in the octant
+    std::uint64_t inside_below = 0, kept_below = 0;  ///< sums over the children that the boxes touch
 
     static OctantCounts of(const SampledOctant& sampled, const std::array<SampledOctant, 8>& below);
 };
 
 class SplitRule {
 public:
-    /// `weight`: how many objects a box of the sample stands for.
+    /// `weight`: number of objects that a sampled box represents.
     SplitRule(double weight, std::stop_token stop) : weight_(weight), stop_(std::move(stop)) {}
 
-    /// Whether that many are too many, wherever they are.
+    /// True if `inside` sampled boxes are too many for one octant, wherever they are in it.
     bool is_crowd(std::uint64_t inside) const;
     bool crowded(const SampledOctant& sampled) const;
-    /// Of a crowded octant.
+    /// True if dividing a crowded octant multiplies neither entries nor boxes handed down.
     static bool worth_dividing(const OctantCounts& counts);
 
-    /// Appends the shape of an octant's subtree. Throws Error{cancelled}.
+    /// Divides an octant as far as the rule says, and appends the shape of its subtree to `shape`.
+    /// Throws: Error{cancelled}.
     void grow(SampledOctant sampled, SplitFlags& shape) const;
 
 private:

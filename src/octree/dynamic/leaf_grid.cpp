@@ -9,12 +9,12 @@ namespace octopair {
 
 namespace {
 
-constexpr float small_numbers = 254;  // of a SmallBox, beside the 0 of what begins before, and one for rounding
+constexpr float small_numbers = 254;  // numbers of a SmallBox, without 0 (begins before the unit) and one for rounding
 
 }  // namespace
 
 SmallBox Unit::small(const CellBox& box) const {
-    std::array<float, 4> low, high;  // of which the last is nothing
+    std::array<float, 4> low, high;  // the last number is unused
     for (unsigned axis = 0; axis < 4; ++axis) {
         const auto number = [&](std::uint32_t cell) {
             return float(std::int32_t(cell - lo[axis])) * scale[axis] + 1.0f;
@@ -33,7 +33,7 @@ SmallBox Unit::small(const CellBox& box) const {
 CellBox Unit::cells(const SmallBox& box) const {
     CellBox cells;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        // Of all that was rounded down to that number, and a cell more for the rounding of the product.
+        // All cells that are rounded down to this number, and one more cell for the rounding of the product.
         const auto cells_of = [&](unsigned number) { return std::uint32_t(float(number) / scale[axis]); };
         const std::uint32_t last = lo[axis] + cells_of(unsigned(small_numbers)) - 1;
         const std::uint32_t begin = lo[axis] + cells_of(box.lo(axis) < 2 ? 0 : box.lo(axis) - 1u);
@@ -43,16 +43,17 @@ CellBox Unit::cells(const SmallBox& box) const {
     return cells;
 }
 
-/// For units of 2^side cells.
+/// Returns the scale of a unit with 2^side cells on the axis.
 float LeafGrid::scale_of(unsigned side) {
     constexpr unsigned exponent_zero = 127, fraction_bits = 23;
     return small_numbers * std::bit_cast<float>((exponent_zero - side) << fraction_bits);
 }
 
-/// Halves the cells on the axis on which they are longest for what is in them, until they hold few or cutting would
-/// multiply the entries.
+/// Halves the cells on the axis on which they are longest relative to the boxes in them. Stops when a cell holds few boxes, or
+/// when a further cut would multiply the entries.
 LeafGrid LeafGrid::cut(const Octant& octant, std::uint32_t begin, std::span<const CellBox> boxes) {
-    LeafGrid grid{{octant.lo[0], octant.lo[1], octant.lo[2]}, begin, std::uint8_t(octant.level), {}, !octant.leaf(), false};
+    LeafGrid grid{
+        {octant.lo[0], octant.lo[1], octant.lo[2]}, begin, std::uint8_t(octant.level), {}, !octant.leaf(), false};
     if (grid.inner) return grid;
     std::array<double, 3> extents{1, 1, 1}, sides;
     for (const CellBox& box : boxes) {

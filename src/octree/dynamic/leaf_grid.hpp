@@ -1,7 +1,9 @@
-// LeafGrid: an octant of a MutableOctree as it is cut into units, and boxes in the numbers of a unit.
+// LeafGrid: cuts an octant of a MutableOctree into units, and converts boxes to the 8-bit numbers of a unit.
 //
-// A leaf is cut into a grid of cells, 2^bits on an axis, so that a cell holds a few entries; an inner octant is not. The units
-// of a grid are its own, the whole octant, and those cells; they are numbered from `begin` on, its own first.
+// Invariants
+//   A leaf is cut into a grid of cells, 2^bits on each axis, so that a cell holds a few entries. An inner octant is not cut.
+//   The units of a grid are the whole octant, which is its own unit, and the cells. They are numbered from `begin` on, the own
+//   unit first.
 #pragma once
 
 #include <array>
@@ -14,14 +16,14 @@
 
 namespace octopair {
 
-/// What keeps entries.
+/// A region of the space that keeps entries: an octant or a cell of its grid.
 struct Unit {
-    Cell lo = {};                     ///< its first cell of the space
-    std::array<float, 4> scale = {};  ///< numbers of a SmallBox a cell of the space
+    Cell lo = {};                     ///< first cell of the space
+    std::array<float, 4> scale = {};  ///< numbers of a SmallBox for each cell of the space
     std::uint32_t index = 0;
 
     SmallBox small(const CellBox& box) const;
-    /// Where an entry's box lies in the unit, or a little more.
+    /// Returns the cells of the space that an entry's box may touch within the unit.
     CellBox cells(const SmallBox& box) const;
 };
 
@@ -42,16 +44,16 @@ struct GridRange {
 };
 
 struct alignas(32) LeafGrid {
-    std::array<std::uint32_t, 3> lo;  ///< the octant's first cell of the space
+    std::array<std::uint32_t, 3> lo;  ///< first cell of the space in the octant
     std::uint32_t begin;
     std::uint8_t level;
     std::array<std::uint8_t, 3> bits;
-    bool inner;  ///< no leaf
-    bool used;   ///< its own unit may hold entries
+    bool inner;  ///< true if the octant is not a leaf
+    bool used;   ///< true if the own unit may hold entries
 
-    /// Cuts an octant for the boxes that have entries in it.
+    /// Cuts an octant for `boxes`, which have entries in the octant. `begin`: number of the grid's first unit.
     static LeafGrid cut(const Octant& octant, std::uint32_t begin, std::span<const CellBox> boxes);
-    /// How many units it has.
+    /// Returns the number of units.
     std::size_t units() const { return inner ? 1 : 1 + (std::size_t(1) << (bits[0] + bits[1] + bits[2])); }
 
     std::uint32_t last(unsigned axis) const { return lo[axis] + ((cells_per_axis >> level) - 1); }
@@ -60,11 +62,11 @@ struct alignas(32) LeafGrid {
         for (unsigned axis = 0; axis < 3; ++axis) touched &= box.lo[axis] <= last(axis) && box.hi[axis] >= lo[axis];
         return touched;
     }
-    /// Whether it keeps an entry, itself or in a cell, of a box of that natural level.
+    /// True if the own unit or cells of the grid keep entries of `box`. `natural`: natural level of the box.
     bool keeps(const CellBox& box, unsigned natural) const {
         return (inner ? level == natural : level <= natural) && touches(box);
     }
-    /// Whether the cells keep entries of a box that touches these; otherwise the octant itself.
+    /// True if the cells keep the entries of a box that touches the cells `range`; otherwise the own unit keeps an entry.
     bool keeps_in(const GridRange& range) const {
         constexpr std::uint32_t most_cells_an_entry = 8;
         return !inner && range.count() <= most_cells_an_entry;
@@ -74,9 +76,10 @@ struct alignas(32) LeafGrid {
     CellBox cells(const GridRange& range) const;
     Unit own_unit() const;
     GridRange all() const;
-    /// The cells that a box touches, which touches the grid.
+    /// Returns the cells of the grid that `box` touches.
+    /// Requires: `box` touches the octant.
     GridRange range_of(const CellBox& box) const;
-    /// Calls visit(unit, place in the grid).
+    /// Calls visit(unit, place in the grid) for each cell of `range`.
     template <typename Visit>
     void for_each_cell(const GridRange& range, Visit&& visit) const;
 

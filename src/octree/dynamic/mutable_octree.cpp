@@ -15,10 +15,10 @@ namespace octopair {
 
 namespace {
 
-// How many visits before its turn what a visit reads is fetched.
+// Prefetch distances of what a visit reads, in visits.
 constexpr std::size_t ahead_head = 24, ahead_first = 14, ahead_next = 6;
 
-/// Whether two boxes, or what lies between them, are no larger than the two together on each axis.
+/// True if two boxes overlap or are adjacent on each axis, so that joined() is no longer than both together on each axis.
 bool near(const CellBox& a, const CellBox& b) {
     bool is_near = true;
     for (unsigned axis = 0; axis < 3; ++axis) is_near &= a.lo[axis] <= b.hi[axis] + 1 && b.lo[axis] <= a.hi[axis] + 1;
@@ -36,7 +36,7 @@ CellBox joined(const CellBox& a, const CellBox& b) {
 
 }  // namespace
 
-/// The units within an octant that keep entries of a box.
+/// Calls visit(unit, octant) for each unit of an octant that keeps an entry of `box`.
 template <typename Visit>
 void MutableOctree::for_each_unit_of(OctantIndex octant, const CellBox& box, Visit&& visit) const {
     const LeafGrid& grid = grids_[octant];
@@ -49,14 +49,16 @@ void MutableOctree::for_each_unit_of(OctantIndex octant, const CellBox& box, Vis
     grid.for_each_cell(range, [&](const Unit& unit, const auto&) { visit(unit, octant); });
 }
 
-/// Calls visit(unit, its octant).
+/// Calls visit(unit, octant of the unit) for each unit that keeps an entry of `box`.
 template <typename Visit>
 void MutableOctree::for_each_home_unit(const CellBox& box, Visit&& visit) const {
     const Directory::Leaf home = directory_.leaf(box.lo);
     if (within(box, home.level())) return for_each_unit_of(home.octant(), box, visit);
-    for_each_octant_of(box, directory_, home, [&](OctantIndex octant, unsigned) { for_each_unit_of(octant, box, visit); });
+    for_each_octant_of(box, directory_, home,
+                       [&](OctantIndex octant, unsigned) { for_each_unit_of(octant, box, visit); });
 }
 
+/// Calls visit(octant) for `octant`, and for all octants below that `box` touches.
 template <typename Visit>
 void MutableOctree::for_each_octant_below(OctantIndex octant, const CellBox& box, Visit&& visit) const {
     visit(octant);
@@ -67,7 +69,8 @@ void MutableOctree::for_each_octant_below(OctantIndex octant, const CellBox& box
     }
 }
 
-/// All leaves that a box touches, and all inner octants that may hold entries that touch it or keep it.
+/// Calls visit(octant) for all leaves that `box` touches, and for all inner octants that keep `box` or may hold entries that
+/// touch it.
 template <typename Visit>
 void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) const {
     const auto octants = directory_.octants();
@@ -87,7 +90,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     for (std::size_t i = 0; i < count; ++i) {
         for_each_octant_below(tops[i], box, visit);
         if (!inner_used_) continue;
-        // Those above, up to where one of the others has come.
+        // The octants above, up to the first that was visited for an earlier top.
         for (OctantIndex octant = tops[i]; octant != 0;) {
             octant = octants[octant].parent;
             const auto above = [&](OctantIndex top) { return octant < top && top < octants[octant].next; };
@@ -103,8 +106,8 @@ void MutableOctree::build(const LinearOctree& octree, const std::stop_token& sto
     directory_ = octree.directory();
     const auto octants = directory_.octants();
     grids_.reserve(octants.size());
-    // What is reserved is not there before it is used, but what grows is there twice for a while: so a part shows how
-    // much all will take, with what later changes may.
+    // Reserved memory is committed only when it is used, but an array that grows exists twice for a while. So the first 1/32 of
+    // the entries predicts the memory of all, and twice as much is reserved, for later changes.
     const std::uint64_t part = octree.entry_count() / 32;
     units_.reserve(part);
     std::uint64_t done = 0;
@@ -197,7 +200,7 @@ void MutableOctree::visit_octant(OctantIndex octant, NearestVisitor& visitor) co
     }
 }
 
-/// Halves the range until it is a cell.
+/// Visits the cells of a range that are near enough. Halves the range until it is one cell, and visits the nearer half first.
 void MutableOctree::visit_cells(const LeafGrid& leaf, const GridRange& range, NearestVisitor& visitor) const {
     unsigned axis = 0;
     for (unsigned other = 1; other < 3; ++other) {
@@ -226,7 +229,7 @@ void MutableOctree::visit_unit(const Unit& unit, NearestVisitor& visitor) const 
     });
 }
 
-/// A search around a box, with the entries that are taken and put there.
+/// A search of a change, and the boxes whose entries are removed and added with it.
 struct MutableOctree::Work {
     std::uint32_t number;
     std::uint32_t object;
@@ -241,7 +244,7 @@ struct MutableOctree::Work {
 
 void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& out) const {
     const LeafGrid& grid = grids_[octant];
-    // Where the entries are: in some cells, in the octant itself, or in neither.
+    // Where entries of a box are kept: in some cells, in the own unit, or in neither.
     struct Keepers {
         GridRange cells = GridRange::empty();
         bool own = false;
@@ -265,7 +268,7 @@ void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& ou
     if (grid.inner) return;
     const GridRange range = grid.range_of(work.wanted);
     if (range.count() > tuning().dynamic.listed_visits) {
-        out.visits.resize(out.visits.size() + tuning().dynamic.listed_visits + 1);  // which is too many
+        out.visits.resize(out.visits.size() + tuning().dynamic.listed_visits + 1);  // marks too many visits
         return;
     }
     grid.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
@@ -303,7 +306,7 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
     if (listed) return true;
     out.visits.resize(visits);
     out.first_used.resize(first_used);
-    // It is put where it belongs before the others are, whose searches must see it.
+    // The change is made before the listed ones, whose searches must find its object. So its octants count as first used, too.
     if (!change.exists) return false;
     for_each_home_unit(*after, [&](const Unit& unit, OctantIndex octant) {
         if (unit.index == grids_[octant].begin && !grids_[octant].used) out.first_used.push_back(octant);

@@ -1,18 +1,19 @@
-// MutableOctree: a linear octree whose entries can be taken out, put in and searched for.
+// MutableOctree: a linear octree whose entries can be inserted, erased and searched.
 //
 // Invariants
-//   The octants are those of the LinearOctree that it was built from. A leaf is cut further into a grid of cells, so that
-//   one holds a few entries; a box that would touch more than eight cells of a leaf is kept by the leaf itself, and one
-//   too large for a leaf by the octant above, as there. What keeps entries (a cell, a leaf, an octant) is a unit.
-//   A box has an entry in each unit that it touches of those that may keep it; these tile it.
-//   Two boxes are reported to each other in the unit that holds the low corner of their intersection, so once.
+//   The octants are those of the LinearOctree from which the MutableOctree was built.
+//   A leaf is cut further into a grid of cells, so that a cell holds a few entries.
+//   A unit is a cell, a leaf or an inner octant that keeps entries. A leaf keeps the boxes that would touch more than eight
+//   of its cells. An inner octant keeps the boxes that are too large for a leaf, as in the LinearOctree.
+//   The units with an entry of a box tile the cells that the box touches.
+//   Two boxes are reported only in the unit that holds the low corner of their intersection, so once.
 //
-// Entries hold their boxes in 8 bits a number, relative to their unit, and stand in blocks of 12: what a search reads is a
-// few lines of memory. What overlaps here may not overlap in truth: who searches decides.
+// Entries hold boxes in 8 bits a number, relative to the unit, in blocks of 12, so a search reads only a few cache lines.
+// Boxes that overlap in 8 bits may not overlap exactly: the caller must test them.
 //
-// Many changes at once are made unit by unit: list() tells which units a change visits, and run() makes visits. Those of
-// one unit must be run in the order of their changes; those of different units may be at the same time. What a search
-// finds is then what it would if the changes were made one after the other.
+// Many changes at once are made unit by unit. list() lists the units that a change visits, and run() makes visits. Visits of
+// one unit must run in the order of their changes; visits of different units may run concurrently. Searches then find what
+// they would find if the changes were made one after another.
 #pragma once
 
 #include <cstdint>
@@ -31,27 +32,28 @@ namespace octopair {
 
 class LinearOctree;
 
-/// An object that comes, moves or goes.
+/// An object that is added, moved or removed.
 struct OctreeChange {
     std::uint32_t object;
-    bool existed, exists;
-    CellBox before, after;  ///< where it did, and does
+    bool existed, exists;   ///< before and after the change
+    CellBox before, after;  ///< the object's box before (if it existed) and after (if it exists)
 };
 
-/// Which of the two places of an object a search is about, as bits.
+/// Which box of a changed object a search is around: bits of UnitVisit::around and Hit::around.
 enum : std::uint8_t { around_before = 1, around_after = 2 };
 
-/// What a change has to do in a unit.
+/// Operations of a change in a unit: a search, then the removal of an entry, then the addition of an entry.
 struct UnitVisit {
     std::uint32_t unit;
-    std::uint32_t change;  ///< its number
+    std::uint32_t change;  ///< number of the change
     std::uint32_t object;
-    std::uint8_t around;  ///< what is searched, at once; 0 for none
-    bool take, put;       ///< after the search, in this order
-    SmallBox wanted;      ///< the box of the search
-    SmallBox entry;       ///< what is put
+    std::uint8_t around;  ///< boxes that the search is around; 0: no search
+    bool take, put;       ///< whether an entry is removed, and added
+    SmallBox wanted;      ///< box of the search
+    SmallBox entry;       ///< box of the entry that is added
 };
 
+/// An object that the search of a visit found.
 struct Hit {
     std::uint32_t change;
     std::uint32_t object;
@@ -60,48 +62,51 @@ struct Hit {
 
 class MutableOctree {
 public:
-    /// Replaces what it held by the entries of `octree`. Throws Error{cancelled}, and is empty then.
+    /// Replaces the contents by the entries of `octree`.
+    /// Throws: Error{cancelled}; the octree is then empty.
     void build(const LinearOctree& octree, const std::stop_token& stop);
-    /// Forgets everything, but keeps its memory.
+    /// Removes all octants and entries, and keeps the memory.
     void clear();
-    /// And gives it back.
+    /// Removes all octants and entries, and frees the memory.
     void release();
 
     const Space& space() const { return space_; }
-    /// Of its boxes: cells of space(). An object is in here once.
+    /// Adds an object. `box`: cells of space().
+    /// Requires: the octree does not hold the object.
     void insert(std::uint32_t object, const CellBox& box);
-    /// `box` as when it was inserted.
+    /// Removes an object. `box`: the box with which the object was inserted.
     void erase(std::uint32_t object, const CellBox& box);
-    /// Appends the objects whose boxes' cells overlap those of `box`, each once, in no order.
+    /// Appends the objects whose cells overlap `box`, each once, in no particular order. May append objects near them, too.
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
-    /// Hands a visitor what is near enough, what is near first.
+    /// Passes the objects that are near enough to `visitor`, nearest regions first.
     void search(NearestVisitor& visitor) const;
 
     /// The visits of some changes.
     struct Visits {
         std::vector<UnitVisit> visits;
-        std::vector<OctantIndex> first_used;  ///< octants that will keep their first entry
+        std::vector<OctantIndex> first_used;  ///< octants whose own unit gets its first entry
         void clear() {
             visits.clear();
             first_used.clear();
         }
     };
-    /// Appends what a change has to visit; false, and no visits, if these are too many: it is then to be made with
-    /// search(), erase() and insert() before all that are listed.
+    /// Appends the visits of change `number`. Returns false, and appends no visits, if there are too many. The change must then
+    /// be made with search(), erase() and insert(), before all changes that are listed.
     bool list(const OctreeChange& change, std::uint32_t number, Visits& out) const;
-    /// For a change that is listed soon.
+    /// Prefetches data for list() of a change.
     void prefetch(const OctreeChange& change) const;
-    /// To be called with what list() found to be used first, before all is listed again: searches visit these as well.
+    /// Makes searches visit the own units of `octants`. Must be called with all of Visits::first_used; then all changes must be
+    /// listed again.
     void use(std::span<const OctantIndex> octants);
     std::uint32_t units() const { return units_.units(); }
-    /// Room for visits that put so many entries.
+    /// Makes room for visits that add `puts` entries.
     void reserve(std::uint64_t puts) { units_.reserve(puts); }
-    /// Makes those of `visits` that `order` names in its low 32 bits, and appends what their searches find beside the
-    /// object itself. Returns how many it made, from the first: it stops where these have found very much.
+    /// Runs visits in `order`, and appends the objects that their searches find, except the changed object itself. Returns the
+    /// number of visits that were run: fewer than `order` has if there are very many hits.
+    /// Requires: an element of `order` has the index of a visit in its low 32 bits, and the visit's unit in its high 32 bits.
     std::size_t run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order, std::vector<Hit>& hits);
 
 private:
-    /// A change's search, and which entries go with it.
     struct Work;
 
     template <typename Visit>
@@ -120,9 +125,9 @@ private:
 
     Space space_;
     Directory directory_;
-    std::vector<LeafGrid> grids_;  // of the octants
+    std::vector<LeafGrid> grids_;  // by octant
     UnitBlocks units_;
-    bool inner_used_ = false;  // a grid that is inner is used
+    bool inner_used_ = false;  // true if the own unit of an inner octant may hold entries
 };
 
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// NearestVisitor: something that is looked for in a MutableOctree, nearest first.
+// NearestVisitor: a search of a MutableOctree for near objects, nearest regions first.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace octopair {
 class NearestVisitor {
 public:
     virtual ~NearestVisitor() = default;
-    /// At most what any object could be away whose box reaches into a region (of the octree's coordinates, perhaps
-    /// infinite); more than limit() if none is wanted.
+    /// Returns a lower bound on the distance to every object whose box reaches into `region`; a value above limit() if none
+    /// of them is wanted. The region is in the octree's coordinates and may be infinite.
     virtual double at_least(const Box3d& region) const = 0;
-    /// What is farther away is of no interest any more.
+    /// Returns the distance beyond which objects are not wanted. May shrink during the search.
     virtual double limit() const = 0;
-    /// Maybe more than once for an object.
+    /// Receives an object that may be near enough. May be called more than once for an object.
     virtual void take(std::uint32_t object) = 0;
 };
 

@@ -1,8 +1,9 @@
-// SmallBlock: a few boxes in 8 bits a number, relative to the unit of a MutableOctree that keeps them, and their objects.
+// SmallBlock: entries of one unit of a MutableOctree: objects, and their boxes in 8 bits a number, relative to the unit.
 //
-// All numbers are rounded down by one monotone map, so boxes that overlap do so here. A lower end is 0 where the box
-// begins before the unit, and more elsewhere: two boxes are reported in the unit that holds the low corner of their
-// intersection.
+// Invariants
+//   All numbers are rounded down by one monotone map, so boxes that overlap in the space overlap here.
+//   A low end is 0 if the box begins before the unit, otherwise greater. So two boxes are reported only in the unit that
+//   holds the low corner of their intersection.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace octopair {
 
-/// A byte an axis, in one register.
+/// A box with one byte for each end on each axis. The three bytes of an end are packed into one register.
 struct SmallBox {
     std::uint32_t lo_bytes = 0, hi_bytes = 0;
 
@@ -23,13 +24,13 @@ struct SmallBox {
     std::uint8_t hi(unsigned axis) const { return std::uint8_t(hi_bytes >> (8 * axis)); }
 };
 
-/// Two lines of memory.
+/// Two cache lines of entries.
 struct alignas(64) SmallBlock {
     static constexpr std::size_t capacity = 12;
 
     std::array<std::array<std::uint8_t, capacity>, 3> lo, hi;  ///< [axis][entry]
-    std::uint32_t next;   ///< block of the same unit, or none; all but the first are full
-    std::uint32_t count;  ///< entries, from the first on
+    std::uint32_t next;   ///< next block of the unit, or `none`; all blocks of a unit but the first are full
+    std::uint32_t count;  ///< number of entries; the others of the block are free
     std::array<std::uint32_t, capacity> objects;
 
     static constexpr std::uint32_t none = ~std::uint32_t(0);
@@ -39,7 +40,7 @@ struct alignas(64) SmallBlock {
 };
 static_assert(sizeof(SmallBlock) == 128);
 
-/// Whether the two are to be reported to each other: the specification of overlapping().
+/// True if the two boxes are reported as a hit in their unit: the specification of overlapping().
 inline bool overlap(const SmallBox& a, const SmallBox& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (a.lo(axis) > b.hi(axis) || b.lo(axis) > a.hi(axis)) return false;
@@ -48,7 +49,7 @@ inline bool overlap(const SmallBox& a, const SmallBox& b) {
     return true;
 }
 
-/// The entries of a block that overlap `wanted`, as bits.
+/// Returns a bit mask of the entries of `block` that overlap `wanted`.
 std::uint32_t overlapping(const SmallBlock& block, const SmallBox& wanted);
 
 inline SmallBox SmallBlock::box(std::size_t i) const {

@@ -1,4 +1,4 @@
-// overlapping(): all entries of a block at once, compiled for each instruction set by Highway.
+// SIMD version of overlap(): tests all entries of a block at once. Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "octree/dynamic/small_block_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -23,11 +23,11 @@ std::uint32_t overlapping_simd(const SmallBlock& block, const SmallBox& wanted) 
 #else
 
 std::uint32_t overlapping_simd(const SmallBlock& block, const SmallBox& wanted) {
-    const hn::FixedTag<std::uint8_t, 16> d;  // of which the last see what is behind the entries
+    const hn::FixedTag<std::uint8_t, 16> d;  // the last 4 lanes read what follows the entries
     const auto at_most = [&](auto a, auto b) { return hn::Eq(hn::Min(a, b), a); };
     auto hits = hn::FirstN(d, block.count);
     for (unsigned axis = 0; axis < 3; ++axis) {
-        // From 0 on, or from 1 on if the wanted box begins before the unit: there both must not.
+        // Low ends count from 0, but from 1 if the wanted box begins before the unit: at most one of two boxes may do so.
         const std::uint8_t first = wanted.lo(axis) == 0 ? 1 : 0;
         const auto lo = hn::Sub(hn::LoadU(d, block.lo[axis].data()), hn::Set(d, first));
         const auto hi = hn::LoadU(d, block.hi[axis].data());

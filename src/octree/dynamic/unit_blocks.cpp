@@ -47,7 +47,8 @@ void UnitBlocks::take(std::uint32_t unit, std::uint32_t object) {
             return;
         }
     }
-    throw Error(ErrorCode::engine_failed, "object " + std::to_string(object) + " is not where its box says");
+    throw Error(ErrorCode::engine_failed,
+                "object " + std::to_string(object) + ": no entry in a unit that its box touches");
 }
 
 std::uint32_t UnitBlocks::new_block(std::uint32_t next) {

@@ -1,6 +1,6 @@
-// UnitBlocks: the entries of each unit of a MutableOctree, in blocks.
+// UnitBlocks: stores the entries of each unit of a MutableOctree in blocks.
 //
-// Threads may change different units at the same time; calls that name no unit are for one thread alone.
+// Thread safety: threads may change different units concurrently. Functions without a unit need exclusive access.
 #pragma once
 
 #include <bit>
@@ -15,28 +15,32 @@ namespace octopair {
 
 class UnitBlocks {
 public:
-    /// Empties it; units are numbered from 0 on as they are added. Keeps its memory.
+    /// Removes all units and keeps the memory. Units that are added later are numbered from 0 on.
     void clear();
-    /// And gives it back.
+    /// Removes all units and frees the memory.
     void release();
     void add_units(std::size_t count) { heads_.resize(heads_.size() + count, SmallBlock::none); }
     std::uint32_t units() const { return std::uint32_t(heads_.size()); }
     std::uint64_t blocks() const { return blocks_.size(); }
-    /// Room for so many calls of put(). Throws Error{resource_limit}, std::bad_alloc.
+    /// Makes room for `puts` calls of put().
+    /// Throws: Error{resource_limit}; std::bad_alloc.
     void reserve(std::uint64_t puts);
 
     bool empty(std::uint32_t unit) const { return heads_[unit] == SmallBlock::none; }
+    /// Adds an entry.
+    /// Requires: reserve() has made room.
     void put(std::uint32_t unit, const SmallBox& entry, std::uint32_t object);
-    /// Throws Error{engine_failed} if it is not there.
+    /// Removes the entry of `object`.
+    /// Throws: Error{engine_failed} if the unit has no entry of the object.
     void take(std::uint32_t unit, std::uint32_t object);
-    /// Calls found(object) for those that overlap.
+    /// Calls found(object) for each entry that overlaps `wanted`.
     template <typename Found>
     void search(std::uint32_t unit, const SmallBox& wanted, Found&& found) const;
-    /// Calls visit(box, object) for all.
+    /// Calls visit(box, object) for each entry.
     template <typename Visit>
     void for_each(std::uint32_t unit, Visit&& visit) const;
 
-    // What is fetched from memory for a call that follows: the three one after the other, each with some time between.
+    // Prefetch the data of a later call for the unit. The three are called in this order, with some time between them.
     void prefetch_head(std::uint32_t unit) const;
     void prefetch_first(std::uint32_t unit) const;
     void prefetch_next(std::uint32_t unit) const;
@@ -47,7 +51,7 @@ private:
     void prefetch_block(std::uint32_t block) const;
 
     GrowingArray<std::uint32_t> heads_;  // first block of each unit
-    std::mutex mutex_;                   // of the number and the list of free ones; a block itself is its unit's
+    std::mutex mutex_;                   // guards the number of blocks and the list of free ones, not what is in blocks
     GrowingArray<SmallBlock> blocks_;
     std::uint32_t free_ = SmallBlock::none;  // first of the free blocks
 };

@@ -26,7 +26,7 @@ bool oriented(const Entry& row, const Entry& column, const Orientation& orientat
     return true;
 }
 
-/// Clears those of the bits `asked` for which keep(row, column) is false.
+/// Clears each bit of `hit` that is in `asked` and for which keep(row, column) is false.
 template <typename Keep>
 void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
     for (; asked != 0; asked &= asked - 1) {
@@ -38,7 +38,7 @@ void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
 
 void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
-    bool repeated = false;  // as a planted fault
+    bool repeated = false;  // for Fault::sweep_repeats_block
     const std::span<HitMask> room = std::span(hits_).first(tuning().sweep.hits);
     const Depths depths = context_.rule.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {

@@ -1,7 +1,8 @@
 // PairMaker: turns the hits of sweeps into pairs of the caller's objects, for one share of the work.
 //
-// A hit becomes a pair unless the orientation that its search asks for fails (recursive_sweep.hpp), or its boxes
-// overlap so barely that rounding could have made it and the caller's own numbers say no.
+// A hit becomes a pair unless
+//   the row and the column are not in the order that the search requires (Orientation, recursive_sweep.hpp), or
+//   the boxes overlap so little that rounding could have caused the hit, and the caller's own numbers give no pair.
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@
 
 namespace octopair {
 
-/// Per axis: +1 keeps hits whose row comes before its column in (min, object), -1 those whose column does, 0 all.
+/// By axis: +1 keeps hits whose row comes before the column in the order (min, object), -1 keeps hits whose column comes first,
+/// 0 keeps all hits.
 using Orientation = std::array<std::int8_t, 3>;
 
 inline Orientation reversed(Orientation orientation) {
@@ -26,23 +28,23 @@ inline Orientation reversed(Orientation orientation) {
     return orientation;
 }
 
-/// An octant of the outermost octree. Tests check that the pairs reported within it have the low corners of their
-/// intersections in it.
+/// An octant of the outermost octree. With test hooks, each pair reported within the octant is checked: the octant must hold
+/// the low corner of the intersection.
 struct OutermostOctant {
     Space space;
     Octant octant;
 
-    /// Throws Error{engine_failed} if another octant is to report this pair.
+    /// Throws: Error{engine_failed} if another octant must report this pair.
     void check(const Entry& a, const Entry& b) const;
 };
 
-/// What every share of a scan needs to know.
+/// Parameters of a scan, the same for all shares.
 struct ScanContext {
     const PairRule& rule;
     std::stop_token stop;
-    unsigned nesting = 0;  ///< octrees that hold the octant which the scanned octree is made of
-    double growth = 1;     ///< product of entries / objects of the octrees around, up to the outermost
-    std::optional<OutermostOctant> outermost = {};  ///< with test hooks
+    unsigned nesting = 0;  ///< number of octrees around the scanned one
+    double growth = 1;     ///< product, over the nested octrees, of their entries / the entries that they are made of
+    std::optional<OutermostOctant> outermost = {};  ///< set only with test hooks
 };
 
 class PairMaker {
@@ -50,9 +52,10 @@ public:
     PairMaker(const ScanContext& context, ShareWriter& writer)
         : context_(context), slack_(context.rule.slack()), writer_(writer) {}
 
-    /// Runs a sweep to its end. Throws Error{cancelled}.
+    /// Runs a sweep to its end.
+    /// Throws: Error{cancelled}.
     void sweep(const Sweep& sweep, const Orientation& orientation);
-    /// Hands what it still holds to the writer; to be called once at the end.
+    /// Passes the pairs that are still held to the writer. Must be called once at the end.
     void flush();
 
 private:

@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-/// The part of `order` that is tile `t`; a set of up to two tiles is one.
+/// Returns tile `t` of `order`. A set of at most two tiles is treated as a single tile.
 std::span<const SortKey> tile_of(std::span<const SortKey> order, std::size_t t) {
     const std::size_t tile = tuning().sweep.tile;
     if (order.size() <= 2 * tile) return order;
@@ -25,7 +25,7 @@ std::size_t tile_count(std::size_t size) {
     return size == 0 ? 0 : size <= 2 * tile ? 1 : (size + tile - 1) / tile;
 }
 
-/// One share: a tile of rows against the tiles of columns that it reaches.
+/// Sweep of a share: a tile of rows against the tiles of columns that it reaches.
 struct TileSweep {
     const ScanContext& context;
     std::span<const Entry> row_entries;
@@ -65,14 +65,14 @@ struct TileSweep {
     }
 };
 
-/// A list that owns its positions.
+/// A SweepInput between rows and columns that owns its positions.
 struct OwnedJoin {
     std::span<const Entry> row_entries;
     std::span<const Entry> column_entries;
     std::shared_ptr<const std::vector<std::uint32_t>> rows;
     std::shared_ptr<const std::vector<std::uint32_t>> columns;
     Orientation orientation = {};
-    unsigned settled = 0;               // axes whose orientation is given and that need no more splitting
+    unsigned settled = 0;               // number of settled axes: their orientation is given, they need no more splits
     std::array<unsigned, 3> axes = {};  // in the order in which they are settled
 
     SweepInput join() const {
@@ -83,11 +83,11 @@ struct OwnedJoin {
 
 using Positions = std::vector<std::uint32_t>;
 
-std::shared_ptr<const Positions> share(Positions positions) {
+std::shared_ptr<const Positions> shared_positions(Positions positions) {
     return std::make_shared<const Positions>(std::move(positions));
 }
 
-/// The rows that span [first, last] on the axis, and the others that reach into it.
+/// Appends the rows that span `range` on the axis to parts[0], and the other rows that overlap the range to parts[1].
 void part_by_span(const OwnedJoin& join, unsigned axis, std::array<float, 2> range, std::array<Positions, 2>& parts) {
     for (const std::uint32_t i : *join.rows) {
         const Entry& row = join.row_entries[i];
@@ -97,8 +97,9 @@ void part_by_span(const OwnedJoin& join, unsigned axis, std::array<float, 2> ran
     }
 }
 
-/// A value that some columns begin before and others do not, near the median; range[0] < range[1].
-float middle(const OwnedJoin& join, unsigned axis, std::array<float, 2> range) {
+/// Returns a value near the median of the columns' low ends: some columns begin before the value, others do not.
+/// Requires: `range` holds the least and the greatest low end, and these differ.
+float split_value(const OwnedJoin& join, unsigned axis, std::array<float, 2> range) {
     std::vector<float> lows;
     lows.reserve(join.columns->size());
     for (const std::uint32_t i : *join.columns) lows.push_back(join.column_entries[i].min[axis]);
@@ -110,8 +111,8 @@ float middle(const OwnedJoin& join, unsigned axis, std::array<float, 2> range) {
     return next;
 }
 
-/// The joins that one step makes of a join; together they find the same pairs.
-std::vector<OwnedJoin> step(const OwnedJoin& join) {
+/// Returns smaller joins that together find the pairs of `join`.
+std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
     std::vector<OwnedJoin> made;
     const unsigned axis = join.axes[join.settled];
     std::array<float, 2> range = {FLT_MAX, -FLT_MAX};
@@ -125,7 +126,7 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
     if (!parts[0].empty()) {
         count_path(Path::recursion_spanning);
         OwnedJoin spanning = join;
-        spanning.rows = share(std::move(parts[0]));
+        spanning.rows = shared_positions(std::move(parts[0]));
         spanning.settled = join.settled + 1;
         if (spanning.settled == 3) {
             made.push_back(spanning);
@@ -142,7 +143,7 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
     }
     if (!parts[1].empty()) {
         count_path(Path::recursion_halved);
-        const float split = middle(join, axis, range);
+        const float split = split_value(join, axis, range);
         Positions low_rows, high_rows, low_columns, high_columns;
         for (const std::uint32_t i : parts[1]) {
             if (join.row_entries[i].min[axis] < split) low_rows.push_back(i);
@@ -152,18 +153,18 @@ std::vector<OwnedJoin> step(const OwnedJoin& join) {
             (join.column_entries[i].min[axis] < split ? low_columns : high_columns).push_back(i);
         }
         OwnedJoin half = join;
-        half.rows = share(std::move(low_rows));
-        half.columns = share(std::move(low_columns));
+        half.rows = shared_positions(std::move(low_rows));
+        half.columns = shared_positions(std::move(low_columns));
         made.push_back(half);
-        half.rows = share(std::move(high_rows));
-        half.columns = share(std::move(high_columns));
+        half.rows = shared_positions(std::move(high_rows));
+        half.columns = shared_positions(std::move(high_columns));
         made.push_back(half);
     }
     std::erase_if(made, [](const OwnedJoin& part) { return part.rows->empty() || part.columns->empty(); });
     return made;
 }
 
-/// choose_sweep among some axes.
+/// choose_sweep() restricted to `axes`.
 SweepChoice choose_sweep_of(const SweepInput& join, SweepOrder& order, const std::stop_token& stop,
                             std::span<const unsigned> axes) {
     const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
@@ -190,7 +191,7 @@ public:
 
     void run(const OwnedJoin& join) {
         throw_if_stopped(context_.stop);
-        // On settled axes all boxes overlap: no sweep along them thins anything.
+        // On settled axes all rows and columns overlap, so a sweep along such an axis thins nothing.
         const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
         if (open.empty()) count_path(Path::recursion_settled);
         const SweepChoice choice =
@@ -199,8 +200,8 @@ public:
             count_path(Path::recursion_swept);
             return tiled_sweep(context_, join.join(), choice.axis, executor_);
         }
-        std::vector<OwnedJoin> parts = step(join);
-        // Large parts one after another, each shared out; runs of small ones as shares of one part each.
+        std::vector<OwnedJoin> parts = split_join(join);
+        // Large parts run one after another, each on all threads. Runs of small parts run concurrently, one part a share.
         for (std::size_t i = 0; i < parts.size();) {
             std::size_t end = i;
             while (end < parts.size() && parts[end].size() <= tuning().sweep.large_join) ++end;
@@ -295,7 +296,7 @@ void recursive_sweep(const ScanContext& context, const SweepInput& join, Executo
     const auto positions = [](const EntryList& list) {
         Positions all(list.size());
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = list.position(i);
-        return share(std::move(all));
+        return shared_positions(std::move(all));
     };
     OwnedJoin whole;
     whole.row_entries = join.rows.entries;

@@ -1,20 +1,20 @@
-// Sweeps of sets too large or too crowded for one: in tiles, and recursively.
+// Sweeps of sets that are too large or too crowded for a single sweep: in tiles, and recursively.
 //
-// part_by_shape parts boxes by the axes on which they are long: two families of rods that defeat every sweep of the
-// whole are joined by one along the axis on which both are thin.
+// part_by_shape parts boxes by the axes on which they are long. Two families of rods defeat every sweep of the whole set;
+// one sweep along the axis on which both families are thin joins them.
 //
-// A SweepInput asks for the overlapping pairs within a set (self), or between rows and columns.
+// tiled_sweep runs one sweep along an axis over large sets. A share is 4,096 rows, which are swept against one tile of columns
+// after another. So scratch memory does not grow with the set, and one crowded octant occupies all threads.
 //
-// tiled_sweep runs one sweep along an axis whose sets may be large: shares of 4,096 rows, each passing over tiles of
-// columns, so scratch memory does not grow with the set and one crowded octant occupies all threads.
-//
-// recursive_sweep is the guaranteed fallback, O(m log^2 m + pairs), for sets that no axis and no split can thin (rods
-// that cross). On one axis after the other it finds each pair at the box whose interval holds the other's low end: rows
-// that span all columns' low ends need no more of that axis and are joined on the next axes alone; the others are split
-// at the median of the low ends. The pair's orientation on settled axes is checked at the end, so each pair is found
-// once. Where a sweep along some axis is cheap, or about as large as its result, it ends there. Source: Zomorodian,
-// Edelsbrunner 2002, "Fast software for box intersections" (the hybrid algorithm), restated with total orders in place
-// of symbolic perturbation.
+// recursive_sweep is the guaranteed fallback, O(m log^2 m + pairs), for sets that no axis and no split can thin (rods that
+// cross). It settles one axis after the other:
+//   A pair is found at the box whose interval holds the other box's low end.
+//   Rows that span the low ends of all columns have settled the axis. They are joined on the next axes alone.
+//   The other rows, and the columns, are split at the median of the columns' low ends.
+//   The orientation of a pair on settled axes is checked at the end, so each pair is found once.
+//   The recursion ends where a sweep along some axis is cheap, or is about as large as its result.
+// Source: Zomorodian, Edelsbrunner 2002, "Fast software for box intersections" (the hybrid algorithm), restated with total
+// orders in place of symbolic perturbation.
 #pragma once
 
 #include <array>
@@ -25,28 +25,31 @@
 
 namespace octopair {
 
+/// A search for the overlapping pairs within a set (`self`), or between rows and columns.
 struct SweepInput {
     EntryList rows;
-    EntryList columns;  ///< self: the same list
+    EntryList columns;  ///< the list of rows if `self`
     bool self = false;
     Orientation orientation = {};
 };
 
-/// The cheapest axis, and whether one sweep along it is as good as anything: its tests are few a box, or few a pair.
+/// The cheapest axis. `good`: a sweep along this axis has few tests for each box, or few for each pair.
 struct SweepChoice {
     unsigned axis = 0;
     bool good = false;
 };
 
-/// Throws Error{cancelled}.
+/// Throws: Error{cancelled}.
 SweepChoice choose_sweep(const SweepInput& join, SweepOrder& order, const std::stop_token& stop);
 
+/// Throws: Error{cancelled}.
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor);
 
-/// The positions of a list by the axes (as bits) on which a box is longer than a quarter of the list's reach.
+/// Returns the positions of a list, parted by the axes (as bits) on which a box is longer than a quarter of the list's extent.
 std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list);
 
-/// `join` has no orientation yet.
+/// Requires: `join` has no orientation.
+/// Throws: Error{cancelled}.
 void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor);
 
 }  // namespace octopair

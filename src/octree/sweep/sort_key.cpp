@@ -13,7 +13,7 @@ namespace octopair {
 namespace {
 
 /// Sorts by one digit, from keys to sorted. Returns false, with nothing done, if all keys have the same digit.
-bool pass(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shift, Executor& executor) {
+bool sort_by_digit(std::span<const SortKey> keys, std::span<SortKey> sorted, unsigned shift, Executor& executor) {
     const std::size_t digits = std::size_t(1) << tuning().sweep.radix_digit_bits;
     const std::size_t blocks = std::clamp<std::size_t>(keys.size() / tuning().sweep.radix_block, 1, executor.width());
     if (blocks > 1) count_path(Path::radix_blocks);
@@ -53,7 +53,7 @@ void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token
     Buffer<SortKey> scratch(keys.size());
     for (unsigned shift = 32; shift < 64; shift += tuning().sweep.radix_digit_bits) {
         throw_if_stopped(stop);
-        if (pass(keys.span(), scratch.span(), shift, executor)) std::swap(keys, scratch);
+        if (sort_by_digit(keys.span(), scratch.span(), shift, executor)) std::swap(keys, scratch);
     }
 }
 

@@ -1,4 +1,5 @@
-// SortKey: where a box begins on an axis and its position in a list, as one number in the order of a sweep.
+// SortKey: the low end of a box on an axis and the box's position in a list, packed into one integer. Keys sort in the order of
+// a sweep.
 #pragma once
 
 #include <bit>
@@ -12,7 +13,7 @@ namespace octopair {
 
 using SortKey = std::uint64_t;
 
-/// Ascending by `low`, then by position. (-0 comes before 0, which sweeps do not mind.)
+/// Returns a key that sorts by `low`, then by position. Sorts -0 before 0, which does not change the hits of a sweep.
 inline SortKey sort_key(float low, std::uint32_t position) {
     const auto bits = std::bit_cast<std::uint32_t>(low);
     return SortKey(bits ^ (bits >> 31 != 0 ? ~0u : 0x80000000u)) << 32 | position;
@@ -25,8 +26,10 @@ inline float low_of(SortKey key) {
     return std::bit_cast<float>(bits ^ (bits >> 31 != 0 ? 0x80000000u : ~0u));
 }
 
-/// Sorts keys that are ascending by position: an LSD radix sort whose passes are shared out. Throws Error{cancelled}.
-/// Takes as much memory again while it runs.
+/// Sorts keys with an LSD radix sort by low end, in shares of `executor`.
+/// Requires: the keys ascend by position.
+/// Throws: Error{cancelled}.
+/// Complexity: the memory of the keys once more while it runs.
 void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token& stop);
 
 }  // namespace octopair

@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-/// Whether `column` begins where a sweep of this kind looks for it, and overlaps the row.
+/// True if a sweep of this kind tests the column for the row, and the two overlap and share no bit of their masks.
 bool hit(const Sweep& sweep, std::size_t row, std::size_t column) {
     const auto& [rows, columns, kind] = sweep;
     if (kind == SweepKind::self && column <= row) return false;
@@ -40,8 +40,8 @@ void SweepSet::assign(std::span<const Entry> entries, std::span<const SortKey> o
     arrays[6] = words + stride_;
     arrays[7] = words;
     split_entries(entries, order, arrays);
-    // NaN compares false with everything: it neither ends a row's columns late nor hits. Where rows end on the axis is
-    // taken together for a block of them.
+    // NaN compares false with everything, so padding ends each loop over columns and hits nothing. High ends on the sweep's
+    // axis are padded with -infinity, because a block of rows takes their maximum.
     for (std::size_t k = 0; k < 6; ++k) {
         const float none = k == 3 ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
         std::fill(numbers + k * stride_ + size_, numbers + (k + 1) * stride_, none);
@@ -66,7 +66,7 @@ void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor) {
     const float* lows = columns.low(0);
     std::size_t& first = cursor.first_column;
     while (first < columns.size() && (kind == SweepKind::cross ? lows[first] < begin : lows[first] <= begin)) ++first;
-    cursor.column = first / most_columns * most_columns;  // where registers are loaded from
+    cursor.column = first / most_columns * most_columns;  // registers are loaded from multiples of most_columns
 }
 
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {

@@ -1,15 +1,19 @@
-// Sweep: finds the overlapping boxes of sorted sets by passing along one axis.
+// Sweep: finds the overlapping boxes of sorted sets by a sweep along one axis.
 //
-// A SweepSet holds boxes in the order (low bound on the axis, object), as a structure of arrays padded with boxes that
-// no box reaches. A sweep tests each row against the columns that begin within it on the axis:
-//   self   row i against the columns i + 1, i + 2, ... of the same set
-//   cross  row against the columns of another set that do not begin before it (`strict`: that begin after it); crossing
-//          both ways, once strictly, finds each pair of two sets once
-// Rows are taken in blocks of 8, which pass together over the columns that begin within one of them. Hits come out as a
-// bit mask over the rows for each column: block by block, columns ascending, whatever the width of the registers.
+// A SweepSet holds boxes in the order (low bound on the axis, position), as a structure of arrays. At its end is padding that
+// hits nothing. A sweep tests each row against the columns that begin within the row on the axis:
+//   self          row i against the columns i + 1, i + 2, ... of the same set
+//   cross         a row against the columns of another set that do not begin before the row
+//   cross_strict  a row against the columns of another set that begin after the row
+// One cross sweep, and one cross_strict sweep with rows and columns exchanged, find each pair of two sets once.
 //
-// Three layers: sweep_rows_scalar is the specification; sweep_rows is its SIMD version, chosen for the processor at run
-// time (sweep_kernel.cpp); the drivers are in scan.cpp. Source: the sweep and prune of the paper's section 2.3.1.
+// Rows are taken in blocks of 8. A block is tested against the columns that begin within any of its rows. Hits are written as
+// one bit mask over the rows for each column: block by block, columns ascending, for any width of the registers.
+//
+// sweep_rows_scalar is the specification. sweep_rows is its SIMD version, chosen for the processor at run time
+// (sweep_kernel.cpp). PairMaker runs whole sweeps for scan.cpp and recursive_sweep.cpp.
+//
+// Source: Lucchesi, Egbert, Harris 2014, section 2.3.1 (sweep and prune).
 #pragma once
 
 #include <array>
@@ -27,20 +31,20 @@ namespace octopair {
 
 class SweepSet {
 public:
-    static constexpr std::size_t padding = 32;  // columns that may be read beyond the end
+    static constexpr std::size_t padding = 32;  ///< number of columns that may be read beyond the end
 
-    /// Takes the entries at the keys' positions, in that order; `axis` is the one that the keys were made for.
+    /// Stores the entries at the keys' positions, in the order of the keys. `axis`: the axis of the keys.
     void assign(std::span<const Entry> entries, std::span<const SortKey> order, unsigned axis);
 
     std::size_t size() const { return size_; }
-    /// Bounds on the sweep's axis (0) and the two others (1, 2).
+    /// Returns the bounds on the sweep's axis (0) or on one of the two other axes (1, 2).
     const float* low(unsigned axis) const { return numbers_.data() + axis * stride_; }
     const float* high(unsigned axis) const { return numbers_.data() + (3 + axis) * stride_; }
     const std::uint32_t* mask() const { return words_.data(); }
     const std::uint32_t* object() const { return words_.data() + stride_; }
-    /// The coordinate that low(k) and high(k) are bounds on.
+    /// Returns the coordinate axis of low(k) and high(k).
     unsigned axis(unsigned k) const { return axes_[k]; }
-    /// The box as it was put in.
+    /// Returns entry `i` in its original form.
     Entry entry(std::size_t i) const;
 
 private:
@@ -51,26 +55,28 @@ private:
     std::array<unsigned, 3> axes_ = {0, 1, 2};
 };
 
-/// Where the numbers of an Entry go, in its order.
+/// Destination array of each 32-bit number of an Entry.
 using EntryArrays = std::array<std::uint32_t*, sizeof(Entry) / sizeof(std::uint32_t)>;
 
-/// Writes the numbers of the entries at the keys' positions to arrays, each aligned to 16 bytes and with room for 3 more.
+/// Writes the numbers of the entries at the keys' positions to separate arrays.
+/// Requires: each array is aligned to 16 bytes and has room for 3 more numbers.
 void split_entries(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays);
 
-/// Rows that are tested together.
+/// Number of rows that are tested together.
 inline constexpr std::size_t block_size = 8;
 
 /// A column and the rows of one block that hit it.
 class HitMask {
 public:
     HitMask() = default;
-    /// `first_row`: of the block, below 2^24; bit k of `bits`: row first_row + k.
+    /// `first_row`: first row of the block, below 2^24. Bit k of `bits`: row first_row + k.
     HitMask(std::uint32_t column, std::size_t first_row, std::uint32_t bits)
         : column_(column), rows_(std::uint32_t(first_row) << block_size | bits) {}
 
     std::uint32_t column() const { return column_; }
     std::uint32_t first_row() const { return rows_ >> block_size; }
     std::uint32_t bits() const { return rows_ & ((1u << block_size) - 1); }
+    /// Clears the rows that are not in `bits`.
     void keep(std::uint32_t bits) { rows_ &= bits | ~((1u << block_size) - 1); }
 
 private:
@@ -78,52 +84,55 @@ private:
     std::uint32_t rows_;
 };
 
-/// Where a sweep stands: the next block of rows, and the next column for it. Rows before `row` are done.
+/// Position at which a sweep continues: the next block of rows, and the next column for this block. Rows before `row` are done.
 struct SweepCursor {
     std::size_t row = 0;
     std::size_t column = 0;
-    std::size_t first_column = 0;  // cross: the first column that does not begin before `row`
-    bool in_row = false;           // `column` is set for `row`
+    std::size_t first_column =
+        0;                ///< cross: first column that does not begin before `row`; cross_strict: that begins after
+    bool in_row = false;  ///< true if `column` is set for `row`
 };
 
 enum class SweepKind : std::uint8_t { self, cross, cross_strict };
 
 struct Sweep {
     const SweepSet& rows;
-    const SweepSet& columns;  ///< self: the same set
+    const SweepSet& columns;  ///< the set of rows if `kind` is `self`
     SweepKind kind;
 };
 
-/// Columns that are tested together, at most.
+/// Maximum number of columns that are tested together.
 inline constexpr std::size_t most_columns = 8;
 
-/// Fills `hits`, with room for at least most_columns, from the cursor on; returns how many masks it wrote. It stops early
-/// when `hits` is full or after a bounded number of tests, with the cursor where it stopped; done when cursor.row reaches
-/// the rows' end.
+/// Continues a sweep at `cursor` and writes hits to `hits`. Returns the number of masks written. Stops early if `hits` is full
+/// or after a bounded number of tests, with `cursor` at the next test. The sweep is done when cursor.row is not below the
+/// number of rows.
+/// Requires: `hits` has room for at least most_columns masks.
 std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
-/// The specification: the same contract, a column at a time.
+/// Specification of sweep_rows(): tests one column at a time.
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
-/// Writes the pairs of hits, in order, as (lower object, higher object - `second_begin`); returns how many. `pairs` must
-/// have room for `most_hits` of each mask.
+/// Writes the pairs of hits, in order, as (lower object, higher object - `second_begin`). Returns the number of pairs.
+/// Requires: `pairs` has room for most_hits pairs of each mask.
 std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
-inline constexpr std::size_t most_hits = block_size;  // of a HitMask
+inline constexpr std::size_t most_hits = block_size;  ///< maximum number of hits of a HitMask
 
-/// How deep a hit of the sweep must be, so that rounding cannot have made it.
+/// Returns depths of overlap, by axis. Rounding cannot have caused a hit of the sweep that is deeper on all axes.
 Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack);
 
-/// Keeps of each mask the hits that are deep() (entry.hpp).
+/// Clears the hits that are not deep() (boxes/entry.hpp).
 void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits);
 
-/// The instruction set that sweep_rows uses here, such as "AVX2".
+/// Returns the instruction set that sweep_rows uses on this machine, such as "AVX2".
 std::string sweep_instruction_set();
-/// For tests: allows only the baseline instruction set (or again all).
+/// For tests: true allows only the baseline instruction set, false allows all.
 void restrict_sweep_to_baseline(bool baseline_only);
 
+/// start_rows() of cross and cross_strict sweeps.
 void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor);
 
-/// Moves `cursor` to the columns of its rows, if it is not there yet. Shared by all versions.
+/// Moves `cursor` to the first column of its rows, unless the cursor is there already. Shared by all versions.
 inline void start_rows(const Sweep& sweep, SweepCursor& cursor) {
     if (cursor.in_row) return;
     if (sweep.kind == SweepKind::self) {

@@ -1,9 +1,9 @@
-// The SIMD version of the sweep, compiled for each instruction set by Highway and chosen at run time.
+// SIMD version of the sweep. Highway compiles it for each instruction set; one is chosen at run time.
 //
-// A register of columns is tested against the rows of a block one after the other, so that the number of columns that a
-// row needs, which differs from row to row, is mispredicted once for 8 rows at most. Hits are queued as masks without a
-// branch on whether there are any: dense scenes mispredict that branch, and draining the queue apart from the sweep was
-// 1.5 times faster there.
+// A register of columns is tested against the rows of a block, one row after another. The number of columns differs from row
+// to row, and so is mispredicted; a block of 8 rows has at most one such misprediction.
+// Hits are queued as masks, without a branch on whether there are any. Dense scenes mispredict that branch: writing the pairs
+// separately from the sweep was 1.5 times faster there.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "octree/sweep/sweep_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -33,8 +33,8 @@ std::uint32_t bits_of(D d, M mask) {
     return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
 }
 
-/// For each set of lanes their numbers, ascending, and how many they are. (Highway's own table for this is copied on
-/// each use by g++ 12.)
+/// For each set of lanes (as bits): the numbers of its lanes, ascending, and their count. Replaces Highway's own table, which
+/// g++ 12 copies on each use.
 struct LaneTable {
     static constexpr std::size_t lanes = 8;
     std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};
@@ -50,7 +50,7 @@ struct LaneTable {
 };
 constexpr LaneTable lanes_in;
 
-/// The bounds of a set from one box on: on the sweep's axis, and on the two others.
+/// Pointers to the bounds of a set, from box `first` on: on the sweep's axis (0) and on the two other axes (1, 2).
 struct Bounds {
     Bounds(const SweepSet& set, std::size_t first)
         : low0(set.low(0) + first),
@@ -62,7 +62,7 @@ struct Bounds {
     const float *low0, *low1, *low2, *high0, *high1, *high2;
 };
 
-/// The columns in a register.
+/// Bounds of the columns in a register.
 template <typename D>
 struct Columns {
     using V = hn::Vec<D>;
@@ -75,7 +75,7 @@ struct Columns {
     V low0, low1, low2, high1, high2;
 };
 
-/// Sets bit `row` of each column that overlaps that row of a block and begins as the kind of sweep asks.
+/// Sets bit `row` of each column that overlaps this row of a block and begins where the kind of sweep requires.
 template <SweepKind kind, typename D, typename V>
 HWY_INLINE V test_row(const Bounds& rows, std::size_t row, const Columns<D>& columns, V bits) {
     const D d;
@@ -91,20 +91,20 @@ HWY_INLINE V test_row(const Bounds& rows, std::size_t row, const Columns<D>& col
     return hn::Or(bits, hn::And(hn::BitCast(words, hit), hn::Set(words, 1u << row)));
 }
 
-/// Writes a mask for each column that was hit; returns how many.
+/// Writes a mask for each column with a hit. Returns the number of masks.
 template <typename D, typename V>
 HWY_INLINE std::size_t queue_hits(D d, V columns, V rows, HitMask* hits) {
     const hn::Rebind<std::uint8_t, D> bytes;
     const auto hit = hn::Ne(hn::And(rows, hn::Set(d, (1u << block_size) - 1)), hn::Zero(d));
     const std::uint32_t set = bits_of(d, hit);
     const auto lanes = hn::IndicesFromVec(d, hn::PromoteTo(d, hn::LoadU(bytes, lanes_in.of[set].data())));
-    // All lanes are written, and what lies beyond the hits is written over by the next ones.
+    // All lanes are stored. The next store overwrites the lanes beyond the hits.
     hn::StoreInterleaved2(hn::TableLookupLanes(columns, lanes), hn::TableLookupLanes(rows, lanes), d,
                           reinterpret_cast<std::uint32_t*>(hits));
     return lanes_in.count[set];
 }
 
-/// Clears the rows that share a bit of their mask with the column; returns how many masks are left.
+/// Clears the rows that share a bit of their mask with the column, and removes empty masks. Returns the number of masks left.
 std::size_t drop_shared(const Sweep& sweep, std::span<HitMask> hits) {
     const hn::CappedTag<std::uint32_t, block_size> d;
     HitMask* at = hits.data();
@@ -122,11 +122,11 @@ std::size_t drop_shared(const Sweep& sweep, std::span<HitMask> hits) {
     return std::size_t(at - hits.data());
 }
 
-/// How far a block of rows reaches on the sweep's axis.
+/// Maximum high ends of a block of rows on the sweep's axis.
 struct Reach {
-    float most;  ///< all rows but the far ones
-    float all;
-    std::uint32_t far;  ///< rows, as bits, that reach more than twice as far as the mean: at most 3 of 8
+    float most;         ///< maximum over the rows that are not far
+    float all;          ///< maximum over all rows
+    std::uint32_t far;  ///< bit mask of the rows that reach more than twice as far as the mean: at most 3 of 8
 };
 
 template <typename D>
@@ -155,7 +155,7 @@ HWY_INLINE Reach reach_of(D d, const Bounds& rows) {
     return reach;
 }
 
-/// Of a column of the block itself, the rows before it.
+/// For column k of the block itself: bit mask of the rows before the column.
 constexpr std::array<std::uint32_t, block_size> rows_before = {0x00, 0x01, 0x03, 0x07, 0x0F, 0x1F, 0x3F, 0x7F};
 
 template <SweepKind kind>
@@ -174,7 +174,7 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
         const std::uint32_t row = std::uint32_t(cursor.row);
         const Bounds rows(sweep.rows, row);
         const Reach reach = next;
-        next = reach_of(d, Bounds(sweep.rows, row + block_size));  // early: it takes long
+        next = reach_of(d, Bounds(sweep.rows, row + block_size));  // started early because of its latency
         const auto block = hn::Set(words, row << block_size);
         const auto queue = [&](auto bits, std::size_t column) HWY_ATTR {
             if (kind == SweepKind::self && column < row + block_size) {
@@ -184,7 +184,7 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
                                  hn::Or(bits, block), hit_at);
         };
         std::size_t column = cursor.column;
-        // The padding's NaN ends the columns of a set.
+        // The NaN of the padding ends both loops at the end of the set.
         for (; low0[column] <= reach.most && hit_at <= hits_end && tests_left > 0; column += hn::Lanes(d)) {
             const Columns columns(d, Bounds(sweep.columns, column));
             auto bits = hn::Zero(words);
@@ -199,7 +199,7 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
                 bits = test_row<kind>(rows, unsigned(std::countr_zero(far)), columns, bits);
             }
             --tests_left;
-            if (!hn::AllTrue(words, hn::Eq(bits, hn::Zero(words)))) queue(bits, column);  // seldom
+            if (!hn::AllTrue(words, hn::Eq(bits, hn::Zero(words)))) queue(bits, column);  // rare
         }
         if (low0[column] <= reach.all) {
             cursor.column = column;
@@ -234,7 +234,7 @@ std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits
         const std::uint32_t* row = rows + hit.first_row();
         const std::size_t lane_count = hn::Lanes(d);
         for (std::uint32_t bits = hit.bits(); bits != 0; bits >>= lane_count, row += lane_count) {
-            // All lanes are written, and what lies beyond the hits is written over by the next ones.
+            // All lanes are stored. The next store overwrites the lanes beyond the hits.
             const std::uint32_t set = bits & ((1u << lane_count) - 1);
             const auto lanes = hn::PromoteTo(d, hn::LoadU(bytes, lanes_in.of[set].data()));
             const auto hit_rows = hn::TableLookupLanes(hn::LoadU(d, row), hn::IndicesFromVec(d, lanes));
@@ -246,7 +246,7 @@ std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits
     return std::size_t(at - begin) / 2;
 }
 
-/// The largest of the numbers, without their sign.
+/// Returns the largest absolute value.
 float largest_of(std::span<const float> numbers) {
     const hn::CappedTag<float, block_size> d;
     auto most = hn::Zero(d);
@@ -259,7 +259,7 @@ float largest_of(std::span<const float> numbers) {
     return largest;
 }
 
-/// Of a set's bounds, on each axis of the sweep.
+/// Returns the largest absolute bound of a set on each axis of the sweep.
 Depths largest_bounds_simd(const SweepSet& set) {
     Depths largest;
     for (unsigned k = 0; k < 3; ++k) {
@@ -300,7 +300,7 @@ void split_entries_simd(std::span<const Entry> entries, std::span<const SortKey>
 
 #else
 
-/// Four registers of four numbers, turned, to four arrays.
+/// Transposes four registers of four numbers, and stores them to four arrays.
 template <typename D, typename V>
 HWY_INLINE void store_turned(D d, const V (&rows)[4], std::uint32_t* const* arrays, std::size_t at) {
     const auto lower02 = hn::InterleaveLower(d, rows[0], rows[2]), lower13 = hn::InterleaveLower(d, rows[1], rows[3]);

@@ -12,7 +12,7 @@ namespace octopair {
 
 namespace {
 
-/// The boxes of a list that are looked at to measure it.
+/// Returns the sample of a list from which its costs are estimated.
 Sample measured(const EntryList& list) {
     const Tuning::Sweep& limits = tuning().sweep;
     return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, limits.measured_least, limits.measured_most)};
@@ -73,8 +73,8 @@ void SweepOrder::make_keys(const EntryList& list, unsigned axis) {
     for (std::size_t i = 0; i < list.size(); ++i) keys_[i] = sort_key(list[i].min[axis], list.position(i));
 }
 
-/// Bucket sort: places by a prefix sum over buckets, then an insertion sort, which finds almost all in place; where
-/// some bucket is crowded, sorts by comparison.
+/// Bucket sort: scatters keys by a prefix sum over buckets. The insertion sort that follows finds almost all keys in place.
+/// If a bucket is crowded, sorts by comparison instead.
 void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
     make_keys(list, axis);
     if (list.size() <= tuning().sweep.few) {
@@ -131,7 +131,7 @@ std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, co
         }
         if (r == 3 && hits <= 4) {
             count_path(Path::hits_few);
-            return 0;  // no more than the rows themselves: certainly few
+            return 0;  // at most one hit for each row so far: few in any case
         }
     }
     return hits * row_sample.stride() * column_sample.stride();

@@ -1,7 +1,8 @@
-// Which way to sweep: what a sweep along an axis would cost, and the order of boxes for it.
+// SweepOrder: estimates the cost of a sweep along an axis, and sorts boxes for a sweep.
 //
-// All of these are functions of the boxes alone (integer sums, total orders), so the choice, and with it the order of
-// the pairs, is the same for any number of threads.
+// Invariant
+//   All results are functions of the boxes alone (integer sums, total orders). So the choice of the axis, and with it the
+//   order of the pairs, is the same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace octopair {
 
-/// Entries by their positions, or all of them. Borrowed.
+/// The entries at some positions of a span, or all entries of the span. Borrows both spans.
 struct EntryList {
     std::span<const Entry> entries;
     std::span<const std::uint32_t> positions = {};
@@ -28,19 +29,20 @@ struct EntryList {
     const Entry& operator[](std::size_t i) const { return entries[position(i)]; }
 };
 
-/// Measures and sorts sets; keeps its memory from call to call. One thread at a time. Throws Error{cancelled} between
-/// its passes over a set.
+/// Measures and sorts sets, and keeps its memory between calls.
+/// Throws: Error{cancelled}; checks for a stop request between its loops over a set.
+/// Thread safety: one thread at a time.
 class SweepOrder {
 public:
     explicit SweepOrder(std::stop_token stop) : stop_(std::move(stop)) {}
 
-    /// About how many columns a sweep along `axis` tests for all rows.
+    /// Returns an estimate of the number of columns that a sweep along `axis` tests, summed over all rows.
     std::uint64_t tests(const EntryList& rows, const EntryList& columns, unsigned axis);
 
-    /// Lays the list out in the order (min on the axis, position). For sets that stay in the cache.
+    /// Lays the list out in the order (min on the axis, position). For sets that fit into the cache.
     void lay_out(const EntryList& list, unsigned axis, SweepSet& set);
 
-    /// The list in that order, whatever its size. The span is valid until the next call.
+    /// Returns the keys of a list of any size in the order (min on the axis, position). The span is valid until the next call.
     std::span<const SortKey> sort(const EntryList& list, unsigned axis, Executor& executor);
 
 private:
@@ -50,7 +52,7 @@ private:
         std::uint32_t last = 0;
         std::uint32_t of(float value) const {
             const float scaled = (value - begin) * scale;
-            const float below = scaled > 0.0f ? scaled : 0.0f;  // also where 0 * infinity made a NaN
+            const float below = scaled > 0.0f ? scaled : 0.0f;  // 0 also where 0 * infinity gave NaN
             return below < float(last) ? std::uint32_t(below) : last;
         }
     };
@@ -61,15 +63,15 @@ private:
     std::stop_token stop_;
     std::vector<float> lows_;
     std::vector<std::uint32_t> counts_;
-    std::vector<std::uint32_t> buckets_;  // of each box
+    std::vector<std::uint32_t> buckets_;  // bucket of each box
     Buffer<SortKey> keys_, scratch_;
 };
 
-/// About the columns that a sweep of laid out sets tests for all rows, from some rows at fixed places.
+/// Returns an estimate of the number of columns that a sweep tests, summed over all rows, from rows at fixed positions.
 std::uint64_t sampled_tests(const Sweep& sweep);
 
-/// About how many pairs of rows and columns overlap, from a few rows at fixed places.
-/// Throws Error{cancelled}.
+/// Returns an estimate of the number of rows and columns that overlap, from a few rows at fixed positions.
+/// Throws: Error{cancelled}.
 std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop);
 
 }  // namespace octopair

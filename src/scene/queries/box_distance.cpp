@@ -18,29 +18,29 @@ Gaps gaps_between(const Box3d& a, const Box3d& b) {
     return {gap_between(a, b, 0), gap_between(a, b, 1), gap_between(a, b, 2)};
 }
 
-/// The root of the sum of squares, times `factor`, where squares may be beyond float64's range.
+/// Returns the square root of the sum of squares, times `factor`. The squares may be beyond the range of float64.
 double scaled_length(const std::array<double, 3>& gaps, double factor) {
     const double largest = std::max({gaps[0], gaps[1], gaps[2]});
     if (std::isinf(largest)) return largest;
     const double scale = largest > 1 ? 0x1p-600 : 0x1p600, back = largest > 1 ? 0x1p600 : 0x1p-600;
     double sum = 0;
     for (const double gap : gaps) sum += (gap * scale) * (gap * scale);
-    // Rounded last where it is subnormal, so that a smaller factor never makes more.
+    // A subnormal result is rounded in the last multiplication, so that a smaller factor never gives a larger result.
     return std::sqrt(sum) * factor * back;
 }
 
-/// An unevaluated sum: `tail` is what rounding took from `head`.
+/// An unevaluated sum of two float64. `tail` is the rounding error of `head`.
 struct Parts {
     double head, tail;
 };
 
-/// Knuth's sum of two, without error.
+/// Returns the exact sum of two numbers (Knuth's TwoSum).
 Parts add(double a, double b) {
     const double sum = a + b, b_part = sum - a;
     return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-/// Dekker's square, without error within the range that careful_distance() has.
+/// Returns the exact square of a number (Dekker). Requires: `a` is within the range that careful_distance() requires.
 Parts square(double a) {
     const double spread = 134217729 * a;  // 2^27 + 1
     const double high = spread - (spread - a), low = a - high;
@@ -52,8 +52,8 @@ struct Bounds {
     double low, high;
 };
 
-/// Bounds on the rounded distance, which are nearly always equal. Twice the digits of float64 are kept: the sum and its root
-/// err by less than 2^-100 of themselves. Requires: the largest gap is in 2^-400 .. 2^500.
+/// Returns bounds on the rounded distance, which are nearly always equal. Computes with twice the digits of float64: the
+/// relative errors of the sum and of its root are below 2^-100. Requires: the largest gap is in [2^-400, 2^500].
 Bounds careful_distance(const Gaps& gaps) {
     constexpr double error = 0x1p-90;
     double sum = 0, tail = 0;
@@ -71,7 +71,8 @@ Bounds careful_distance(const Gaps& gaps) {
     return {root + (correction - error * root), root + (correction + error * root)};
 }
 
-/// Goes from a guess to the float64 nearest to the root of the sum of squares. The bits of float64 >= 0 count upwards.
+/// Returns the float64 nearest to the square root of the sum of squares, searched from `guess` on. Non-negative float64
+/// numbers have the order of their bits as integers.
 double nearest_root(const Gaps& gaps, double guess) {
     constexpr std::uint64_t infinity = 0x7FF0'0000'0000'0000;
     auto bits = std::bit_cast<std::uint64_t>(guess);
@@ -106,7 +107,7 @@ double distance(const Box3d& a, const Box3d& b) {
     std::array<double, 3> rounded;
     for (std::size_t axis = 0; axis < 3; ++axis) rounded[axis] = gaps[axis].high - gaps[axis].low;
     const double largest = std::max({rounded[0], rounded[1], rounded[2]});
-    // On one axis the difference, rounded once, is the distance.
+    // If there is a gap on one axis only, its rounded difference is the rounded distance.
     if (std::count(rounded.begin(), rounded.end(), 0.0) >= 2) return largest;
     if (!(largest >= 0x1p-400 && largest <= 0x1p500)) return nearest_root(gaps, scaled_length(rounded, 1));
     const Bounds bounds = careful_distance(gaps);

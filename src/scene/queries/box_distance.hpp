@@ -1,10 +1,10 @@
-// Distances between boxes, and between spheres and boxes: compared without error, and rounded once where they are numbers.
+// Distances between boxes, and between spheres and boxes. Comparisons are exact. A returned distance is rounded once.
 //
-//   - All numbers are the caller's float64, each taken for the real number that it is: differences are not rounded, and
-//     nothing overflows or underflows.
-//   - What is compared is first computed in float64. An error bound tells whether that decides; if not, integers do
+// Invariants
+//   - Comparisons treat each float64 as an exact real number: differences are not rounded, nothing overflows or underflows.
+//   - A comparison is computed in float64 first, with an error bound. If that cannot decide, integers of sufficient width do
 //     (geometry/square_sum.hpp).
-//   - distance() is monotone: what is nearer by compare_distances() has no larger distance().
+//   - distance() is monotone: if compare_distances() says that `a` is nearer than `b`, distance() of `a` is not larger.
 //
 // Requires: rounding to nearest, with subnormal numbers.
 #pragma once
@@ -17,15 +17,15 @@
 
 namespace octopair {
 
-/// A squared distance in float64. Where within() holds it errs by less than `error` of itself: gaps, squares and sums err
-/// by 2^-53 of themselves each, and what underflows is far below.
+/// A squared distance in float64. If within() holds, its relative error is less than `error`: gaps, squares and sums have a
+/// relative error of 2^-53 each, and terms that underflow are far below.
 struct RoundedSquare {
     static constexpr double error = 0x1p-50;
     double value = 0;
 
     static bool within(double value) { return value >= 0x1p-900 && value <= 0x1p1000; }
     void add(double gap) { value += gap * gap; }
-    /// Returns -1 or 1: how the numbers compare that were rounded; 0: float64 does not decide that.
+    /// Compares the exact squared distances: returns -1 or 1; 0 if float64 cannot decide.
     int compare(const RoundedSquare& other) const {
         const double sum = value + other.value, difference = value - other.value;
         if (!within(sum)) return 0;
@@ -33,7 +33,7 @@ struct RoundedSquare {
     }
 };
 
-/// Returns the gap between two boxes on an axis, rounded; 0 where they overlap. Infinite where it is beyond float64.
+/// Returns the gap between two boxes on an axis, rounded to float64: 0 if they overlap, infinity beyond float64.
 inline double rounded_gap(const Box3d& a, const Box3d& b, int axis) {
     return std::max({0.0, a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]});
 }
@@ -60,18 +60,16 @@ inline bool overlap(const Sphere& sphere, const Box3d& box) {
     return sign != 0 ? sign < 0 : exactly_overlap(sphere, box);
 }
 
-/// Returns -1, 0 or 1: how the distance between `from` and `a` compares with that between `from` and `b`.
+/// Compares the distances from `from` to `a` and to `b`. Returns -1 if `a` is nearer, 0 if they are equal, 1 if `b` is nearer.
 inline int compare_distances(const Box3d& from, const Box3d& a, const Box3d& b) {
     const int sign = rounded_square(from, a).compare(rounded_square(from, b));
     return sign != 0 ? sign : exactly_compare_distances(from, a, b);
 }
 
-/// Returns the float64 nearest to the distance between two boxes (of two, the one whose last bit is 0); infinity where the
-/// distance is beyond float64.
+/// Returns the distance between two boxes, rounded to the nearest float64, ties to even; infinity if it is beyond float64.
 double distance(const Box3d& a, const Box3d& b);
 
-/// Returns at most distance(), and little less. A box may be infinite; then it is also at most the distance() to every
-/// box inside of it.
+/// Returns a tight lower bound of distance(). A box may be infinite; the bound then holds for every box inside it as well.
 inline double distance_at_least(const Box3d& a, const Box3d& b) {
     const double square = rounded_square(a, b).value;
     return RoundedSquare::within(square) ? std::sqrt(square) * (1 - 2 * RoundedSquare::error)

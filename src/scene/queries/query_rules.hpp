@@ -1,4 +1,4 @@
-// The rules of queries.hpp for one box: overlaps and ray hits. Rules about distances are in box_distance.hpp.
+// Tests of one box against one query: overlap and ray hit, by the rules of queries.hpp. Distances are in box_distance.hpp.
 #pragma once
 
 #include <algorithm>
@@ -32,14 +32,14 @@ inline bool overlap(const Box3d& a, const Box3d& b) {
     return all;
 }
 
-/// (bound - origin) / direction, also where the difference is beyond float64.
+/// Returns (bound - origin) / direction, even if the difference is beyond float64.
 inline double along_axis(double bound, double origin, double direction) {
     const double way = bound - origin;
     return std::isinf(way) && std::isfinite(bound) ? (bound / 2 - origin / 2) / (direction / 2) : way / direction;
 }
 
-/// How far along a ray a box begins. Where the ray enters and leaves it on an axis is known to two roundings, by which
-/// its way through is made longer: see Ize, Robust BVH Ray Traversal (JCGT 2, 2013).
+/// Returns the ray parameter at which the ray enters the box; nothing if it misses. The slab bounds of each axis have two
+/// rounding errors, so the interval is widened by these: see Ize, Robust BVH Ray Traversal (JCGT 2, 2013).
 inline std::optional<double> hit(const Ray& ray, const Box3d& box) {
     constexpr double roundings = 2 * std::numeric_limits<double>::epsilon();
     constexpr double underflow = std::numeric_limits<double>::min();

@@ -12,32 +12,33 @@ namespace octopair {
 
 namespace {
 
-bool wanted(const SceneQueries::Scene& scene, std::uint32_t index) {
+/// Returns whether the object is alive and in one of the groups of the query.
+bool is_wanted(const SceneQueries::View& scene, std::uint32_t index) {
     return scene.table.alive(index) && (scene.table.traits(index).groups & scene.groups) != 0;
 }
 
-/// Whether what the octree says of an object still holds.
-bool unchanged(const SceneQueries::Scene& scene, std::uint32_t index) {
+/// Returns whether the octree holds the current box of the object.
+bool is_unchanged(const SceneQueries::View& scene, std::uint32_t index) {
     return scene.log == nullptr || scene.table.mark(index) == ObjectTable::none;
 }
 
-/// Calls visit(index) for each object that has changed since the octree was brought up to date.
+/// Calls visit(index) for each object that is wanted and has changed since the octree was brought up to date.
 template <typename Visit>
-void for_each_changed(const SceneQueries::Scene& scene, Visit&& visit) {
+void for_each_changed(const SceneQueries::View& scene, Visit&& visit) {
     if (scene.log == nullptr) return;
-    for (const PreviousState& former : scene.log->formers()) {
-        if (wanted(scene, former.index)) visit(former.index);
+    for (const PreviousState& former : scene.log->previous_states()) {
+        if (is_wanted(scene, former.index)) visit(former.index);
     }
 }
 
-/// What looks for the nearest: regions are the scene's own here, not the octree's.
+/// Base of the nearest-first searches. Maps regions of the octree to the scene's coordinates.
 class SceneProbe : public NearestVisitor {
 public:
-    explicit SceneProbe(const SceneQueries::Scene& scene) : scene_(scene) {}
+    explicit SceneProbe(const SceneQueries::View& scene) : scene_(scene) {}
 
     double at_least(const Box3d& region) const final {
-        // Entries are boxes minus the origin, rounded, and cut off where float32 ends; the margin and paddings have but
-        // made them larger.
+        // Entries are boxes minus the origin, rounded, and clamped to the range of float32. Margin and paddings only
+        // enlarge them.
         constexpr double roundings = 0x1p-50, end = double(std::numeric_limits<float>::max()) * (1 - 0x1p-20);
         Box3d moved;
         for (int axis = 0; axis < 3; ++axis) {
@@ -49,7 +50,7 @@ public:
         return from(moved);
     }
     void take(std::uint32_t index) final {
-        if (unchanged(scene_, index) && wanted(scene_, index)) try_object(index);
+        if (is_unchanged(scene_, index) && is_wanted(scene_, index)) try_object(index);
     }
     void search() {
         for_each_changed(scene_, [&](std::uint32_t index) { try_object(index); });
@@ -64,13 +65,13 @@ private:
     virtual double from(const Box3d& region) const = 0;
     virtual void try_object(std::uint32_t index) = 0;
 
-    const SceneQueries::Scene& scene_;
+    const SceneQueries::View& scene_;
 };
 
-/// What is not hit is infinitely far along, and beyond each limit here.
+/// Base of ray queries. A region that the ray misses has an infinite distance, which is beyond each limit here.
 class RayProbe : public SceneProbe {
 public:
-    RayProbe(const SceneQueries::Scene& scene, const Ray& ray) : SceneProbe(scene), ray_(ray) {}
+    RayProbe(const SceneQueries::View& scene, const Ray& ray) : SceneProbe(scene), ray_(ray) {}
 
 protected:
     const Ray& ray() const { return ray_; }
@@ -79,7 +80,7 @@ private:
     double from(const Box3d& region) const final {
         const auto along = hit(ray_, region);
         if (!along) return infinity;
-        // A box in the region may begin a rounding earlier along the ray than the region does.
+        // Rounding may put the entry into a box in the region slightly before the entry into the region.
         constexpr double underflow = std::numeric_limits<double>::min();
         constexpr double roundings = 4 * std::numeric_limits<double>::epsilon();
         return std::min(*along * (1 - roundings) - underflow, std::numeric_limits<double>::max());
@@ -105,7 +106,7 @@ private:
 
 class AllHits final : public RayProbe {
 public:
-    AllHits(const SceneQueries::Scene& scene, const Ray& ray, std::vector<RayHit>& hits)
+    AllHits(const SceneQueries::View& scene, const Ray& ray, std::vector<RayHit>& hits)
         : RayProbe(scene, ray), hits_(hits) {}
 
 private:
@@ -117,15 +118,15 @@ private:
     std::vector<RayHit>& hits_;
 };
 
-/// Keeps the nearest in order at the end of a list.
+/// Appends the nearest objects, in order, to a list.
 class Nearest final : public SceneProbe {
 public:
-    Nearest(const SceneQueries::Scene& scene, const Box3d& place, std::size_t count, std::vector<Neighbor>& list)
+    Nearest(const SceneQueries::View& scene, const Box3d& place, std::size_t count, std::vector<Neighbor>& list)
         : SceneProbe(scene), place_(place), count_(count), list_(list), begin_(list.size()) {}
 
 private:
-    // Rounded distances are in the order of the exact ones. So what is farther than the last of the list, rounded, is
-    // farther; what is as far, rounded, may be nearer and is tried.
+    // Rounded distances have the order of the exact ones. So an object with a larger rounded distance than the last one in
+    // the list is farther. An object with an equal rounded distance may be nearer, and is compared exactly.
     double from(const Box3d& region) const override { return distance_at_least(place_, region); }
     double limit() const override { return is_full() ? list_.back().distance : infinity; }
     void try_object(std::uint32_t index) override {
@@ -157,7 +158,8 @@ private:
 
 }  // namespace
 
-/// Calls find(query, worker), which appends to `collected`, for each query, and puts the answers in order.
+/// Calls find(query, worker) for each query in parallel, and joins the answers in the order of the queries. `find` appends
+/// its answers to `collected`.
 template <typename Answer, typename Find>
 void SceneQueries::answer(std::size_t queries, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
                           Find&& find) {
@@ -183,9 +185,9 @@ void SceneQueries::answer(std::size_t queries, std::vector<Answer> Worker::*coll
     }
 }
 
-/// `around`: a box that holds the query.
+/// Finds the objects that overlap `query`. Requires: the box `around` contains the query.
 template <typename Query>
-void SceneQueries::find_overlaps(const Scene& scene, const Box3d& around, const Query& query, Worker& worker) const {
+void SceneQueries::find_overlaps(const View& scene, const Box3d& around, const Query& query, Worker& worker) const {
     const std::size_t begin = worker.indices.size();
     const auto try_object = [&](std::uint32_t index) {
         if (overlap(query, scene.table.box(index))) worker.indices.push_back(index);
@@ -193,19 +195,19 @@ void SceneQueries::find_overlaps(const Scene& scene, const Box3d& around, const 
     worker.found.clear();
     scene.octree.search(scene.octree.space().cells(scene.rounding.entry(around, 0)), worker.found);
     for (const std::uint32_t index : worker.found) {
-        if (unchanged(scene, index) && wanted(scene, index)) try_object(index);
+        if (is_unchanged(scene, index) && is_wanted(scene, index)) try_object(index);
     }
     for_each_changed(scene, try_object);
     std::sort(worker.indices.begin() + std::ptrdiff_t(begin), worker.indices.end());
 }
 
-void SceneQueries::overlaps(const Scene& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers) {
+void SceneQueries::overlaps(const View& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers) {
     answer(boxes.size(), &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, boxes[i], boxes[i], worker); });
 }
 
-void SceneQueries::overlaps(const Scene& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
-    // Above what rounding takes from the box around a sphere.
+void SceneQueries::overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
+    // More than the relative rounding error of the box around a sphere.
     constexpr double roundings = 0x1p-48;
     constexpr double most = std::numeric_limits<double>::max();
     answer(spheres.size(), &Worker::indices, answers, [&](std::size_t i, Worker& worker) {
@@ -220,7 +222,7 @@ void SceneQueries::overlaps(const Scene& scene, std::span<const Sphere> spheres,
     });
 }
 
-void SceneQueries::first_hits(const Scene& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
+void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         FirstHit first(scene, rays[i]);
         first.search();
@@ -228,7 +230,7 @@ void SceneQueries::first_hits(const Scene& scene, std::span<const Ray> rays, Ans
     });
 }
 
-void SceneQueries::all_hits(const Scene& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
+void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         const auto begin = std::ptrdiff_t(worker.hits.size());
         AllHits(scene, rays[i], worker.hits).search();
@@ -239,7 +241,7 @@ void SceneQueries::all_hits(const Scene& scene, std::span<const Ray> rays, Answe
     });
 }
 
-void SceneQueries::nearest(const Scene& scene, std::span<const Box3d> places, std::size_t count,
+void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, std::size_t count,
                            Answers<Neighbor>& answers) {
     answer(places.size(), &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
         if (count > 0) Nearest(scene, places[i], count, worker.neighbors).search();

@@ -1,7 +1,8 @@
-// SceneQueries: answers of a scene's octree to queries (queries.hpp), many at once.
+// SceneQueries: answers many queries (queries.hpp) at once with a scene's octree.
 //
-// The octree says which objects may be an answer; whether they are is decided on the table. Objects that have changed
-// since the octree was brought up to date are not looked for in it, but each of them in turn.
+// Invariants
+//   The octree yields candidates. The boxes in the object table decide.
+//   Objects that changed after the octree was brought up to date are ignored in it. Each query tests them one by one.
 #pragma once
 
 #include <cstdint>
@@ -19,31 +20,32 @@ namespace octopair {
 
 class SceneQueries {
 public:
-    struct Scene {
+    /// The parts of a scene that queries read.
+    struct View {
         const ObjectTable& table;
         const MutableOctree& octree;
-        const OutwardRounding& rounding;  ///< of the boxes in the octree
-        const ChangeLog* log;             ///< of what has changed since; null if nothing has
-        std::uint32_t groups;             ///< an answer is in one of them
+        const OutwardRounding& rounding;  ///< rounding of the octree's entries
+        const ChangeLog* log;             ///< changes since the octree was brought up to date; null: none
+        std::uint32_t groups;             ///< bit mask: an object is an answer only if it is in one of these groups
     };
 
     explicit SceneQueries(Team& team) : team_(team), workers_(team.threads()) {}
 
-    void overlaps(const Scene& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers);
-    void overlaps(const Scene& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers);
-    void first_hits(const Scene& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
-    void all_hits(const Scene& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
-    void nearest(const Scene& scene, std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers);
+    void overlaps(const View& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers);
+    void overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers);
+    void first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
+    void all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
+    void nearest(const View& scene, std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers);
 
 private:
-    /// A worker's own.
+    /// Buffers of one thread.
     struct Worker {
         std::vector<std::uint32_t> found;
         std::vector<std::uint32_t> indices;
         std::vector<RayHit> hits;
         std::vector<Neighbor> neighbors;
     };
-    /// Where the answers to a query are.
+    /// Location of the answers to one query: a range in a thread's buffer.
     struct Part {
         unsigned worker;
         std::size_t begin, end;
@@ -52,7 +54,7 @@ private:
     template <typename Answer, typename Find>
     void answer(std::size_t queries, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
     template <typename Query>
-    void find_overlaps(const Scene& scene, const Box3d& around, const Query& query, Worker& worker) const;
+    void find_overlaps(const View& scene, const Box3d& around, const Query& query, Worker& worker) const;
 
     Team& team_;
     std::vector<Worker> workers_;

@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-/// Of the arrays of a call. Throws Error{resource_limit} for one that a record has no number for.
+/// Returns the length of an array as records store it. Throws: Error{resource_limit} if it is greater than 2^32 - 1.
 std::uint32_t count_of(std::uint64_t size) {
     if (size <= std::numeric_limits<std::uint32_t>::max()) return std::uint32_t(size);
     throw Error(ErrorCode::resource_limit, "a call of " + std::to_string(size) + " objects cannot be recorded");
@@ -21,7 +21,7 @@ Bytes bytes_of_boxes(const Boxes& boxes) {
 
 }  // namespace
 
-RecordFrame frame_of(RecordKind kind, std::initializer_list<Bytes> pieces) {
+RecordEnvelope envelope_of(RecordKind kind, std::initializer_list<Bytes> pieces) {
     RecordHead head = {kind, 0, 0};
     for (const Bytes piece : pieces) head.length += piece.size();
     head.check = head.right_check();

@@ -1,4 +1,4 @@
-// CallEncoder: the calls of a scene as records (recording.hpp), wherever these go.
+// CallEncoder: encodes the calls of a scene as records (recording.hpp). Derived classes store or send the records.
 #pragma once
 
 #include <initializer_list>
@@ -9,22 +9,22 @@
 
 namespace octopair {
 
-/// What stands around the payload of a record.
-struct RecordFrame {
+/// The parts of a record before and after its payload.
+struct RecordEnvelope {
     RecordHead head;
     std::uint64_t checksum;
 };
 
-/// `pieces`: of the payload.
-RecordFrame frame_of(RecordKind kind, std::initializer_list<Bytes> pieces);
+/// Returns the envelope of a record. Its payload is the concatenation of `pieces`.
+RecordEnvelope envelope_of(RecordKind kind, std::initializer_list<Bytes> pieces);
 
 class CallEncoder {
 public:
     virtual ~CallEncoder() = default;
 
-    /// All throw what append() throws, and Error{resource_limit} for more objects than a record can have.
+    /// All calls throw: Error{resource_limit} for more than 2^32 - 1 objects; everything that append() throws.
     virtual void add(const Objects& objects, std::span<const Traits> traits);
-    /// `kind`: move or sweep.
+    /// Requires: `kind` is move or sweep.
     virtual void move(RecordKind kind, std::span<const ObjectId> ids, const Boxes& boxes);
     virtual void remove(std::span<const ObjectId> ids);
     virtual void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
@@ -34,13 +34,13 @@ protected:
     CallEncoder(const CallEncoder&) = default;
     CallEncoder& operator=(const CallEncoder&) = default;
 
-    /// One record more.
+    /// Appends a record. Its payload is the concatenation of `pieces`.
     virtual void append(RecordKind kind, std::initializer_list<Bytes> pieces) = 0;
 
 private:
     Bytes packed(std::span<const Traits> traits);
 
-    std::vector<RecordedTraits> traits_;  // of a call
+    std::vector<RecordedTraits> traits_;  // buffer of packed()
 };
 
 }  // namespace octopair

@@ -19,7 +19,7 @@ constexpr std::size_t buffer_bytes = std::size_t(256) << 10;
 }  // namespace
 
 Recorder::Recorder(const SceneOptions& options) : path_(options.recording), buffer_(buffer_bytes) {
-    // O_NONBLOCK: opening a pipe that nobody reads must not wait; it means nothing for a regular file.
+    // O_NONBLOCK: opening a pipe without a reader fails instead of waiting. It has no effect on a regular file.
     descriptor_ = Descriptor(::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC | O_NONBLOCK, 0666));
     if (!descriptor_.open()) fail_io(path_, "cannot create", errno);
     keep(bytes_of(recording_head(options)));
@@ -30,7 +30,7 @@ Recorder::~Recorder() {
     try {
         flush();
     } catch (const std::exception&) {
-        // The records before are whole; there is nobody to tell.
+        // A destructor cannot report the error. The records already in the file are complete.
     }
 }
 
@@ -39,7 +39,7 @@ void Recorder::begin_step() {
     try {
         flush();
     } catch (...) {
-        used_ -= record_overhead;  // this step is not to be
+        used_ -= record_overhead;  // removes the record of this step, which fails
         throw;
     }
 }
@@ -47,15 +47,15 @@ void Recorder::begin_step() {
 void Recorder::end_step(const StepResult& result) noexcept {
     try {
         const RecordedResult recorded = recorded_result(result);
-        append(RecordKind::result, {bytes_of(recorded)});  // for which begin_step() left room
+        append(RecordKind::result, {bytes_of(recorded)});  // fits: begin_step() has emptied the buffer
         flush();
     } catch (const std::exception&) {
-        // It stays in the buffer, and the next call says why it cannot be written.
+        // The record stays in the buffer. The next call tries to write it again, and reports the error.
     }
 }
 
 void Recorder::append(RecordKind kind, std::initializer_list<Bytes> pieces) {
-    const auto [head, checksum] = frame_of(kind, pieces);
+    const auto [head, checksum] = envelope_of(kind, pieces);
     if (head.length + record_overhead > buffer_.size() - used_) flush();
     if (head.length + record_overhead > buffer_.size()) return write_large(pieces, head, checksum);
     keep(bytes_of(head));
@@ -93,7 +93,7 @@ void Recorder::write_at(std::uint64_t offset, Bytes bytes) {
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
             const int error = errno;
-            // What there is of a record goes, so that a shorter one in its place is the end of the file.
+            // Remove the incomplete record, so that no bytes of it remain behind a shorter record at its place.
             (void)!::ftruncate(descriptor_.number(), off_t(end_));
             fail_io(path_, "cannot write", error);
         }

@@ -1,8 +1,10 @@
 // Recorder: writes the calls of a scene to a file (recording.hpp), each before it is applied.
 //
-// The file is that of the calls that were accepted, at any time and whatever fails: a record that cannot be written is
-// taken back, and a process that dies leaves at most the last record cut. What the buffer holds is written before and after
-// each step. Nothing is synced: what was written outlives the process, but maybe not the machine.
+// Invariants
+//   The file holds accepted calls only. A record that cannot be written completely is removed again.
+//   If the process dies, at most the last record in the file is truncated.
+//   The buffer is written to the file before and after each step.
+//   Nothing is synced: written records survive a crash of the process, but not necessarily of the machine.
 #pragma once
 
 #include <initializer_list>
@@ -14,19 +16,19 @@
 
 namespace octopair {
 
-/// All calls throw Error{io_failed} when the system refuses; the recording is then the same as before. (A limit of file
-/// sizes ends a process that does not ignore SIGXFSZ.)
+/// All calls throw Error{io_failed} if the system reports an error; the recording is then unchanged. A process that reaches
+/// the limit of file sizes is killed by SIGXFSZ, unless it ignores this signal.
 class Recorder final : public CallEncoder {
 public:
-    /// Empties a file that is there.
+    /// Creates the file, or truncates an existing one.
     explicit Recorder(const SceneOptions& options);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder() override;
 
-    /// From here on, all calls and that a step began are in the file, even if the process dies in it.
+    /// Writes all buffered calls and the record of the step. They are in the file even if the process dies in this step.
     void begin_step();
-    /// Cannot fail: what cannot be written now is tried again with the next call.
+    /// Writes the result of the step. A write error is reported by the next call, which tries again.
     void end_step(const StepResult& result) noexcept;
 
 private:
@@ -38,9 +40,9 @@ private:
 
     std::string path_;
     Descriptor descriptor_;
-    std::uint64_t end_ = 0;     // of the records that are in the file
-    Buffer<std::byte> buffer_;  // whole records that come after these
-    std::size_t used_ = 0;
+    std::uint64_t end_ = 0;     // size of the file: end of its last record
+    Buffer<std::byte> buffer_;  // complete records that are not in the file yet
+    std::size_t used_ = 0;      // bytes of the buffer in use
 };
 
 }  // namespace octopair

@@ -1,12 +1,12 @@
-// Recordings: the calls of a scene in a file (docs/formats.md). What the recorder and the reader share.
+// Format of recordings: the calls of a scene in a file (docs/formats.md). Shared by the recorder and the reader.
 //
 //   file     magic (8 bytes), version (u32), precision (u32: 32 or 64), margin (f64), checksum of all these (u64), records
 //   record   kind (u32), check (u32), length (u64), payload (length bytes), checksum of all these (u64)
-//   check    the low half of the checksum of the record's first 16 bytes with 0 in its own place: so a length that was
-//            damaged is known as such, and not taken for that of a record which was cut
+//   check    low 32 bits of the checksum of the record's first 16 bytes, computed with check = 0. It distinguishes a damaged
+//            length from the length of a truncated record
 //
-// Everything is little endian. A record is of one call that was found valid; a step's is written before it is taken, and a
-// record of its result follows when it succeeded.
+// All numbers are little endian. A record holds one valid call. The record of a step is written before the step runs; a
+// record of its result follows if the step succeeded.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ Bytes bytes_of(const T& value) {
     return std::as_bytes(std::span(&value, 1));
 }
 
-/// 64 bits over bytes: their length and order count. The bytes are taken as numbers of 64 bits, the last one filled up
-/// with zeros, and how many bytes there were as one number more. Any change within one number changes the checksum.
+/// 64-bit checksum of a sequence of bytes. Processes the bytes as 64-bit numbers (the last one padded with zeros), then the
+/// number of bytes. Depends on length and order; any change within one 64-bit number changes the checksum.
 class Checksum {
 public:
     void add(Bytes bytes);
@@ -46,10 +46,10 @@ private:
 
     std::uint64_t state_ = factor;
     std::uint64_t length_ = 0;
-    std::uint64_t part_ = 0;  // the bytes that do not fill a number yet
+    std::uint64_t part_ = 0;  // bytes of an incomplete 64-bit number
 };
 
-/// What can be in a record. Numbers are never given anew: what needs another meaning gets another number.
+/// Kind of a record. Numbers are part of the file format and are never reused for another meaning.
 enum class RecordKind : std::uint32_t { add = 1, move, sweep, remove, set_traits, step, result };
 
 struct RecordingHead {
@@ -66,7 +66,7 @@ struct RecordingHead {
 };
 static_assert(sizeof(RecordingHead) == 32);
 
-/// With its checksum.
+/// Returns the head of a recording, including its checksum.
 RecordingHead recording_head(const SceneOptions& options);
 
 struct RecordHead {
@@ -78,7 +78,7 @@ struct RecordHead {
 };
 static_assert(sizeof(RecordHead) == 16);
 
-/// Beside its payload.
+/// Bytes of a record besides its payload.
 inline constexpr std::uint64_t record_overhead = sizeof(RecordHead) + sizeof(std::uint64_t);
 
 struct RecordedTraits {
@@ -87,17 +87,17 @@ struct RecordedTraits {
 static_assert(sizeof(RecordedTraits) == 12 && sizeof(ObjectId) == 8 && sizeof(Pair) == 8);
 static_assert(sizeof(Box3f) == 24 && sizeof(Box3d) == 48);
 
-/// Of a step.
+/// Result of a step.
 struct RecordedResult {
-    std::uint64_t hash = 0;  ///< of all that it found
+    std::uint64_t hash = 0;  ///< checksum of all that the step found: recorded_result()
     std::uint64_t began = 0, ended = 0, persisting = 0;
 
     bool operator==(const RecordedResult&) const = default;
 };
 static_assert(sizeof(RecordedResult) == 32);
 
-/// The hash is the checksum of: the number of pairs that began, these, the number of those that ended, these, and the
-/// number of those that persist; numbers as u64, pairs as two u32.
+/// Returns the record of a result. Its hash is the checksum of: number of pairs that began, these pairs, number of pairs that
+/// ended, these pairs, number of pairs that persist. Numbers are u64; a pair is two u32.
 RecordedResult recorded_result(const StepResult& result);
 
 }  // namespace octopair

@@ -16,26 +16,26 @@ std::span<std::byte> bytes_of(T& value) {
 
 }  // namespace
 
-/// The bytes of a record that are still to be read.
+/// The unread part of a record's payload.
 class RecordingReader::Payload {
 public:
     Payload(const RecordingReader& reader, std::uint64_t offset) : reader_(reader), offset_(offset) {
         left_ = reader.payload_.span();
     }
 
-    /// Refuses a record that does not have exactly `bytes` more.
+    /// Throws: Error{bad_input} unless exactly `bytes` bytes are left.
     void expect(std::uint64_t bytes) const {
         if (left_.size() == bytes) return;
-        refuse("its length does not fit its counts: " + std::to_string(left_.size()) + " bytes for " +
-               std::to_string(bytes));
+        refuse("the length of the record does not match its counts: " + std::to_string(left_.size()) +
+               " bytes instead of " + std::to_string(bytes));
     }
     std::uint32_t count() {
-        if (left_.size() < sizeof(std::uint32_t)) refuse("it is too short");
+        if (left_.size() < sizeof(std::uint32_t)) refuse("the record is too short");
         std::uint32_t number = 0;
         copy_to(bytes_of(number));
         return number;
     }
-    /// After expect().
+    /// Returns the next `count` elements, copied to `out`. Requires: expect() has checked the length.
     template <typename T>
     std::span<const T> array(std::size_t count, Buffer<T>& out) {
         out.resize_discard(count);
@@ -73,7 +73,7 @@ void RecordingReader::read_head() {
     if (head.checksum != head.right_checksum()) {
         refuse(offsetof(RecordingHead, checksum), "the checksum of the head is wrong");
     }
-    if (head.version == 0) refuse(offsetof(RecordingHead, version), "there is no version 0");
+    if (head.version == 0) refuse(offsetof(RecordingHead, version), "version is 0, but versions start at 1");
     if (head.precision != 32 && head.precision != 64) {
         refuse(offsetof(RecordingHead, precision), "precision is " + std::to_string(head.precision) + ", not 32 or 64");
     }
@@ -137,7 +137,7 @@ void RecordingReader::parse(RecordedCall& call) {
             payload.expect(sizeof call.result);
             return payload.copy_to(bytes_of(call.result));
     }
-    refuse(call.offset, "a record of kind " + std::to_string(std::uint32_t(call.kind)) + " is not known");
+    refuse(call.offset, "unknown kind of record: " + std::to_string(std::uint32_t(call.kind)));
 }
 
 void RecordingReader::parse_objects(Payload& payload, RecordedCall& call) {
@@ -164,7 +164,7 @@ void RecordingReader::parse_ids(Payload& payload, std::uint32_t count, RecordedC
 void RecordingReader::parse_traits(Payload& payload, std::uint32_t count, RecordedCall& call) {
     traits_.clear();
     for (const RecordedTraits& one : payload.array(count, packed_)) {
-        if (one.fixed > 1) payload.refuse("traits are fixed by " + std::to_string(one.fixed) + ", not 0 or 1");
+        if (one.fixed > 1) payload.refuse("the trait `fixed` is " + std::to_string(one.fixed) + ", not 0 or 1");
         traits_.push_back({one.groups, one.mask, one.fixed != 0});
     }
     call.traits = traits_;

@@ -1,7 +1,9 @@
-// RecordingReader: the calls in a recording (recording.hpp), one after the other.
+// RecordingReader: reads the calls of a recording (recording.hpp), one after the other.
 //
-// What it returns has the right checksum and arrays that fit each other; whether boxes are boxes and ids are of objects, the
-// scene says to which the call is made. Lengths are held against the size of the file before memory is taken.
+// Invariants
+//   A call that is returned has a correct checksum, and the lengths of its arrays match.
+//   Boxes and ids are not checked here. The scene that receives the call checks them.
+//   Lengths are checked against the size of the file before memory is allocated.
 #pragma once
 
 #include <functional>
@@ -13,44 +15,44 @@
 
 namespace octopair {
 
-/// The bytes of a recording, wherever they are.
+/// Source of a recording's bytes.
 struct RecordingSource {
-    std::string name;        ///< in messages
+    std::string name;        ///< name in messages
     std::uint64_t size = 0;  ///< in bytes
-    /// Fills `out` from `offset` on; asked within the size only. What it throws reaches the caller.
+    /// Fills `out` with the bytes from `offset` on, which are within `size`. Its exceptions reach the reader's caller.
     std::function<void(std::uint64_t offset, std::span<std::byte> out)> read;
 };
 
-/// Which members hold something depends on the kind. The spans are valid until the reader's next call.
+/// A call of a recording. `kind` determines which members are set. The spans are valid until the reader's next call.
 struct RecordedCall {
     RecordKind kind = RecordKind::step;
-    std::uint64_t offset = 0;  ///< of its record in the file
+    std::uint64_t offset = 0;  ///< offset of its record in the file, in bytes
     std::span<const ObjectId> ids;
     Objects objects;
     std::span<const Traits> traits;
     RecordedResult result;
 };
 
-/// Throws Error{bad_input} "NAME: byte OFFSET: ..." for what no recorder wrote, or one of a newer version did.
+/// Throws: Error{bad_input} "NAME: byte OFFSET: ..." if the bytes are not a valid recording, or are of a newer version.
 class RecordingReader {
 public:
     explicit RecordingReader(RecordingSource source);
 
-    /// The precision and margin of the scene.
+    /// Returns the precision and margin of the scene.
     const SceneOptions& options() const { return options_; }
     const std::string& name() const { return source_.name; }
-    /// The next call; false at the end, and where the last record was cut.
+    /// Reads the next call. Returns false at the end of the source, also if the last record is truncated (cut()).
     bool next(RecordedCall& call);
-    /// The source is longer than it was: what was cut may be whole now.
+    /// Sets a larger size of the source. A record that was truncated may then be complete.
     void grow(std::uint64_t size) { source_.size = size; }
-    /// Where the next call begins; what lies before is not read again.
+    /// Returns the offset of the next call, in bytes. Bytes before it are not read again.
     std::uint64_t position() const { return at_; }
-    /// The file ends within a record.
+    /// Returns whether the source ends within a record. Valid after next() has returned false.
     bool cut() const { return cut_; }
-    /// How much of the file is read, from 0 to 1.
+    /// Returns the fraction of the source that has been read, from 0 to 1.
     double progress() const { return double(at_) / double(source_.size); }
 
-    /// Throws Error{bad_input} that names the file and the place.
+    /// Throws: Error{bad_input} with the name of the source and the offset.
     [[noreturn]] void refuse(std::uint64_t offset, const std::string& what) const;
 
 private:
@@ -69,7 +71,7 @@ private:
     std::uint64_t at_ = 0;
     bool cut_ = false;
     Buffer<std::byte> payload_;
-    // Of the call, where their alignment is right.
+    // Arrays of the current call, copied from payload_ for the right alignment.
     Buffer<ObjectId> ids_;
     Buffer<Box3f> boxes32_;
     Buffer<Box3d> boxes64_;

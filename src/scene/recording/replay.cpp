@@ -16,11 +16,11 @@ std::string counts_text(const RecordedResult& result) {
            std::to_string(result.persisting) + " persisting";
 }
 
-/// What differs between two results that do.
+/// Returns the message for two results that differ.
 std::string difference_text(const RecordedResult& now, const RecordedResult& then) {
     const bool counts = now.began != then.began || now.ended != then.ended || now.persisting != then.persisting;
-    if (!counts) return "other pairs than recorded, as many of them: " + counts_text(now);
-    return counts_text(now) + "; recorded were " + counts_text(then);
+    if (!counts) return "the pairs differ from the recorded ones, their numbers do not: " + counts_text(now);
+    return counts_text(now) + "; recorded: " + counts_text(then);
 }
 
 Scene scene_of(const RecordingReader& reader, unsigned threads) {
@@ -48,17 +48,17 @@ private:
     RecordingReader& reader_;
     const ReplayOptions& options_;
     Scene scene_;
-    std::vector<ObjectId> ids_;  // of an addition; recorded calls name them as they come out of it
+    std::vector<ObjectId> ids_;  // receives the ids of added objects, which are equal to those that recorded calls use
     ReplayReport report_;
 };
 
 ReplayReport Replay::run(const std::stop_token& stop) {
     RecordedCall call;
-    bool stepping = false;  // a step has begun, and how it ended is not known
+    bool stepping = false;  // the last record began a step whose result has not been read
     while (reader_.next(call)) {
         throw_if_stopped(stop);
         if (call.kind == RecordKind::result) {
-            if (!stepping) reader_.refuse(call.offset, "the result of no step");
+            if (!stepping) reader_.refuse(call.offset, "a result without a step before it");
             step(&call.result, stop);
         } else if (call.kind != RecordKind::step) {
             make(call);

@@ -1,4 +1,4 @@
-// The remote engine: every call is a job of the server's.
+// The remote engine: runs every call as a job on the server.
 
 #include "engine/job_queue.hpp"
 #include "engine/request.hpp"
@@ -26,7 +26,7 @@ private:
 
     TicketLock turns_;
     service::Connection connection_;
-    detail::JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // last, so that its thread ends before the other members are destroyed
 };
 
 }  // namespace

@@ -22,8 +22,8 @@ namespace octopair::service {
 
 namespace {
 
-/// For a call to go there and back.
-constexpr std::chrono::milliseconds shortest_wait(1000);
+/// Minimum deadline of the first call: time for one round trip.
+constexpr std::chrono::milliseconds min_deadline(1000);
 
 bool encrypts(const ClientOptions& options) {
     return options.tls || !options.authority.empty() || !options.certificate.empty();
@@ -35,7 +35,8 @@ std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address,
     }
     if (!encrypts(options)) {
         if (!options.token.empty() && !is_this_machine(address)) {
-            throw Error(ErrorCode::usage, address.text() + ": a token is not sent there without encryption");
+            throw Error(ErrorCode::usage,
+                        address.text() + ": a token is sent to another machine only with encryption; use TLS");
         }
         return grpc::InsecureChannelCredentials();
     }
@@ -56,33 +57,35 @@ grpc::ChannelArguments arguments() {
     grpc::ChannelArguments arguments;
     arguments.SetMaxReceiveMessageSize(int(most_message_bytes));
     arguments.SetMaxSendMessageSize(int(most_message_bytes));
-    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // a connection for each engine
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // each engine has its own connection
     arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
     arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);
     arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
-    // A server that is gone without a word is noticed while it is asked.
+    // Pings detect during a call that the server or the network has failed without closing the connection.
     arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
     arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);
     arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
-    arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);                // we do it ourselves: a call's input is sent again
+    arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);  // call_with_retries() retries, because the input must be sent again
     return arguments;
 }
 
-/// All that gRPC tells of a server that has as many connections as it may have.
-bool takes_no_more(const grpc::Status& status) { return status.error_message().find("GOAWAY") != std::string::npos; }
+/// Returns whether the server has reached its limit of connections. gRPC reports only GOAWAY then.
+bool refuses_connections(const grpc::Status& status) {
+    return status.error_message().find("GOAWAY") != std::string::npos;
+}
 
-/// The call was lost, rather than never sent.
+/// Returns whether the call was lost after a connection had been made.
 bool was_connected(const grpc::Status& status) {
     const std::string words = status.error_message();
-    return !takes_no_more(status) && words.find("failed to connect") == std::string::npos &&
+    return !refuses_connections(status) && words.find("failed to connect") == std::string::npos &&
            words.find("empty address list") == std::string::npos;
 }
 
-/// What may stand in a call's metadata; gRPC ends the program at anything else.
+/// Checks the token, because gRPC ends the program if metadata has other characters.
 void check_token(std::string_view token) {
     const auto may_be_sent = [](char c) { return c >= ' ' && c <= '~'; };
     if (std::all_of(token.begin(), token.end(), may_be_sent)) return;
-    throw Error(ErrorCode::usage, "the token has bytes that are no printable ASCII characters");
+    throw Error(ErrorCode::usage, "the token has invalid characters: it may only have printable ASCII characters");
 }
 
 }  // namespace
@@ -91,7 +94,7 @@ Connection::Connection(std::string_view address, const ClientOptions& options)
     : server_(address),
       token_(options.token),
       connect_timeout_(options.connect_timeout),
-      patience_(options.patience),
+      reconnect_timeout_(options.patience),
       channel_(grpc::CreateCustomChannel(parse_address(address).text(), credentials_of(parse_address(address), options),
                                          arguments())) {
     check_token(token_);
@@ -105,41 +108,43 @@ void Connection::prepare(grpc::ClientContext& context) const {
 void Connection::check_server() {
     const auto calls = v1::Octopair::NewStub(channel_);
     v1::ServerDescription description;
-    persist({}, [&] {
+    call_with_retries({}, [&] {
         grpc::ClientContext context;
         prepare(context);
         context.set_deadline(std::chrono::system_clock::now() +
-                             std::max<std::chrono::milliseconds>(connect_timeout_, shortest_wait));
+                             std::max<std::chrono::milliseconds>(connect_timeout_, min_deadline));
         return calls->Describe(&context, {}, &description);
     });
 }
 
-void Connection::give_up(const grpc::Status& status, bool refused) const {
+void Connection::throw_unavailable(const grpc::Status& status, bool refused) const {
     if (refused) {
-        throw Error(ErrorCode::resource_limit, server_ + ": the server takes no more connections");
+        throw Error(ErrorCode::resource_limit,
+                    server_ + ": the server accepts no more connections: its limit is reached");
     }
     throw Error(ErrorCode::engine_failed, server_ + ": no server answers: " + status.error_message());
 }
 
-void Connection::Patience::wait_or_throw(const grpc::Status& status, const std::stop_token& stop) {
+void Connection::RetryTimer::wait_or_throw(const grpc::Status& status, const std::stop_token& stop) {
     throw_if_stopped(stop);
-    if (!may_come_back(status)) throw_status(status, connection_.server_);
+    if (!is_retryable(status)) throw_status(status, connection_.server_);
     constexpr std::chrono::milliseconds apart(50);
     const auto now = Clock::now();
-    if (away_since_ == Clock::time_point() || connection_.heard_.load() > away_since_) {
-        away_since_ = now;
+    if (unavailable_since_ == Clock::time_point() || connection_.heard_.load() > unavailable_since_) {
+        unavailable_since_ = now;
         refused_ = false;
     }
-    if (takes_no_more(status)) refused_ = true;
-    // A connection that is refused may also be lost before the words come.
+    if (refuses_connections(status)) refused_ = true;
+    // A refused connection may also break before GOAWAY arrives.
     if (was_connected(status) && !refused_) connection_.met();
-    // gRPC would connect again at once, thousands of times a second.
-    std::this_thread::sleep_for(takes_no_more(status) ? 4 * apart : apart);
-    // gRPC only connects while somebody waits in it; a call to a server that never answers would wait for longer.
+    // Backoff, because gRPC would reconnect at once, thousands of times a second.
+    std::this_thread::sleep_for(refuses_connections(status) ? 4 * apart : apart);
+    // gRPC connects only while a thread waits in it. Wait here, because a call would wait too long if no server answers.
     do {
         throw_if_stopped(stop);
-        if (Clock::now() - away_since_ >= (connection_.met_ ? connection_.patience_ : connection_.connect_timeout_))
-            connection_.give_up(status, refused_);
+        if (Clock::now() - unavailable_since_ >=
+            (connection_.met_ ? connection_.reconnect_timeout_ : connection_.connect_timeout_))
+            connection_.throw_unavailable(status, refused_);
     } while (!connection_.channel_->WaitForConnected(std::chrono::system_clock::now() + apart));
 }
 

@@ -1,4 +1,4 @@
-// Connection: the way to a server, which may break and come back.
+// Connection: a gRPC channel to a server, with retries of calls while the server is unavailable.
 #pragma once
 
 #include <grpcpp/support/status.h>
@@ -19,65 +19,67 @@ class ClientContext;
 
 namespace octopair::service {
 
-/// Thread-safe.
+/// Thread safety: all member functions may be called concurrently.
 class Connection {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Throws as octopair::connect, but does not connect yet.
+    /// Does not connect yet. Throws: as octopair::connect().
     Connection(std::string_view address, const ClientOptions& options);
 
     const std::string& server() const { return server_; }
-    /// For stubs, which cost little to make.
+    /// Returns the channel, for stubs. Stubs are cheap to create.
     const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
-    /// Every call's context goes through here.
+    /// Adds the token to the context of a call. Required for every call.
     void prepare(grpc::ClientContext& context) const;
-    /// Asks the server what it is, to find out whether there is one. Throws as persist.
+    /// Makes a Describe call, to check that the server is available. Throws: as call_with_retries().
     void check_server();
 
-    /// Jobs with an input of at most so many bytes had results that fit into one message, as far as is known.
+    /// Estimate, learned from earlier jobs: results of jobs with at most this many input bytes fit into one message.
     std::atomic<std::uint64_t>& small_input() { return small_input_; }
 
-    /// The server did something: it is not away.
+    /// Notes a sign of life of the server. This restarts the timeout of RetryTimer.
     void heard() {
         heard_ = Clock::now();
         met_ = true;
     }
 
-    /// Makes calls until one ends with another status than that the server is away, as long as the patience lasts,
-    /// or, while it was never there, the time for connecting. `attempt` makes one, and returns its status. Throws what the last
-    /// status says unless it is OK, Error{cancelled} on a stop.
+    /// Calls attempt(), which makes one call and returns its status, until the status is not retryable.
+    /// Retries end after ClientOptions::patience, or after `connect_timeout` if the server has never been available.
+    /// Throws: the Error that the last status describes, unless it is OK; Error{cancelled} after a stop request.
     template <typename Attempt>
-    void persist(const std::stop_token& stop, Attempt&& attempt) {
-        for (Patience patience(*this);;) {
+    void call_with_retries(const std::stop_token& stop, Attempt&& attempt) {
+        for (RetryTimer retry(*this);;) {
             const grpc::Status status = attempt();
             if (status.ok()) return met();
-            patience.wait_or_throw(status, stop);
+            retry.wait_or_throw(status, stop);
         }
     }
 
 private:
-    /// Of one call: how long the server has been away.
-    class Patience {
+    /// Waits between the attempts of one call, and limits how long the server may be unavailable.
+    class RetryTimer {
     public:
-        explicit Patience(Connection& connection) : connection_(connection) {}
+        explicit RetryTimer(Connection& connection) : connection_(connection) {}
+        /// Waits until the next attempt.
+        /// Throws: Error if `status` is not retryable or the timeout has passed; Error{cancelled} after a stop request.
         void wait_or_throw(const grpc::Status& status, const std::stop_token& stop);
 
     private:
         Connection& connection_;
-        Clock::time_point away_since_{};
-        bool refused_ = false;  // since then the server has said that it takes no more connections
+        Clock::time_point unavailable_since_{};
+        bool refused_ = false;  // since then the server has refused a connection because of its limit
     };
 
     void met() { met_ = true; }
-    [[noreturn]] void give_up(const grpc::Status& status, bool refused) const;
+    [[noreturn]] void throw_unavailable(const grpc::Status& status, bool refused) const;
 
     std::string server_;
     std::string token_;
-    std::chrono::milliseconds connect_timeout_, patience_;
+    std::chrono::milliseconds connect_timeout_, reconnect_timeout_;
     std::shared_ptr<grpc::Channel> channel_;
     std::atomic<Clock::time_point> heard_ = Clock::time_point();
-    std::atomic<bool> met_ = false;  // the server was there once
+    std::atomic<bool> met_ = false;  // the server has been available at least once
     std::atomic<std::uint64_t> small_input_ = ~std::uint64_t(0);
 };
 

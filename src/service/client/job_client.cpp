@@ -1,4 +1,4 @@
-// The detached jobs of a server, as its clients see them: every call is made anew until the server answers.
+// JobClient: calls of a client for detached jobs. Every call is retried until the server answers or the timeout passes.
 
 #include "octopair/job_client.hpp"
 
@@ -71,10 +71,10 @@ public:
     State(std::string_view address, const ClientOptions& options)
         : connection_(address, options), calls_(v1::Octopair::NewStub(connection_.channel())) {}
 
-    /// Makes a call of one message each way, as often as it takes. `call` has a context and the calls.
+    /// Makes a unary call, with retries. call(context, stub) makes one attempt and returns its status.
     template <typename Call>
     void ask(const std::stop_token& stop, Call&& call) {
-        connection_.persist(stop, [&] {
+        connection_.call_with_retries(stop, [&] {
             grpc::ClientContext context;
             connection_.prepare(context);
             const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
@@ -85,7 +85,7 @@ public:
     std::string submit(const detail::Request& request, const JobTerms& terms, const std::stop_token& stop) {
         detail::check_request(request);
         if (request.options.verify) {
-            throw Error(ErrorCode::usage, "verify: not for a job that outlives the call; Engine::submit verifies");
+            throw Error(ErrorCode::usage, "verify: a detached job cannot be verified; use Engine::submit instead");
         }
         v1::JobSpec spec = service::spec_of(request, !terms.count_only);
         spec.set_id(terms.id.empty() ? service::new_id() : terms.id);
@@ -100,10 +100,11 @@ public:
         };
         const auto take = [&](grpc::ByteBuffer& message) {
             if (!service::unpack(message, report)) {
-                throw Error(ErrorCode::engine_failed, connection_.server() + ": an answer that is none");
+                throw Error(ErrorCode::engine_failed,
+                            connection_.server() + ": the answer is not a valid message of octopair's protocol");
             }
         };
-        connection_.persist(stop, [&] {
+        connection_.call_with_retries(stop, [&] {
             upload.restart(0);
             return service::RawStream(connection_, {"/octopair.v1.Octopair/Submit", next, take}).run(stop);
         });
@@ -113,7 +114,7 @@ public:
     Summary result(const std::string& id, const detail::Output& output, const detail::Control& control) {
         service::Received received(connection_.server(), output, control);
         const auto take = [&](grpc::ByteBuffer& message) { received.take(message); };
-        connection_.persist(control.stop, [&] {
+        connection_.call_with_retries(control.stop, [&] {
             received.begin_attempt();
             bool asked = false;
             const auto next = [&]() -> std::optional<grpc::ByteBuffer> {
@@ -152,7 +153,7 @@ JobStatus JobClient::status(const std::string& id, std::stop_token stop) {
 
 JobStatus JobClient::wait(const std::string& id, std::chrono::duration<double> most, std::stop_token stop) {
     using Clock = std::chrono::steady_clock;
-    constexpr double at_once = 60;  // what lies between may end calls that are silent for longer
+    constexpr double at_once = 60;  // seconds for one call, because proxies may end calls that are silent for longer
     const auto begun = Clock::now();
     v1::JobReport report;
     for (;;) {
@@ -177,7 +178,7 @@ void JobClient::release(const std::string& id, std::stop_token stop) {
     int attempts = 0;
     state_->ask(stop, [&](auto& context, auto& calls) {
         const grpc::Status status = calls.Release(&context, name_of(id), &report);
-        // It may have been released by an attempt whose answer was lost.
+        // An earlier attempt whose answer was lost may have released the job.
         const bool again = attempts++ > 0, gone = status.error_message().find("there is no job") != std::string::npos;
         return again && gone ? grpc::Status::OK : status;
     });

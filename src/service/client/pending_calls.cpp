@@ -12,13 +12,13 @@ Boxes part_of(const Boxes& boxes, std::size_t begin, std::size_t count) {
     return std::visit([&](auto span) -> Boxes { return span.subspan(begin, count); }, boxes);
 }
 
-/// Of an array with one for each object, or none, or one for all.
+/// Returns the part of an array that has one element for each object, one for all objects, or none.
 template <typename T>
 std::span<const T> part_of(std::span<const T> all, std::size_t begin, std::size_t count) {
     return all.size() > 1 ? all.subspan(begin, count) : all;
 }
 
-/// Calls body(begin, count) for parts of `count` objects, of `most` each.
+/// Calls body(begin, count) for consecutive parts of `count` elements, of at most `most` each.
 template <typename Body>
 void by_parts(std::size_t count, std::size_t most, Body&& body) {
     for (std::size_t begin = 0; begin < count; begin += most) body(begin, std::min(most, count - begin));
@@ -26,12 +26,12 @@ void by_parts(std::size_t count, std::size_t most, Body&& body) {
 
 }  // namespace
 
-/// All records of a call, or none.
+/// Encodes a call as one or more records. On an exception, none of them is kept.
 template <typename Encode>
 void PendingCalls::encode(std::size_t objects, Encode&& encode_part) {
     const std::size_t before = bytes_.size();
     try {
-        by_parts(objects, most_objects, encode_part);
+        by_parts(objects, max_objects, encode_part);
     } catch (...) {
         bytes_.resize(before);
         throw;
@@ -47,33 +47,33 @@ void PendingCalls::add(const Objects& objects, std::span<const Traits> traits) {
 
 void PendingCalls::move(RecordKind kind, std::span<const ObjectId> ids, const Boxes& boxes) {
     encode(ids.size(), [&](std::size_t begin, std::size_t count) {
-        CallEncoder::move(kind, at_server(ids.subspan(begin, count)), part_of(boxes, begin, count));
+        CallEncoder::move(kind, server_ids(ids.subspan(begin, count)), part_of(boxes, begin, count));
     });
 }
 
 void PendingCalls::remove(std::span<const ObjectId> ids) {
     encode(ids.size(),
-           [&](std::size_t begin, std::size_t count) { CallEncoder::remove(at_server(ids.subspan(begin, count))); });
+           [&](std::size_t begin, std::size_t count) { CallEncoder::remove(server_ids(ids.subspan(begin, count))); });
 }
 
 void PendingCalls::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
     encode(ids.size(), [&](std::size_t begin, std::size_t count) {
-        CallEncoder::set_traits(at_server(ids.subspan(begin, count)), part_of(traits, begin, count));
+        CallEncoder::set_traits(server_ids(ids.subspan(begin, count)), part_of(traits, begin, count));
     });
 }
 
 void PendingCalls::append(RecordKind kind, std::initializer_list<Bytes> pieces) {
-    const auto [head, checksum] = frame_of(kind, pieces);
+    const auto [head, checksum] = envelope_of(kind, pieces);
     keep(bytes_of(head));
     for (const Bytes piece : pieces) keep(piece);
     keep(bytes_of(checksum));
 }
 
-std::span<const ObjectId> PendingCalls::at_server(std::span<const ObjectId> ids) {
-    if (older_.empty()) return ids;
+std::span<const ObjectId> PendingCalls::server_ids(std::span<const ObjectId> ids) {
+    if (generation_offsets_.empty()) return ids;
     ids_.assign(ids.begin(), ids.end());
     for (ObjectId& id : ids_) {
-        if (id.index < older_.size()) id.generation -= older_[id.index];
+        if (id.index < generation_offsets_.size()) id.generation -= generation_offsets_[id.index];
     }
     return ids_;
 }
@@ -84,15 +84,16 @@ void PendingCalls::send(const Send& send) {
     clear();
 }
 
-/// A new scene gives the indices in order, and frees those that are removed, in their order, after its first step. So one that
-/// is given an object for each index, and then loses those that are not in use, goes on as the client's does.
+/// A new scene assigns ascending indices. After its first step, it frees the indices of removed objects in the order of their
+/// removal. So the calls add an object for each index, then remove those that are not in use. From then on, the server's
+/// scene assigns the same indices as the client's.
 void PendingCalls::send_whole(const SceneOptions& options, const SceneObjects& objects, const Send& send) {
     clear();
-    older_.clear();
+    generation_offsets_.clear();
     keep(bytes_of(recording_head(options)));
     const ObjectTable& table = objects.table();
     const Objects all = table.objects();
-    by_parts(std::size_t(table.indices()), most_objects, [&](std::size_t begin, std::size_t count) {
+    by_parts(std::size_t(table.indices()), max_objects, [&](std::size_t begin, std::size_t count) {
         add({part_of(all.boxes, begin, count), part_of(all.padding, begin, count)},
             part_of(table.all_traits(), begin, count));
         if (bytes_.size() >= piece_bytes) this->send(send);
@@ -103,22 +104,22 @@ void PendingCalls::send_whole(const SceneOptions& options, const SceneObjects& o
         for (const std::uint32_t index : indices) gone.push_back({index, first_generation});
     }
     remove(gone);
-    learn_generations(table);
+    set_generation_offsets(table);
     sweep_again(objects, options.precision);
     this->send(send);
 }
 
-void PendingCalls::learn_generations(const ObjectTable& table) {
+void PendingCalls::set_generation_offsets(const ObjectTable& table) {
     bool any = false;
     std::vector<std::uint32_t> older(std::size_t(table.indices()));
     for (std::uint32_t index = 0; index < table.indices(); ++index) {
         older[index] = table.id(index).generation - (table.alive(index) ? 1 : 2);
         any |= older[index] != 0;
     }
-    if (any) older_ = std::move(older);
+    if (any) generation_offsets_ = std::move(older);
 }
 
-/// The table has the boxes of whole ways: only where they end is missing.
+/// Repeats the sweeps. The table has boxes that bound the whole ways; the server still needs the boxes at their ends.
 void PendingCalls::sweep_again(const SceneObjects& objects, Precision precision) {
     for (const SceneObjects::Swept& swept : objects.swept()) {
         if (!objects.table().contains(swept.id)) continue;

@@ -1,7 +1,8 @@
-// PendingCalls: calls of a scene as they go to the server (SceneUpload), kept until the step.
+// PendingCalls: encoded calls of a scene (SceneUpload), kept until the step sends them to the server.
 //
-// No record is long: a call of many objects becomes several. The server's objects may have other generations than the
-// client's: its scene may be younger.
+// Invariants
+//   A call with more than `max_objects` objects becomes several records, because records of the protocol are at most 2 MiB.
+//   An object has the same index on client and server. Its generation may be lower on the server, whose scene may be newer.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace octopair::service {
 
 class PendingCalls final : public CallEncoder {
 public:
-    /// Takes a piece; its bytes are valid until it returns.
+    /// Sends a piece to the server. The bytes are valid only during the call.
     using Send = std::function<void(Bytes)>;
 
     void add(const Objects& objects, std::span<const Traits> traits) override;
@@ -25,29 +26,30 @@ public:
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) override;
     void step() { append(RecordKind::step, {}); }
 
-    /// Sends all that is kept, in pieces.
+    /// Sends all pending calls in pieces, then clears them.
     void send(const Send& send);
     void clear() { bytes_.clear(); }
 
-    /// Sends calls that make a new scene on a server what `objects` are; what is kept before is lost. From here on the
-    /// server's ids are those of that scene.
+    /// Discards all pending calls, and sends calls that create `objects` in a new scene on the server. Later calls use the ids
+    /// of this new scene.
     void send_whole(const SceneOptions& options, const SceneObjects& objects, const Send& send);
 
 private:
-    /// Of a call that goes in one record: at most 80 bytes each.
-    static constexpr std::size_t most_objects = 12'000;
+    /// Maximum number of objects in one record; an object takes at most 80 bytes.
+    static constexpr std::size_t max_objects = 12'000;
 
     template <typename Encode>
     void encode(std::size_t objects, Encode&& encode_part);
     void append(RecordKind kind, std::initializer_list<Bytes> pieces) override;
     void keep(Bytes bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
-    std::span<const ObjectId> at_server(std::span<const ObjectId> ids);
-    void learn_generations(const ObjectTable& table);
+    std::span<const ObjectId> server_ids(std::span<const ObjectId> ids);
+    void set_generation_offsets(const ObjectTable& table);
     void sweep_again(const SceneObjects& objects, Precision precision);
 
     std::vector<std::byte> bytes_;
-    std::vector<std::uint32_t> older_;  // by how much an object's generation is above the server's; empty: by nothing
-    std::vector<ObjectId> ids_;         // of a record
+    /// By object index: the client's generation minus the server's. Empty: all 0.
+    std::vector<std::uint32_t> generation_offsets_;
+    std::vector<ObjectId> ids_;  // buffer of server_ids()
 };
 
 }  // namespace octopair::service

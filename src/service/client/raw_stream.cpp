@@ -12,7 +12,8 @@ RawStream::RawStream(Connection& connection, Terms terms) : connection_(connecti
     connection_.prepare(context_);
 }
 
-/// False if it throws: then the call is over, and must come to its end before this goes.
+/// Runs `step`. If it throws, keeps the exception, cancels the call and returns false. The call must finish before run()
+/// rethrows.
 template <typename Step>
 bool RawStream::guarded(Step&& step) {
     try {
@@ -52,7 +53,7 @@ void RawStream::handle(Event event, bool ok) {
             ok&& guarded([&] { terms_.take(in_); }) ? read() : finish();
             break;
         case Event::written:
-            if (ok) write();  // if not, reading says why
+            if (ok) write();  // after a failed write, the read fails as well and finish() gets the status
             break;
         case Event::writes_done:
         case Event::finished:

@@ -1,4 +1,4 @@
-// RawStream: one call that streams bytes; reads and writes go on side by side, in the thread that runs it.
+// RawStream: one bidirectional streaming call. Reads and writes overlap; callbacks run in the thread that calls run().
 #pragma once
 
 #include <grpcpp/client_context.h>
@@ -20,10 +20,10 @@ class Connection;
 class RawStream {
 public:
     struct Terms {
-        const char* method = nullptr;
-        /// The next message to the server; none: that was all. What it throws ends the call, as what `take` throws.
+        const char* method = nullptr;  ///< "/PACKAGE.SERVICE/METHOD"
+        /// Returns the next message to the server; nothing at the end. An exception cancels the call.
         std::function<std::optional<grpc::ByteBuffer>()> next;
-        /// Takes one from it.
+        /// Receives a message from the server. An exception cancels the call.
         std::function<void(grpc::ByteBuffer&)> take;
     };
 
@@ -31,13 +31,13 @@ public:
     RawStream(const RawStream&) = delete;
     RawStream& operator=(const RawStream&) = delete;
 
-    /// Once. Throws what the terms throw.
+    /// Runs the call, and returns its status. Requires: called once. Throws: what the callbacks throw.
     grpc::Status run(const std::stop_token& stop);
 
 private:
     enum class Event : std::uintptr_t { started = 1, read, written, writes_done, finished };
 
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): gRPC's tags are pointers, to nothing here.
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): gRPC's tags are pointers; these are numbers and never dereferenced.
     static void* tag(Event event) { return reinterpret_cast<void*>(std::uintptr_t(event)); }
     void handle(Event event, bool ok);
     void read();

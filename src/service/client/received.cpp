@@ -32,11 +32,11 @@ void Received::take(grpc::ByteBuffer& message) {
     if (small.has_summary()) summary_ = std::move(*small.mutable_summary());
 }
 
-/// To the front of the room.
+/// Unpacks a message, with its pairs at the front of `room_` or `held_`. Returns the number of pairs.
 std::size_t Received::unpack_pairs(grpc::ByteBuffer& message, v1::Download& small) {
     const std::size_t most = message.Length() / sizeof(Pair) + 1;
     std::size_t bytes = 0;
-    // Pairs may lie across the borders of what the network delivered.
+    // A pair may be split between two pieces of the message, so pieces are joined first.
     if (output_.list != nullptr && room_.size() < most) {
         room_ =
             detail::storage_of(*output_.list).take_block(std::clamp<std::size_t>(pairs_, most, std::size_t(1) << 20));
@@ -52,12 +52,15 @@ std::size_t Received::unpack_pairs(grpc::ByteBuffer& message, v1::Download& smal
     return bytes / sizeof(Pair);
 }
 
-void Received::refuse_message() const { throw Error(ErrorCode::engine_failed, server_ + ": an answer that is none"); }
+void Received::refuse_message() const {
+    throw Error(ErrorCode::engine_failed, server_ + ": the answer is not a valid message of octopair's protocol");
+}
 
-/// What comes must belong to what came before.
+/// Checks that this attempt continues the same result.
 void Received::check_head(const v1::ResultHead& head) {
     if (pairs_ > 0 && head.hash() != hash_) {
-        throw Error(ErrorCode::engine_failed, server_ + ": another version took over in the middle of a result");
+        throw Error(ErrorCode::engine_failed,
+                    server_ + ": the server's version changed in the middle of a result; call again");
     }
     hash_ = head.hash();
 }

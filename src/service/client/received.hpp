@@ -1,4 +1,4 @@
-// Received: the result of a job, as its messages come; over all attempts to get it.
+// Received: collects the result of a job from the server's messages, over all attempts to receive it.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -16,20 +16,22 @@ namespace octopair::service {
 
 class Received {
 public:
-    /// All are borrowed. `server` is its name in messages.
+    /// Borrows all arguments. `server` names the server in error messages.
     Received(const std::string& server, const detail::Output& output, const detail::Control& control)
         : server_(server), output_(output), control_(control) {}
 
-    /// What comes from here on is another answer, which has a head of its own.
+    /// Starts a new attempt. Its first message has a head again.
     void begin_attempt() { headed_ = false; }
-    /// What the server sent: pairs, how far it is, or the end. Throws Error, and what a sink or a progress throws.
+    /// Processes a message of the server: pairs, progress or summary.
+    /// Throws: Error{engine_failed} if the message is invalid; what the sinks for pairs and progress throw.
     void take(grpc::ByteBuffer& message);
 
-    /// So many are here.
+    /// Returns the number of pairs received so far, in all attempts.
     std::uint64_t pairs() const { return pairs_; }
-    /// Of the result; empty before the first message.
+    /// Returns the hash of the result; empty before the first message.
     const std::string& hash() const { return hash_; }
-    /// When nothing more will come. Throws Error{engine_failed} if that is not all of the result, and what a progress throws.
+    /// Returns the summary after the last message.
+    /// Throws: Error{engine_failed} if the result is incomplete; what the progress sink throws.
     Summary finish();
 
 private:
@@ -43,11 +45,11 @@ private:
     const detail::Control& control_;
     std::string hash_;
     std::uint64_t pairs_ = 0;
-    bool headed_ = false;  // this answer has begun
+    bool headed_ = false;  // the head of this attempt has been received
     double progress_ = 0;
     std::optional<v1::Summary> summary_;
-    std::span<Pair> room_;  // of the list
-    std::vector<Pair> held_;
+    std::span<Pair> room_;    // unused part of the list's current block
+    std::vector<Pair> held_;  // pairs of the current message, if there is no list
 };
 
 }  // namespace octopair::service

@@ -21,10 +21,10 @@ namespace octopair::service {
 
 namespace {
 
-/// Of input that goes in one message.
-constexpr std::uint64_t most_small_bytes = piece_bytes;
+/// Maximum size of an input that is sent in one message.
+constexpr std::uint64_t max_small_bytes = piece_bytes;
 
-bool is_pairs_wanted(const detail::Output& output) { return output.list != nullptr || output.sink != nullptr; }
+bool wants_pairs(const detail::Output& output) { return output.list != nullptr || output.sink != nullptr; }
 
 class RemoteJob {
 public:
@@ -51,17 +51,17 @@ RemoteJob::RemoteJob(Connection& connection, const detail::Request& request, con
                      const detail::Control& control)
     : connection_(connection),
       stop_(control.stop),
-      pairs_wanted_(is_pairs_wanted(output)),
+      pairs_wanted_(wants_pairs(output)),
       upload_(spec_of(request, pairs_wanted_), arrays_of(request)),
       received_(connection.server(), output, control) {}
 
-/// False if input or result are too large for it, or may be by what is known of other jobs: a result that does not fit was
-/// found in vain.
+/// Runs the job with one message each way. Returns false if the input or result is too large, or if the result is expected to
+/// be: the server's work for a result that does not fit would be wasted.
 bool RemoteJob::run_small() {
     const std::uint64_t bytes = upload_.bytes();
-    if (bytes > most_small_bytes || (pairs_wanted_ && bytes > connection_.small_input())) return false;
+    if (bytes > max_small_bytes || (pairs_wanted_ && bytes > connection_.small_input())) return false;
     try {
-        connection_.persist(stop_, [&] { return call_small(); });
+        connection_.call_with_retries(stop_, [&] { return call_small(); });
         return true;
     } catch (const LimitError& error) {
         if (error.name() != "message_bytes") throw;
@@ -118,7 +118,7 @@ Summary RemoteJob::run() {
         throw_if_stopped(stop_);
         if (!run_small()) {
             upload_.set_id(new_id());
-            connection_.persist(stop_, [&] { return call_stream(); });
+            connection_.call_with_retries(stop_, [&] { return call_stream(); });
             if (received_.pairs() * sizeof(Pair) <= piece_bytes) raise_small_input();
         }
     }

@@ -1,7 +1,7 @@
-// One call of the remote engine, as a job of the server's.
+// Runs one call of the remote engine as a job on the server.
 //
-// Small input goes in one message, and so does a small result. All else goes in a stream; where that breaks, the whole job
-// is sent again, under its own id, and the pairs that were there already are left out by the server.
+// A job with small input and result uses one message each way. Other jobs use a stream. If the stream breaks, the client sends
+// the whole job again with the same id, and the server omits the pairs that the client has received already.
 #pragma once
 
 #include "engine/request.hpp"
@@ -10,7 +10,7 @@ namespace octopair::service {
 
 class Connection;
 
-/// Throws Error, and what a sink or a progress throws.
+/// Returns the summary of the call. Throws: Error; what the sinks for pairs and progress throw.
 Summary find_remotely(Connection& connection, const detail::Request& request, const detail::Output& output,
                       const detail::Control& control);
 

@@ -1,4 +1,4 @@
-// The scene of a client: what its objects are is known here, which pairs they make the server finds.
+// RemoteScene: a scene whose objects are kept by the client, and whose pairs are found by the server.
 #include "octopair/remote_scene.hpp"
 
 #include <chrono>
@@ -27,7 +27,7 @@ namespace {
 
 using service::SceneStream;
 
-/// Each of objects that there are, and ascending.
+/// Returns whether pairs are valid: ascending, with a < b < indices.
 bool are_pairs(std::span<const Pair> pairs, std::uint64_t indices) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Pair& pair = pairs[i];
@@ -39,7 +39,7 @@ bool are_pairs(std::span<const Pair> pairs, std::uint64_t indices) {
 
 }  // namespace
 
-/// The server has the scene as it was after the last step while there is a stream; `calls_` are those since.
+/// Invariant: while there is a stream, the server has the scene of the last step, and `calls_` holds the calls since then.
 class RemoteScene::State {
 public:
     State(std::string_view address, const RemoteSceneOptions& options, const ClientOptions& client)
@@ -58,9 +58,9 @@ public:
     }
 
 private:
-    /// What the server found.
+    /// Result of a step from the server.
     struct Answer {
-        std::vector<Pair> pairs;  // that began, then that ended
+        std::vector<Pair> pairs;  // pairs that began, then pairs that ended
         v1::SceneStep told;
     };
 
@@ -76,12 +76,12 @@ private:
     service::PendingCalls calls_;
     service::Connection connection_;
     std::optional<SceneStream> stream_;
-    bool whole_ = false;  // the step under way is the stream's first
+    bool whole_ = false;  // the current step is the first of its stream, so the whole scene is sent
     Answer answer_;
 
     PairHistory history_;
-    PairChanges changes_;  // of the last step
-    PairChanges found_;    // by one that may fail yet
+    PairChanges changes_;  // changes of the last step
+    PairChanges found_;    // changes of the step under way, which may still fail
     PairList persisting_;
     StepResult result_;
 };
@@ -91,7 +91,7 @@ const StepResult& RemoteScene::State::step(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
     const std::uint64_t before = history_.size();
     try {
-        connection_.persist(stop, [&] { return ask(stop); });
+        connection_.call_with_retries(stop, [&] { return ask(stop); });
         history_.prepare(!whole_);
         take();
         std::swap(changes_, found_);
@@ -109,20 +109,19 @@ const StepResult& RemoteScene::State::step(const std::stop_token& stop) {
     return result_;
 }
 
-/// One attempt: what has changed, or if there is no stream the whole scene on a new one.
+/// Makes one attempt of a step: sends the changes, or the whole scene on a new stream if there is none.
 grpc::Status RemoteScene::State::ask(const std::stop_token& stop) {
     whole_ = !stream_;
     if (whole_) stream_.emplace(connection_);
     if (exchange(stop)) return grpc::Status::OK;
     const grpc::Status status = stream_->status();
     forget_stream();
-    // A server that ends without being asked to cancels its calls; and a call that ends without a result has failed,
-    // whatever it says.
+    // A server that shuts down cancels its calls. A call that ends without a result has failed, even with status OK.
     const bool away = status.ok() || status.error_code() == grpc::StatusCode::CANCELLED;
     return away ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server ended the scene") : status;
 }
 
-/// False if the server ended the call.
+/// Sends the calls and receives the result of a step. Returns false if the server ended the call.
 bool RemoteScene::State::exchange(const std::stop_token& stop) {
     const std::stop_callback cancel(stop, [&] { stream_->cancel(); });
     const auto send = [&](Bytes piece) { stream_->send(piece); };
@@ -154,7 +153,8 @@ void RemoteScene::State::receive() {
         if (small.has_result()) answer_.told = std::move(*small.mutable_result());
         if (right && whole_pairs && !small.has_result()) continue;
         if (right && whole_pairs && fits(answer_)) return;
-        throw Error(ErrorCode::engine_failed, connection_.server() + ": an answer that is none");
+        throw Error(ErrorCode::engine_failed,
+                    connection_.server() + ": the answer is not a valid message of octopair's protocol");
     }
 }
 
@@ -166,7 +166,8 @@ bool RemoteScene::State::fits(const Answer& answer) const {
            are_pairs(pairs.first(std::size_t(began)), indices) && are_pairs(pairs.subspan(std::size_t(began)), indices);
 }
 
-/// A new scene on the server knows nothing of the pairs before: what began and ended is then found here.
+/// Stores the pairs of the answer in the history. A new scene on the server reports all pairs as begun; the client then finds
+/// the changes by comparison.
 void RemoteScene::State::take() {
     const auto ended = answer_.pairs.begin() + std::ptrdiff_t(answer_.told.began());
     if (!whole_) {

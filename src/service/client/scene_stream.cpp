@@ -43,7 +43,7 @@ void SceneStream::read() {
     call_->Read(&in_, tag(Event::read));
 }
 
-/// For anything to come to pass.
+/// Waits for the next event, and handles it. Throws: Ended.
 void SceneStream::wait() {
     void* event = nullptr;
     bool ok = false;
@@ -54,7 +54,7 @@ void SceneStream::wait() {
 
 void SceneStream::handle(Event event, bool ok) {
     const bool reads = event == Event::started || event == Event::read;
-    if (event == Event::written) writing_ = false;  // if it failed, reading says why
+    if (event == Event::written) writing_ = false;  // after a failed write, the read fails as well
     if (event == Event::finished) finished_ = true;
     if (reads && !ok) {
         call_->Finish(&status_, tag(Event::finished));

@@ -1,4 +1,4 @@
-// SceneStream: one call Scene to a server, in the caller's thread.
+// SceneStream: one streaming call Scene to a server. All work is done in the calling thread.
 #pragma once
 
 #include <grpcpp/client_context.h>
@@ -19,23 +19,23 @@ class Connection;
 
 class SceneStream {
 public:
-    /// Thrown when the server has ended the call, or cannot be reached: status() says why.
+    /// Thrown when the server has ended the call or is unreachable. status() has the reason.
     struct Ended {};
 
-    /// Begins the call; whether there is a server turns out later.
+    /// Starts the call. Does not wait for a connection.
     explicit SceneStream(Connection& connection);
     SceneStream(const SceneStream&) = delete;
     SceneStream& operator=(const SceneStream&) = delete;
-    /// Cancels what is under way.
+    /// Cancels the call, and waits for its pending operations.
     ~SceneStream();
 
-    /// Ends the call from any thread: what waits throws Ended.
+    /// Cancels the call. A waiting send() or receive() throws Ended. Thread safety: any thread may call this.
     void cancel() { context_.TryCancel(); }
-    /// Sends a piece of calls; returns before all of it is on its way. Throws Ended.
+    /// Sends a piece of the encoded calls. Returns before the write is complete. Throws: Ended.
     void send(Bytes calls);
-    /// The next message. Throws Ended.
+    /// Waits for the next message, and returns it. Throws: Ended.
     grpc::ByteBuffer receive();
-    /// Once Ended was thrown.
+    /// Returns the status of the call. Requires: Ended has been thrown.
     const grpc::Status& status() const { return status_; }
 
 private:

@@ -34,7 +34,7 @@ std::string Address::text() const {
 }
 
 Address parse_address(std::string_view text) {
-    constexpr std::size_t longest_path = 107;  // of sockaddr_un, with an end
+    constexpr std::size_t longest_path = 107;  // sockaddr_un::sun_path, without its terminating 0
     if (text.substr(0, unix_prefix.size()) == unix_prefix) {
         const std::string_view path = text.substr(unix_prefix.size());
         if (path.empty()) refuse(text, "names no path");
@@ -54,7 +54,8 @@ Address parse_address(std::string_view text) {
         refuse(text, "has an IPv6 address without brackets");
     }
     if (host.empty()) refuse(text, "names no host");
-    if (!std::all_of(host.begin(), host.end(), may_be_in_host)) refuse(text, "has a host that none can be called");
+    if (!std::all_of(host.begin(), host.end(), may_be_in_host))
+        refuse(text, "has a character in its host that no host name can have");
     return {{}, std::string(host), std::string(port)};
 }
 

@@ -1,4 +1,4 @@
-// Where a server listens and clients find it: `unix:PATH` or `HOST:PORT`.
+// Address: where a server listens and clients connect: `unix:PATH` or `HOST:PORT`.
 #pragma once
 
 #include <sys/socket.h>
@@ -9,22 +9,22 @@
 namespace octopair::service {
 
 struct Address {
-    std::string path;  ///< of a Unix socket; empty: host and port
-    std::string host;  ///< a name or a number; of IPv6 without brackets
-    std::string port;
+    std::string path;  ///< path of a Unix socket; empty: the address has host and port
+    std::string host;  ///< name or numeric address; IPv6 without brackets
+    std::string port;  ///< decimal, 0 to 65535
 
     bool is_unix() const { return !path.empty(); }
-    /// As it was written, and as gRPC takes it.
+    /// Returns the address in the form that parse_address() and gRPC accept.
     std::string text() const;
 };
 
-/// Throws Error{usage} for what is no address.
+/// Returns the address that `text` names. Throws: Error{usage} if it is not a valid address.
 Address parse_address(std::string_view text);
 
-/// 127.0.0.0/8 or ::1.
+/// Returns whether the address is in 127.0.0.0/8, or is ::1.
 bool is_loopback(const sockaddr& address);
-/// A Unix socket, or a host that is nothing but loopback: what is sent there stays on this machine. False for a name that
-/// is not known.
+/// Returns whether data sent to `address` stays on this machine: it is a Unix socket, or all addresses of its host are
+/// loopback. False for a host name that cannot be resolved.
 bool is_this_machine(const Address& address);
 
 }  // namespace octopair::service

@@ -19,7 +19,7 @@ using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 
 Text text_of(const Pem& pem) { return {BIO_new_mem_buf(pem.text.data(), int(pem.text.size())), &BIO_free}; }
 
-/// There is nobody to ask for a passphrase.
+/// Refuses keys with a passphrase, because no user can be asked for it.
 int no_passphrase(char*, int, int, void*) { return -1; }
 
 [[noreturn]] void refuse(const Pem& pem, const std::string& why) {

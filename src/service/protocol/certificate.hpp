@@ -1,21 +1,21 @@
-// Certificates and keys (PEM): what is wrong with them, which gRPC would not say.
+// Checks of certificates and keys (PEM), because the error messages of gRPC do not name the cause.
 #pragma once
 
 #include <string>
 
 namespace octopair::service {
 
-/// A text, and the file that it is of.
+/// Contents of a PEM file, and the name of the file for messages.
 struct Pem {
     std::string text, file;
 };
 
-/// Throws Error{bad_input} if there is no certificate in it.
+/// Throws: Error{bad_input} if the file has no certificate.
 void check_certificate(const Pem& certificate);
-/// Of the first certificate, which is a program's own: throws Error{bad_input} if there is none, or no key without a
-/// passphrase, or if the key is another one's.
+/// Checks `key` against the first certificate of the file, which is the program's own.
+/// Throws: Error{bad_input} if there is no certificate, no key without a passphrase, or the key is of another certificate.
 void check_key(const Pem& certificate, const Pem& key);
-/// Of the first certificate.
+/// Returns whether the first certificate of the file has expired.
 bool has_expired(const Pem& certificate);
 
 }  // namespace octopair::service

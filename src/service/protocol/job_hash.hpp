@@ -1,4 +1,4 @@
-// What a job asks for, as one number: the same jobs have the same results, to the byte, if their hashes are the same.
+// JobHash: hash of a job's options and input. Jobs with equal hashes have equal results, to the byte.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,16 @@ class JobSpec;
 
 namespace octopair::service {
 
-/// Of results: raised whenever the same input and options may give other bytes (the octal order may change from version
-/// to version).
+/// Version of results. It is increased when equal input and options may give different bytes (for example, because the octal
+/// order changes).
 inline constexpr std::uint32_t algorithm_version = 1;
 
-/// XXH3 in 128 bits of, little endian: algorithm version (u32), order (u32), margin (f64), whether there is a limit (u64),
-/// the limit (u64), count only (u64); for each set, the second one all zeros if there is none: is there (u64), objects
-/// (u64), precision in bits (u64), padded (u64); then the data as they are uploaded. It is for noticing mistakes, and no
-/// guard against a client that cheats itself.
+/// The 128-bit XXH3 hash of these numbers, little endian:
+///   - algorithm version (u32), order (u32), margin (f64), 1 if there is a limit (u64), limit (u64), 1 if count only (u64);
+///   - for each of two sets: 1 if there is this set (u64), objects (u64), precision in bits (u64), 1 if padded (u64). All four
+///     are 0 for a second set that does not exist;
+///   - the data in the order of the upload.
+/// The hash detects mistakes. It is not secure against a client that constructs collisions for itself.
 class JobHash {
 public:
     explicit JobHash(const v1::JobSpec& spec);
@@ -29,7 +31,7 @@ public:
     JobHash& operator=(const JobHash&) = delete;
 
     void add(std::span<const std::byte> data);
-    /// Its 16 bytes, the high ones first.
+    /// Returns the 16 bytes of the hash, most significant byte first.
     std::string digest() const;
 
 private:

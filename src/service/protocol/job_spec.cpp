@@ -81,7 +81,7 @@ void check_id(const std::string& id) {
         const bool digit = (id[i] >= '0' && id[i] <= '9') || (id[i] >= 'a' && id[i] <= 'f');
         right = shape[i] == 'x' ? digit : id[i] == '-';
     }
-    if (!right) throw Error(ErrorCode::bad_input, "a job's id is a UUID in small letters, as 8-4-4-4-12 digits");
+    if (!right) throw Error(ErrorCode::bad_input, "a job's id must be a UUID of 8-4-4-4-12 digits in lower case");
 }
 
 std::string new_id() {
@@ -138,7 +138,8 @@ Summary summary_of(const v1::Summary& message) {
     summary.truncated = message.truncated();
     summary.entries = message.entries();
     summary.seconds = message.seconds();
-    summary.steps = {message.encode_seconds(), message.count_seconds(), message.scatter_seconds(), message.scan_seconds()};
+    summary.steps = {message.encode_seconds(), message.count_seconds(), message.scatter_seconds(),
+                     message.scan_seconds()};
     return summary;
 }
 

@@ -1,4 +1,4 @@
-// What a job asks for: from a call of the library to a message, back, and what its data are.
+// Conversion between calls of the library and the message JobSpec, checks of JobSpec, and the arrays of a job's input.
 #pragma once
 
 #include <array>
@@ -16,25 +16,27 @@ class Summary;
 
 namespace octopair::service {
 
-/// Without an id. `pairs`: they are wanted, not their number alone.
+/// Returns the spec of a call, without an id. `pairs`: false if only the number of pairs is wanted.
 v1::JobSpec spec_of(const detail::Request& request, bool pairs);
 
-/// The options that a spec says, but for progress.
+/// Returns the options of a spec. They have no progress sink.
 Options options_of(const v1::JobSpec& spec);
 
-/// Throws Error{bad_input} for numbers that no spec may have, a LimitError for more objects than a call can have (2^32 - 1).
-/// After that sizes do not overflow.
+/// Checks the numbers of a spec, so that later computations of sizes do not overflow.
+/// Throws: Error{bad_input} if a number is invalid; LimitError for more than 2^32 - 1 objects.
 void check(const v1::JobSpec& spec);
-/// Throws Error{bad_input} unless `id` is a UUID in its usual form, with small letters.
+/// Throws: Error{bad_input} unless `id` is a UUID of 8-4-4-4-12 digits in lower case.
 void check_id(const std::string& id);
-/// A random one.
+/// Returns a random id. Throws: Error{io_failed} if the system has no random bytes.
 std::string new_id();
 
+/// Returns the number of objects in both sets.
 std::uint64_t object_count(const v1::JobSpec& spec);
-/// Of a spec that was checked.
+/// Returns the size of the input. Requires: check(spec) has passed.
 std::uint64_t input_bytes(const v1::JobSpec& spec);
 
-/// The arrays that the data of a job are, one after the other; those that are not there are empty.
+/// The input arrays of a job in the order of the upload: boxes and paddings of the first set, then of the second. Arrays that
+/// a job does not have are empty.
 using InputArrays = std::array<std::span<const std::byte>, 4>;
 InputArrays arrays_of(const detail::Request& request);
 

@@ -1,10 +1,10 @@
-// gRPC itself, which the first to use it starts.
+// Lifetime of the gRPC library.
 #pragma once
 
 namespace octopair::service {
 
-/// From now on gRPC stays: its end, when the last channel or server goes, may take it ten seconds, and a server or an
-/// engine should go at once.
+/// Keeps the gRPC library initialised until the process ends. Otherwise gRPC shuts down with the last channel or server, which
+/// may take ten seconds, and delays the destruction of an engine or server.
 void keep_grpc();
 
 }  // namespace octopair::service

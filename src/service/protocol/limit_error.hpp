@@ -1,4 +1,4 @@
-// LimitError: an error that names the limit of the server that refused a call.
+// LimitError: an Error{resource_limit} that names the limit of the server that a call exceeds.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,9 @@
 
 namespace octopair::service {
 
-/// An Error{resource_limit} that names the server's limit.
 class LimitError : public Error {
 public:
-    /// `name`: as in the message Limits. `message` says the limit as well.
+    /// `name` is the name of the field in the protocol's message Limits. `message` is complete, and contains the limit.
     LimitError(std::string name, std::uint64_t allowed, const std::string& message)
         : Error(ErrorCode::resource_limit, message), name_(std::move(name)), allowed_(allowed) {}
 

@@ -19,7 +19,7 @@ using Wire = pb::internal::WireFormatLite;
 
 constexpr std::uint32_t large_tag = Wire::MakeTag(large_field, Wire::WIRETYPE_LENGTH_DELIMITED);
 
-/// The next `length` bytes, wherever they lie.
+/// Passes the next `length` bytes to `take`, without copying them. Returns false if the input ends before.
 bool hand_over(pb::io::CodedInputStream& in, std::uint32_t length, const TakeBytes& take) {
     while (length > 0) {
         const void* data = nullptr;
@@ -33,7 +33,7 @@ bool hand_over(pb::io::CodedInputStream& in, std::uint32_t length, const TakeByt
     return true;
 }
 
-/// The small fields as bytes; the large one to `take`.
+/// Copies the small fields to `small`, and passes the large field to `take`. Returns false if the message is invalid.
 bool split(pb::io::CodedInputStream& in, pb::io::CodedOutputStream& small, const TakeBytes& take) {
     while (const std::uint32_t tag = in.ReadTag()) {
         std::uint32_t length = 0;

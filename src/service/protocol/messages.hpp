@@ -1,7 +1,7 @@
-// Messages with one large field: written and read without copying that field through protobuf.
+// Packs and unpacks messages with one large field, without copying this field through protobuf.
 //
-// On the wire they are what protobuf writes: the small fields, then the tag and the length of the large one, then its
-// bytes. So clients in any language need the .proto alone.
+// The bytes on the wire are valid protobuf: the small fields, then tag, length and bytes of the large field. So clients in any
+// language need only the .proto file.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -17,29 +17,29 @@ class MessageLite;
 
 namespace octopair::service {
 
-/// The number of the large field in every message that has one.
+/// Field number of the large field, in every message that has one.
 inline constexpr int large_field = 15;
 
-/// What a message may have; both sides refuse more.
+/// Maximum size of a message. Client and server refuse larger ones.
 inline constexpr std::size_t most_message_bytes = std::size_t(4) << 20;
-/// Of its large field, as this program writes it.
+/// Maximum size of a large field in messages that this program writes.
 inline constexpr std::size_t piece_bytes = std::size_t(1) << 20;
 
-/// Uninitialised bytes for a large field. Throws std::bad_alloc, where gRPC's own end the program. Until it is handed on,
-/// room_in() may be written to.
+/// Returns uninitialised bytes for a large field. Throws: std::bad_alloc (gRPC's own allocation would end the program).
 grpc::Slice make_slice(std::size_t bytes);
+/// Returns the bytes of a slice of make_slice(), for writing. Requires: the slice has not been passed to pack() yet.
 std::span<std::byte> room_in(const grpc::Slice& slice);
 
 /// Receives the large field piece by piece, in order.
 using TakeBytes = std::function<void(std::span<const std::byte>)>;
 
-/// `large`: of the large field; empty: it is left out.
+/// Returns a message of the fields of `small` and the large field `large`. An empty `large` omits this field.
 grpc::ByteBuffer pack(const google::protobuf::MessageLite& small, const grpc::Slice& large = {});
 
-/// Fills `small`, but for the large field, whose bytes go to `take`. False for bytes that are no such message; `take`
-/// may have been called nevertheless.
+/// Parses a message into `small`, and passes the bytes of its large field to `take`. Returns false if the message is invalid;
+/// `take` may have been called before that was detected.
 bool unpack(grpc::ByteBuffer& message, google::protobuf::MessageLite& small, const TakeBytes& take);
-/// Of a message without a large field.
+/// Parses a message into `small`. Returns false if the message is invalid or has a large field.
 bool unpack(grpc::ByteBuffer& message, google::protobuf::MessageLite& small);
 
 }  // namespace octopair::service

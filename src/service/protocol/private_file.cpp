@@ -46,7 +46,8 @@ std::string read_private_file(const std::string& path) {
     const bool roots = found.st_uid == 0 && ::geteuid() != 0;
     const mode_t others = roots ? S_IWGRP | S_IXGRP | S_IRWXO : S_IRWXG | S_IRWXO;
     if ((found.st_mode & others) != 0) {
-        throw Error(ErrorCode::usage, path + ": others may read it; a secret is its owner's alone (chmod 600)");
+        throw Error(ErrorCode::usage,
+                    path + ": other users can access this secret file; restrict it to its owner (chmod 600)");
     }
     return read_all(file, path);
 }
@@ -54,7 +55,7 @@ std::string read_private_file(const std::string& path) {
 std::string read_token(const std::string& path) {
     std::istringstream words(read_private_file(path));
     std::string token, rest;
-    if (!(words >> token) || words >> rest) throw Error(ErrorCode::bad_input, path + ": holds not one token");
+    if (!(words >> token) || words >> rest) throw Error(ErrorCode::bad_input, path + ": must hold exactly one token");
     return token;
 }
 

@@ -1,19 +1,19 @@
-// Files that are read whole: certificates, and secrets, which others must not be able to read.
+// Reads small files: certificates, and secrets, which other users must not be able to read.
 #pragma once
 
 #include <string>
 
 namespace octopair::service {
 
-/// Throws Error{io_failed} if it cannot be read; Error{resource_limit} for more than a MiB, which none of them has.
+/// Returns the contents of a file. Throws: Error{io_failed} if it cannot be read; Error{resource_limit} for more than 1 MiB.
 std::string read_small_file(const std::string& path);
 
-/// The same of a secret. Throws Error{usage} if others than its owner may read or change it; the group may read it if it
-/// belongs to root and its reader is another (as PostgreSQL has it): so an administrator gives it to a service.
+/// Returns the contents of a secret file. If root owns the file and another user reads it, the group may have read permission
+/// (PostgreSQL has the same rule): in this way, an administrator gives a secret to a service.
+/// Throws: as read_small_file(); Error{usage} if users other than the owner have more permissions.
 std::string read_private_file(const std::string& path);
 
-/// The token in a file that holds nothing else. Throws as read_private_file, and Error{bad_input} if there is no token or
-/// more than one.
+/// Returns the token of a secret file. Throws: as read_private_file(); Error{bad_input} unless the file has exactly one token.
 std::string read_token(const std::string& path);
 
 }  // namespace octopair::service

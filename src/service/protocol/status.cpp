@@ -54,9 +54,9 @@ void throw_status(const grpc::Status& status, const std::string& server) {
     }
 }
 
-bool may_come_back(const grpc::Status& status) {
+bool is_retryable(const grpc::Status& status) {
     if (status.error_code() == grpc::StatusCode::UNAVAILABLE) return true;
-    // What gRPC calls a connection that broke within a message, and a call that a server ends because it ends itself.
+    // gRPC reports INTERNAL if the connection breaks within a message, CANCELLED if the server shuts down during the call.
     return status.error_details().empty() &&
            (status.error_code() == grpc::StatusCode::INTERNAL || status.error_code() == grpc::StatusCode::CANCELLED);
 }

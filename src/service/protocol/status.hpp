@@ -1,4 +1,4 @@
-// Errors as statuses of gRPC, and back: the status that others understand, and in its details the library's own code.
+// Conversion between Error and gRPC status. The details of a status carry the library's own error as a Failure message.
 #pragma once
 
 #include <grpcpp/support/status.h>
@@ -14,20 +14,21 @@ class Failure;
 namespace octopair::service {
 
 v1::Failure failure_of(const Error& error);
-/// A LimitError if it names a limit.
+/// Throws: LimitError if `failure` names a limit, otherwise Error.
 [[noreturn]] void throw_failure(const v1::Failure& failure);
 
 grpc::Status status_of(const Error& error);
 grpc::Status status_of(const v1::Failure& failure);
 
-/// Throws what a status that is not OK says. One without details is of gRPC itself: the server is not there, the caller
-/// may not, or the other side is no octopair; `server` names it in the message.
+/// Throws the Error that a status describes. A status without details is of gRPC itself: the server is unreachable, the caller
+/// has no permission, or the server is not octopair. `server` names it in the message. Requires: the status is not OK.
 [[noreturn]] void throw_status(const grpc::Status& status, const std::string& server);
 
-/// The same call may succeed later: the server is gone or going. Of a call that its caller did not cancel.
-bool may_come_back(const grpc::Status& status);
+/// Returns whether a retry of the call may succeed, because the server was unavailable or shuts down.
+/// Requires: the caller has not cancelled the call.
+bool is_retryable(const grpc::Status& status);
 
-/// The exception under way as a status; it may be any.
+/// Returns the status for the current exception, of any type. Requires: called from an exception handler.
 grpc::Status status_of_exception();
 
 }  // namespace octopair::service

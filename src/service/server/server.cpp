@@ -19,16 +19,16 @@
 #include "service/protocol/library.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/calls/calls.hpp"
-#include "service/server/server_context.hpp"
 #include "service/server/log/event.hpp"
 #include "service/server/net/credentials.hpp"
 #include "service/server/net/listener.hpp"
+#include "service/server/server_context.hpp"
 
 namespace octopair::service {
 
 namespace {
 
-/// What gRPC itself may take for messages on their way.
+/// Maximum memory of gRPC for messages in transit.
 constexpr std::size_t transport_bytes = std::size_t(256) << 20;
 
 void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
@@ -47,8 +47,8 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
     builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, 16 << 10);
 }
 
-/// Reflection tells generic clients which calls there are. It asks no one for a token, so a server with tokens does without.
-/// Its library puts it into every server.
+/// Removes gRPC's reflection from a server with tokens: reflection lists the calls of the server to clients without a token.
+/// The reflection library adds itself to every server.
 class WithoutReflection final : public grpc::ServerBuilderOption {
     void UpdateArguments(grpc::ChannelArguments*) override {}
     void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
@@ -76,12 +76,14 @@ public:
         acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD,
                                                                          credentials_of(options.tls, *context_.log));
         server_ = builder.BuildAndStart();
-        if (!server_) throw Error(ErrorCode::engine_failed, "gRPC does not start");
+        if (!server_) throw Error(ErrorCode::engine_failed, "cannot start the gRPC server");
         if (options.metrics) show_metrics(*options.metrics);
-        listener_.start(
-            {options.limits.connections, !options.tls.certificate.empty(),
-             [this](Descriptor connection) { hand_over(std::move(connection)); },
-             [this] { context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused()); }});
+        listener_.start({options.limits.connections, !options.tls.certificate.empty(),
+                         [this](Descriptor connection) { hand_over(std::move(connection)); },
+                         [this] {
+                             context_.server_log.connections_refused(context_.options.limits.connections,
+                                                                     listener_.refused());
+                         }});
     }
 
     ~State() {
@@ -92,7 +94,7 @@ public:
     }
 
     const Address& address() const { return listener_.address(); }
-    ServerLoad load() const { return {context_.places.count(), context_.memory.taken(), listener_.connections()}; }
+    ServerLoad load() const { return {context_.job_quota.count(), context_.memory.taken(), listener_.connections()}; }
 
     void drain(std::optional<std::chrono::milliseconds> grace) {
         constexpr std::chrono::milliseconds apart(20);
@@ -100,7 +102,7 @@ public:
         context_.scheduler.hold_detached();
         listener_.stop();
         server_->GetHealthCheckService()->SetServingStatus(false);
-        // gRPC would wait for all calls: those that upload, and scenes that nobody steps.
+        // Shutdown is called only after this wait: with a deadline, gRPC would wait also for uploads and for idle scenes.
         const auto end = std::chrono::steady_clock::now() + grace.value_or(context_.options.grace);
         while (!context_.idle() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(apart);
         server_->Shutdown(std::chrono::system_clock::now());

@@ -1,4 +1,4 @@
-// Server: octopair's calls at an address.
+// Server: serves octopair's gRPC calls at an address.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -12,29 +12,28 @@
 
 namespace octopair::service {
 
-/// What is on a server now.
+/// Current load of a server.
 struct ServerLoad {
     std::uint64_t jobs = 0;          ///< uploading, queued or running
-    std::uint64_t memory_bytes = 0;  ///< of what ServerLimits::memory_bytes allows
-    std::uint64_t connections = 0;   ///< those that were closed since are still counted for a while
+    std::uint64_t memory_bytes = 0;  ///< reserved memory; limit: ServerLimits::memory_bytes
+    std::uint64_t connections = 0;   ///< open connections; closed ones may still be counted for about a second
 };
 
 class Server {
 public:
-    /// Listens and serves at once. Throws Error{usage} for an address that may not be served without protection,
-    /// Error{io_failed} if the address is taken, and what the engine's maker throws.
+    /// Starts to serve. Throws: Error{usage} for an address that needs TLS and authentication which `options` lack;
+    /// Error{io_failed} if the address is in use; what `ServerOptions::engine` throws.
     Server(const ServerOptions& options, std::shared_ptr<spdlog::logger> log);
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
-    /// At once: cancels what runs.
+    /// Stops at once: cancels attached jobs, and leaves detached ones to the next server.
     ~Server();
 
-    /// Where it listens, with the port that the system chose.
+    /// Returns the address with the actual port.
     const Address& address() const;
-    /// Thread-safe.
+    /// Thread safety: safe.
     ServerLoad load() const;
-    /// Takes no more jobs, waits for those that run, as long as `grace`, or else ServerOptions::grace, and cancels what is
-    /// left.
+    /// Refuses new calls, waits for running jobs for at most `grace` (default: ServerOptions::grace), then cancels the rest.
     void drain(std::optional<std::chrono::milliseconds> grace = {});
 
 private:

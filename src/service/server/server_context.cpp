@@ -16,10 +16,10 @@ namespace octopair::service {
 
 namespace {
 
-/// What finding pairs takes, beside input and result (docs/results.md).
+/// Memory of a search in bytes per object, besides input and result (docs/results.md).
 constexpr std::uint64_t working_bytes = 80;
 
-/// What an engine may hold of pairs that are put in order, beside what the budget counts: each engine keeps so much.
+/// Returns Options::buffer_bytes of a search. The memory budget does not count this buffer, which each engine keeps.
 std::uint64_t buffer_of(const v1::JobSpec& spec, std::uint64_t memory_bytes) {
     const std::uint64_t most = std::uint64_t(object_count(spec) <= most_small_objects ? 64 : 256) << 20;
     return memory_bytes == 0 ? most : std::min(most, memory_bytes / 8);
@@ -39,7 +39,7 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
       access(given.token_file),
       server_log(log),
       memory("memory_bytes", "bytes of memory", given.limits.memory_bytes),
-      places(given.limits.jobs, given.limits.jobs_per_client),
+      job_quota(given.limits.jobs, given.limits.jobs_per_client),
       state(given.state_folder.empty()
                 ? nullptr
                 : std::make_unique<StateFolder>(given.state_folder, given.limits.state_bytes, log)),
@@ -55,7 +55,7 @@ ServerContext::~ServerContext() {
     if (detached) detached->abandon();
 }
 
-grpc::Status ServerContext::let_in(const grpc::ServerContextBase& context, std::string& owner) {
+grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, std::string& owner) {
     grpc::Status status = draining ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is going down")
                                    : access.identify(context, owner);
     if (!status.ok()) server_log.call_refused(context.peer(), status);
@@ -80,9 +80,8 @@ v1::JobReport ServerContext::report(const ServerJob& job) const {
 
 grpc::Status ServerContext::refuse_stalled(const std::string& owner) {
     const auto seconds = std::uint64_t(options.stall.count());
-    const LimitError error(
-        "stall_seconds", seconds,
-        "stall_seconds: next to nothing came for " + std::to_string(seconds) + " s in the middle of an upload");
+    const LimitError error("stall_seconds", seconds,
+                           "stall_seconds: the upload made no progress for " + std::to_string(seconds) + " s");
     server_log.limit_refused(owner, error);
     return status_of(error);
 }
@@ -92,13 +91,13 @@ std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::Jo
         check_limits(spec);
         ServerJob::Parts parts;
         parts.owner = owner;
-        parts.place = places.enter(owner);
+        parts.slot = job_quota.take_slot(owner);
         parts.memory = memory.take(memory_of(spec));
         parts.input = std::make_unique<UploadedInput>(spec, scheduler.engine_for(object_count(spec)), &array_pool);
         parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs);
         parts.spec = std::move(spec);
         auto job = make_job(std::move(parts));
-        server_log.job_moved(*job, {}, v1::UPLOADING);
+        server_log.job_state_changed(*job, {}, v1::UPLOADING);
         return job;
     });
 }
@@ -106,7 +105,9 @@ std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::Jo
 std::shared_ptr<ServerJob> ServerContext::make_job(ServerJob::Parts parts) {
     parts.most_seconds = options.limits.job_seconds;
     parts.buffer_bytes = buffer_of(parts.spec, options.limits.memory_bytes);
-    parts.moved = [this](const ServerJob& job, v1::JobState from, v1::JobState to) { server_log.job_moved(job, from, to); };
+    parts.on_state_change = [this](const ServerJob& job, v1::JobState from, v1::JobState to) {
+        server_log.job_state_changed(job, from, to);
+    };
     return std::make_shared<ServerJob>(std::move(parts));
 }
 

@@ -1,4 +1,4 @@
-// ServerContext: what all calls of a server share.
+// ServerContext: the state that all calls of a server share: options, limits, jobs, log and scheduler.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -9,12 +9,12 @@
 
 #include "service/protocol/limit_error.hpp"
 #include "service/server/calls/call_threads.hpp"
-#include "service/server/jobs/budget.hpp"
-#include "service/server/jobs/job_table.hpp"
-#include "service/server/jobs/job_scheduler.hpp"
-#include "service/server/jobs/watchdog.hpp"
-#include "service/server/jobs/server_job.hpp"
 #include "service/server/jobs/array_pool.hpp"
+#include "service/server/jobs/budget.hpp"
+#include "service/server/jobs/job_scheduler.hpp"
+#include "service/server/jobs/job_table.hpp"
+#include "service/server/jobs/server_job.hpp"
+#include "service/server/jobs/watchdog.hpp"
 #include "service/server/log/server_log.hpp"
 #include "service/server/net/access.hpp"
 #include "service/server/server_options.hpp"
@@ -37,24 +37,26 @@ public:
     ServerLog server_log;
     Budget memory;
     ArrayPool array_pool;
-    ClientCounts places;
-    const std::unique_ptr<StateFolder> state;  // none: there are no detached jobs
+    JobQuota job_quota;
+    const std::unique_ptr<StateFolder> state;  // null: the server takes no detached jobs
     JobTable jobs;
     Watchdog watchdog;
     CallThreads threads;
-    std::shared_ptr<DetachedJobs> detached;  // none without a state folder
+    std::shared_ptr<DetachedJobs> detached;  // null without a state folder
     std::atomic<bool> draining = false;
-    /// Each attached job has a share of 1 from when its input is complete until its call is over.
+    /// Number of attached jobs that the server waits for when it shuts down. Each job reserves 1 from the end of its upload to
+    /// the end of its call.
     Budget attached;
 
-    /// Who calls, if the call is let in: not while the server is going down.
-    grpc::Status let_in(const grpc::ServerContextBase& context, std::string& owner);
+    /// Authenticates the caller and sets `owner` to its name. Returns an error for a refused caller, and while the server shuts
+    /// down.
+    grpc::Status admit(const grpc::ServerContextBase& context, std::string& owner);
 
-    /// A job with room for its input, within all limits; attached. Throws a LimitError, or Error{bad_input}.
+    /// Creates an attached job and reserves memory for it. Throws: LimitError, Error{bad_input}.
     std::shared_ptr<ServerJob> begin(const std::string& owner, v1::JobSpec spec);
-    /// A job of which the server_log is told when it changes; not that it is there.
+    /// Creates a job whose changes of state go to the log. The caller logs the creation.
     std::shared_ptr<ServerJob> make_job(ServerJob::Parts parts);
-    /// What `make` returns; that a limit refuses it is told to the server_log.
+    /// Returns the result of `make`. Logs a LimitError that `make` throws.
     template <typename Make>
     auto within_limits(const std::string& owner, Make&& make) {
         try {
@@ -64,20 +66,20 @@ public:
             throw;
         }
     }
-    /// Throws a LimitError, or Error{bad_input}: no job may ask that.
+    /// Throws: Error{bad_input} for an invalid spec, LimitError for a spec beyond the limits on objects or input.
     void check_limits(const v1::JobSpec& spec) const;
-    /// For a call whose client took too long in the middle of an upload.
+    /// Logs that a client stalled in the middle of an upload, and returns the status that ends its call.
     grpc::Status refuse_stalled(const std::string& owner);
-    /// What a job takes while it runs, beside its result.
+    /// Returns the memory in bytes that a job needs while it runs, without its result.
     static std::uint64_t memory_of(const v1::JobSpec& spec);
-    /// Of a job, with its place in the queue.
+    /// Returns the job's report, with the number of jobs queued before it.
     v1::JobReport report(const ServerJob& job) const;
-    /// Its input is complete: it waits for its turn.
+    /// Adds `job` to the scheduler and the watchdog. Requires: the input is complete.
     void queue(const std::shared_ptr<ServerJob>& job);
-    /// No attached job is queued, runs, or has a result that is on its way, and no detached one runs.
+    /// Returns whether no attached job is queued, running or sending its result, and no detached job is running.
     bool idle() const;
 
-    JobScheduler scheduler;  // the last, so that it ends first
+    JobScheduler scheduler;  // last member: destroyed first, so that no job runs while the others are destroyed
 };
 
 }  // namespace octopair::service

@@ -1,4 +1,4 @@
-// Asks the server at the address that it is given for the pairs of three boxes.
+// A client of a server: detects the pairs of three boxes on the server at the given address.
 #include <octopair/client.hpp>
 #include <octopair/octopair.hpp>
 

@@ -1,4 +1,4 @@
-// A user of octopair outside its tree: three boxes, two of which touch.
+// A program that uses an installed octopair: three boxes, two of which touch.
 #include <octopair/octopair.hpp>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// A user of octopair on the ranks of an MPI program.
+// An MPI program that uses an installed octopair on its ranks.
 #include <octopair/mpi.hpp>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Three boxes through a filter of one's own, and one that comes with octopair.
+// A program that passes three boxes through a custom filter and a filter of octopair.
 #include <octopair/filters.hpp>
 #include <octopair/octopair.hpp>
 

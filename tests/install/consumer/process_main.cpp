@@ -1,4 +1,4 @@
-// A user of a library that uses octopair's worker processes.
+// A program that uses a library which uses octopair's worker processes.
 #include <cstddef>
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-// A library that finds pairs on either engine, by changing one line.
+// A library that finds pairs on either engine. The choice is a single line.
 #include <octopair/octopair.hpp>
 #include <octopair/processes.hpp>
 

@@ -1,4 +1,4 @@
-// Results: from any place on, if they are the same; and what comes after them: cancel, release, and the time they are kept.
+// Tests results: reads from any offset of an unchanged result, then cancel, release, and the retention time.
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
@@ -21,7 +21,7 @@ protected:
         std::string hash;
     };
 
-    /// What the call Result gives; throws its status.
+    /// Returns the answer of the call Result. Throws: its status.
     Answer ask(const std::string& id, std::uint64_t offset, const std::string& hash = {}) {
         v1::ResultRequest request;
         request.set_id(id);

@@ -1,4 +1,4 @@
-// Files of the state folder that were damaged: the job says so and names the file, all others are served.
+// Tests damaged files of the state folder: the affected job reports the file, and all other jobs are served.
 #include <fstream>
 
 #include "service/detached/host.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 class Damage : public ::testing::Test {
 protected:
-    /// Submits, waits, stops; then changes the bytes of its file as they are.
+    /// Submits a job, waits for its end, stops the server, and then changes the bytes of the job's file in place.
     template <typename Change>
     void damage(const std::string& ending, const Change& change) {
         id_ = submit(*client_, work_);

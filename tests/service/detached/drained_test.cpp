@@ -1,4 +1,4 @@
-// Detached jobs while their server goes down: those that run are waited for, those that wait are left for the next one.
+// Tests detached jobs during shutdown: the server waits for running jobs and leaves queued jobs for the next server.
 #include <thread>
 
 #include "service/detached/host.hpp"
@@ -24,7 +24,7 @@ TEST(Drained, WaitsForWhatRuns) {
 TEST(Drained, LeavesWhatOutlastsItsGrace) {
     ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
     const auto client = host.client();
-    // Of so many equal boxes all pairs are counted for hours.
+    // To count all pairs of so many equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     Work work(Objects{std::span(same), {}});
     work.terms.count_only = true;
@@ -49,10 +49,10 @@ public:
         return std::make_unique<service::UploadedInput>(v1::JobSpec(), engine);
     }
     void end(const v1::JobReport&) override {}
-    void later(std::function<void()> errand) override { errand(); }
+    void run_on_disk_queue(std::function<void()> task) override { task(); }
 };
 
-/// Jobs of no objects, in a scheduler of their own.
+/// Tests jobs without objects in their own scheduler.
 class DrainedScheduler : public ::testing::Test {
 protected:
     std::shared_ptr<service::ServerJob> queued_job(bool detached) {

@@ -1,4 +1,4 @@
-// The state folder: whose it is, how much may be in it, and what a crash left there.
+// Tests the state folder: its owner, its size limit, and the recovery after a crash.
 #include <sys/stat.h>
 
 #include <fstream>
@@ -91,7 +91,7 @@ TEST(Folder, HasNoRoomForAResult) {
     EXPECT_TRUE(host.files(".part").empty());
 }
 
-/// With a job that is done; the server has ended.
+/// Fixture with a finished job. The server has ended.
 class FolderOfADoneJob : public ::testing::Test {
 protected:
     FolderOfADoneJob() {

@@ -1,4 +1,4 @@
-// A state folder on a disk that has no more room: what does not fit is refused, and all else goes on.
+// Tests a state folder on a full disk: jobs that do not fit are refused, and everything else works.
 #include <sched.h>
 #include <sys/mount.h>
 
@@ -11,7 +11,7 @@
 namespace octopair::test {
 namespace {
 
-/// Mounts a disk of 3 MB at a folder, for this process alone. Says why not, if it may not.
+/// Mounts a disk of 3 MB at a folder, for this process only. Returns the reason if mounting is not permitted.
 std::string mount_small_disk(const std::string& folder) {
     std::filesystem::create_directory(folder);
     if (::unshare(CLONE_NEWNS) == 0 && ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&

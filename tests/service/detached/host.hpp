@@ -1,4 +1,4 @@
-// A server with a state folder in the test's own process, on a Unix socket; the folder outlives it.
+// A server with a state folder in the test's process, on a Unix socket. The folder outlives the server.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ public:
         return std::make_unique<JobClient>(address(), options);
     }
 
-    /// The files of jobs in the state folder.
+    /// Returns the files of jobs in the state folder.
     std::vector<std::string> files(const std::string& ending = {}) const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(state())) {
@@ -79,7 +79,7 @@ private:
     std::unique_ptr<service::Server> server_;
 };
 
-/// Whether it came true within a minute.
+/// Returns whether the condition holds within a minute.
 inline bool comes_true(const std::function<bool()>& condition) {
     for (int i = 0; i < 6000; ++i) {
         if (condition()) return true;
@@ -88,7 +88,7 @@ inline bool comes_true(const std::function<bool()>& condition) {
     return false;
 }
 
-/// What is submitted.
+/// The input of a submitted job.
 struct Work {
     Objects first;
     std::optional<Objects> second;

@@ -1,4 +1,5 @@
-// `octopair serve` killed again and again while jobs are queued, running and streamed: all results are right, once.
+// Tests `octopair serve` killed repeatedly while jobs are queued, running and streamed. Every result is right and
+// complete, without repetitions.
 #include <csignal>
 
 #include <spawn.h>
@@ -42,7 +43,7 @@ private:
     pid_t id_ = 0;
 };
 
-/// A receiver that stops in the middle of what it is given, once for every kill.
+/// A receiver that pauses in the middle of its input, once for every kill.
 class SlowReader {
 public:
     void take(std::span<const Pair> pairs) {
@@ -50,7 +51,7 @@ public:
         const int stop = stops_++;
         while (stop < kills && kills_ <= stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    /// It waits for the next kill.
+    /// Returns whether the reader waits for the next kill.
     bool waits() const { return stops_ > kills_; }
     void killed() { ++kills_; }
     const std::vector<Pair>& pairs() const { return pairs_; }
@@ -66,7 +67,7 @@ TEST(Killed, LosesAndRepeatsNothing) {
     ServeProgram server;
     JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
     const std::vector<Box3f> heap(scaled(4000, 2));  // 64 MB of pairs
-    // Seconds of work; builds with test hooks check each pair that they count.
+    // Takes seconds. Builds with test hooks check each counted pair.
     const std::vector<Box3f> crowd(has_test_hooks ? scaled(50'000, 2) : 150'000);
     const std::vector<Box3f> scene = make_boxes("dense", scaled(400'000, 10), 1);
     const Work of_heap(Objects{std::span(heap), {}}), of_scene(Objects{std::span(scene), {}});

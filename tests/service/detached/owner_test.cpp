@@ -1,4 +1,4 @@
-// A job is its owner's alone.
+// Tests that only the owner of a job has access to the job.
 #include <sys/stat.h>
 
 #include "service/detached/host.hpp"

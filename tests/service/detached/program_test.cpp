@@ -1,4 +1,4 @@
-// octopair submit, status, result, cancel.
+// Tests `octopair submit`, `status`, `result` and `cancel`.
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -6,7 +6,7 @@ namespace {
 
 class JobProgramTest : public ProgramTest {
 protected:
-    /// A script with a server beside it, which OCTOPAIR_SERVER names.
+    /// Runs a script while a server runs. OCTOPAIR_SERVER holds the server's address.
     Outcome with_server(const std::string& script, const std::string& serve = "--state state") const {
         return shell("rm -f log; \"$P\" serve --listen unix:socket " + serve +
                      " 2>log & S=$!; trap 'kill $S; wait $S' EXIT\nexport OCTOPAIR_SERVER=unix:socket\n" +
@@ -62,7 +62,7 @@ TEST_F(JobProgramTest, ShowsATokenWhereOneIsWanted) {
                         " --quiet --release && \"$P\" status && \"$P\" cancel " + id,
                     "--state state --tokens tokens");
     EXPECT_EQ(outcome.out, id + "\na,b\n0,1\n");
-    EXPECT_NE(outcome.err.find("the server wants a token"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("the server requires a token"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("there is no job"), std::string::npos) << outcome.err;
 }
 

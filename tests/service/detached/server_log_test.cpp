@@ -1,4 +1,4 @@
-// What the server's log says of detached jobs: as of others.
+// Tests that the server's log reports detached jobs in the same way as other jobs.
 #include "service/detached/host.hpp"
 #include "service/metrics_page.hpp"
 #include "service/raw_call.hpp"
@@ -36,7 +36,7 @@ TEST(DetachedServerLog, CountsRefusals) {
     EXPECT_TRUE(test::page_has(host.words(), "octopair_refusals_total{limit=\"objects\"} 1"));
 }
 
-/// Complete messages, each with next to nothing.
+/// Complete messages that hold almost no data.
 TEST(DetachedServerLog, CountsUploadsThatStall) {
     const ServerContext host([](service::ServerOptions& options) {
         show_metrics(options);

@@ -1,4 +1,5 @@
-// Jobs that are submitted and collected: the same pairs as here, whatever is asked; once, under one name.
+// Tests jobs that are submitted and collected. Every call finds the pairs of the local engine, and each name runs one
+// job only.
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 

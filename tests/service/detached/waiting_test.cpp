@@ -1,4 +1,5 @@
-// Jobs that wait: for their turn, for memory; and are cancelled, waited for, or are not done when the server ends.
+// Tests jobs that wait for their turn or for memory. Such jobs can be cancelled, waited for, or unfinished when the
+// server ends.
 #include <atomic>
 #include <thread>
 
@@ -9,7 +10,7 @@
 namespace octopair::test {
 namespace {
 
-/// Some tenths of a second of work, more than a lane for small jobs takes.
+/// Returns boxes for some tenths of a second of work, more than a lane for small jobs accepts.
 std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
 
 TEST(Waiting, IsForMemory) {
@@ -38,7 +39,7 @@ TEST(Waiting, EndsWithTheTimeOrTheJob) {
 TEST(Waiting, CanBeCancelled) {
     const ServerContext host;
     const auto client = host.client();
-    // Of so many equal boxes all pairs are counted for hours.
+    // To count all pairs of so many equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     const JobTerms count{.count_only = true};
     const std::string running = client->submit({std::span(same), {}}, {}, count),

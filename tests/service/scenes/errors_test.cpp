@@ -1,4 +1,5 @@
-// What a scene refuses a remote one refuses at once, in the same words and without its server; both go on as before.
+// Tests that a remote scene refuses exactly the calls that a local scene refuses. It refuses at once, with the same
+// message and without its server. Both scenes then work as before.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ std::string refusal_of(Call&& call) {
     return "accepted";
 }
 
-/// The same call to two scenes, each with two unit boxes at one place.
+/// Makes equal calls to two scenes, each with two unit boxes at the same place.
 class RemoteSceneErrors : public ::testing::Test {
 protected:
     RemoteSceneErrors() {

@@ -1,4 +1,4 @@
-// Servers and clients that go away in the life of a scene.
+// Tests servers and clients that end during the life of a scene.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -13,7 +13,7 @@ constexpr Box3f elsewhere = {{5, 5, 5}, {6, 6, 6}};
 
 const std::vector<Box3f> twice(2, Box3f{{0, 0, 0}, {1, 1, 1}});
 
-/// Of two objects that are a pair; not stepped yet.
+/// Adds two objects that form a pair, without a step. Returns their ids.
 std::vector<ObjectId> add_pair(RemoteScene& scene) {
     std::vector<ObjectId> ids(2);
     scene.add(Objects{std::span(twice)}, ids);
@@ -36,7 +36,7 @@ TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
     EXPECT_EQ(scene.pairs().to_vector(), (std::vector<Pair>{{0, 1}}));
     server.come();
     const StepResult* step = nullptr;
-    // With so little patience one may miss it again.
+    // With so little patience, a call may miss the server again.
     EXPECT_TRUE(test::comes_true([&] {
         try {
             step = &scene.step();
@@ -70,7 +70,7 @@ TEST(RemoteSceneFaults, AServerThatGoesDownDoesNotWaitForIdleScenes) {
     RemoteScene scene = server.scene();
     (void)add_pair(scene);
     (void)scene.step();
-    server.server().drain();  // which waits for ever if the scene does not end
+    server.server().drain();  // never returns if the scene does not end
     server.go();
     server.come();
     EXPECT_EQ(scene.step().persisting, 1u);

@@ -1,4 +1,4 @@
-// Frames of a million objects, whose calls and results are many messages.
+// Tests frames of a million objects, whose calls and results need many messages.
 #include <gtest/gtest.h>
 
 #include "samples/scenes.hpp"

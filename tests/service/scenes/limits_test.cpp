@@ -1,4 +1,4 @@
-// What a server grants a scene.
+// Tests the server's limits on a scene.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -98,7 +98,7 @@ TEST(RemoteSceneLimits, AFrameThatStallsEnds) {
     ASSERT_TRUE(scene.send(records.bytes));
     const grpc::Status status = scene.end();
     EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-    EXPECT_EQ(status.error_message(), "stall_seconds: nothing came for 1 s in the middle of a frame");
+    EXPECT_EQ(status.error_message(), "stall_seconds: nothing was received for 1 s in the middle of a frame");
 }
 
 TEST(RemoteSceneLimits, ASceneMayBeIdleBetweenFrames) {

@@ -1,4 +1,4 @@
-// What no client of ours sends.
+// Tests scene messages that octopair's client never sends.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -24,7 +24,7 @@ protected:
         return status.error_message();
     }
 
-    /// The server is as it was.
+    /// Expects that the server still works.
     void expect_service() {
         RemoteScene scene = server_.scene();
         EXPECT_EQ(scene.step().pairs(), 0u);
@@ -54,7 +54,7 @@ TEST_F(SceneMessages, RecordsThatAreDamaged) {
 TEST_F(SceneMessages, ACallThatTheSceneRefuses) {
     Records records;
     records.remove(std::vector{ObjectId{3, 1}});
-    EXPECT_EQ(refusal_of(records.bytes), "object 0 of the call: id 3.1 is of no object of the scene");
+    EXPECT_EQ(refusal_of(records.bytes), "object 0 of the call: id 3.1 names no object of the scene");
     EXPECT_EQ(refusal_of(Records({.margin = -1}).step().bytes), "margin is -1.000000, not a finite number >= 0");
 }
 

@@ -1,5 +1,5 @@
-// Remote scenes on random histories: each call is made to a local scene as well, ids and results must be the same, and brute
-// force is the judge of both. Now and then the server goes and comes back, or a step is cancelled.
+// Tests remote scenes on random histories. Every call is also made to a local scene. Ids and results must be equal, and
+// brute force checks both. Sometimes the server restarts, or a step is cancelled.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t histories_a_kind = test::scaled(10, 5);
 
-/// A local and a remote scene that must not differ.
+/// A local and a remote scene that must stay equal.
 class TwinScene {
 public:
     TwinScene() = default;
@@ -74,7 +74,7 @@ public:
     bool contains(ObjectId id) const { return remote_->contains(id); }
 
 private:
-    /// The first one is cancelled, wherever it is then, unless it is done before.
+    /// Makes a step twice. The first is cancelled at a random moment, unless it has already ended.
     const StepResult& step_twice() {
         const std::vector<Pair> before = remote_->pairs().to_vector();
         std::stop_source stop;

@@ -15,7 +15,7 @@
 
 namespace octopair::test {
 
-/// Records as a recorder writes them, in memory.
+/// Encodes records in memory, in the form of a recorder.
 class Records final : public CallEncoder {
 public:
     explicit Records(const SceneOptions& options = {}) { keep(bytes_of(recording_head(options))); }
@@ -30,7 +30,7 @@ public:
         return *this;
     }
     void append(RecordKind kind, std::initializer_list<Bytes> pieces) override {
-        const auto [head, checksum] = frame_of(kind, pieces);
+        const auto [head, checksum] = envelope_of(kind, pieces);
         keep(bytes_of(head));
         for (const Bytes piece : pieces) keep(piece);
         keep(bytes_of(checksum));
@@ -46,7 +46,7 @@ class RawScene {
 public:
     explicit RawScene(const std::string& address) : connection_(address, ClientOptions{}), stream_(connection_) {}
 
-    /// False if the server has ended the call.
+    /// Sends calls. Returns false if the server has ended the call.
     bool send(Bytes calls) {
         try {
             stream_.send(calls);
@@ -55,7 +55,7 @@ public:
             return false;
         }
     }
-    /// Waits for a message; none if the server has ended the call.
+    /// Waits for a message. Returns nothing if the server has ended the call.
     std::optional<grpc::ByteBuffer> receive() {
         try {
             return stream_.receive();
@@ -63,7 +63,7 @@ public:
             return {};
         }
     }
-    /// What the server ends the call with.
+    /// Returns the status with which the server ends the call.
     grpc::Status end() {
         while (receive()) {
         }

@@ -1,4 +1,4 @@
-// A server of this process at a socket of its own, which may go and come back.
+// A server in the test's process, at its own socket. The test can stop and restart the server.
 #pragma once
 
 #include <grpc/grpc.h>
@@ -23,7 +23,7 @@ class SceneServer {
 public:
     explicit SceneServer(const service::ServerLimits& limits = {},
                          std::chrono::seconds stall = std::chrono::seconds(60)) {
-        // Where nobody has gRPC any more it ends its threads, which may take 10 s each time.
+        // Without any user, gRPC ends its threads, which may take 10 s each time. So keep gRPC initialised.
         [[maybe_unused]] static const bool kept = (grpc_init(), true);
         static std::atomic<int> number = 0;
         path_ = std::filesystem::temp_directory_path() /
@@ -57,7 +57,7 @@ private:
     std::optional<service::Server> server_;
 };
 
-/// Whether `holds` becomes true, soon or within a generous while.
+/// Returns whether `holds` becomes true within a generous time.
 template <typename Condition>
 bool comes_true(Condition&& holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);

@@ -7,8 +7,8 @@
 
 namespace octopair {
 
-void StopRelay::pass_on() {
-    if (beside_) beside_();
+void StopRelay::poll() {
+    if (on_poll_) on_poll_();
     if (known_) return;
     if (stop_.stop_requested()) {
         known_ = sent_ = true;
@@ -20,7 +20,7 @@ void StopRelay::pass_on() {
 }
 
 void StopRelay::end() {
-    known_ = true;  // what is sent from here on would find nobody
+    known_ = true;  // no rank would receive a stop that is sent after the exchange below
     const std::vector<char> sent = comm_.all_gather(char(sent_));
     for (unsigned r = 0; r < comm_.size(); ++r) {
         if (sent[r] != 0 && r != comm_.rank()) comm_.receive_stop(r);
@@ -30,25 +30,26 @@ void StopRelay::end() {
 
 namespace {
 
-/// In the order in which failures are told.
-enum class Ending : std::uint8_t { bad_object, error, foreign, stopped, good };
+/// Kind of outcome of a part on one rank. If several ranks fail, the lowest value has priority.
+/// `foreign`: an exception that is no Error.
+enum class OutcomeKind : std::uint8_t { bad_object, error, foreign, stopped, good };
 
-/// What a rank tells of itself.
-struct ToldEnding {
-    Ending ending = Ending::good;
+/// Outcome of a part on one rank, without its message. Sent to all ranks.
+struct OutcomeHeader {
+    OutcomeKind kind = OutcomeKind::good;
     ErrorCode code = ErrorCode::engine_failed;
-    std::uint32_t length = 0;    // of the message
-    std::uint64_t position = 0;  // of a bad object
+    std::uint32_t length = 0;    // length of the message
+    std::uint64_t position = 0;  // position of a bad object
 };
 
-bool before(const ToldEnding& a, const ToldEnding& b) {
-    return a.ending != b.ending ? a.ending < b.ending : a.position < b.position;
+bool precedes(const OutcomeHeader& a, const OutcomeHeader& b) {
+    return a.kind != b.kind ? a.kind < b.kind : a.position < b.position;
 }
 
 }  // namespace
 
 struct Agreement::Outcome {
-    ToldEnding told;
+    OutcomeHeader header;
     std::string message;
     std::exception_ptr failure = {};
 };
@@ -58,29 +59,29 @@ Agreement::Outcome Agreement::outcome_of(const std::function<void()>& part) {
         part();
         return {};
     } catch (const BadObject& bad) {
-        return {{Ending::bad_object, ErrorCode::bad_input, 0, bad.position}, bad.message};
+        return {{OutcomeKind::bad_object, ErrorCode::bad_input, 0, bad.position}, bad.message};
     } catch (const Error& error) {
-        const Ending ending = error.code() == ErrorCode::cancelled ? Ending::stopped : Ending::error;
-        return {{ending, error.code()}, error.what()};
+        const OutcomeKind kind = error.code() == ErrorCode::cancelled ? OutcomeKind::stopped : OutcomeKind::error;
+        return {{kind, error.code()}, error.what()};
     } catch (const std::bad_alloc&) {
-        return {{Ending::error, ErrorCode::resource_limit}, "out of memory"};
+        return {{OutcomeKind::error, ErrorCode::resource_limit}, "out of memory"};
     } catch (...) {
-        return {{Ending::foreign}, "the receiver of the pairs failed", std::current_exception()};
+        return {{OutcomeKind::foreign}, "the receiver of the pairs failed", std::current_exception()};
     }
 }
 
 void Agreement::together(const std::function<void()>& part) {
     Outcome own = outcome_of(part);
-    own.told.length = std::uint32_t(own.message.size());
-    const std::vector<ToldEnding> all = comm_.all_gather(own.told);
-    const auto first = std::min_element(all.begin(), all.end(), before);
-    if (first->ending == Ending::good) return;
+    own.header.length = std::uint32_t(own.message.size());
+    const std::vector<OutcomeHeader> all = comm_.all_gather(own.header);
+    const auto first = std::min_element(all.begin(), all.end(), precedes);
+    if (first->kind == OutcomeKind::good) return;
     const unsigned rank = unsigned(first - all.begin());
     std::string message = own.message;
     message.resize(first->length);
     comm_.broadcast(std::span(message), rank);
     if (own.failure) std::rethrow_exception(own.failure);
-    const bool of_many = comm_.size() > 1 && (first->ending == Ending::error || first->ending == Ending::foreign);
+    const bool of_many = comm_.size() > 1 && (first->kind == OutcomeKind::error || first->kind == OutcomeKind::foreign);
     throw Error(first->code, of_many ? "rank " + std::to_string(rank) + ": " + message : message);
 }
 

@@ -1,8 +1,9 @@
-// Agreement: all ranks go on with a call together, or all end it with the same Error.
+// Agreement: either all ranks continue a call, or all ranks end it with the same Error.
 //
-// What fails on one rank alone (a box that is not one, a full disk, a stop) would let the others wait for it forever. So
-// each part of a call that may fail runs in together(), at whose end the ranks tell each other how it went. Of several
-// failures the one that the local engine would have met comes first: the object with the lowest index; a stop comes last.
+// Purpose    a failure of one rank alone (an invalid box, a full disk, a stop request) would make the other ranks wait forever.
+//            So each part of a call that may fail runs in together(). At its end the ranks exchange their outcomes.
+// Priority   if several ranks fail, all report the failure that the local engine would meet first: the invalid object with the
+//            lowest position, then errors, then exceptions that are no Error, each of the lowest rank; a stop comes last.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +18,44 @@
 
 namespace octopair {
 
-/// Bad input of which the others must know where it stands.
+/// Exception for an invalid object, with the position by which the ranks select the first invalid object.
 struct BadObject {
-    std::uint64_t position;  ///< among the objects of all ranks, those of a second set after those of the first
+    std::uint64_t position;  ///< among the objects of all ranks, the second set after the first
     std::string message;
 };
 
-/// Makes the stop of any rank that of all, also while they work.
+/// Forwards a stop request of one rank to all ranks, while the ranks work or wait.
 class StopRelay {
 public:
-    /// `stop`: of this rank's call. `beside`, which may be empty, is done whenever stops are looked for.
-    StopRelay(Communicator& comm, std::stop_source& stop, std::function<void()> beside = {})
-        : comm_(comm), stop_(stop), beside_(std::move(beside)) {
-        comm_.set_meanwhile([this] { pass_on(); });
+    /// `stop`: stop source of this rank's call; borrowed. `on_poll` may be empty; each poll() runs it first.
+    StopRelay(Communicator& comm, std::stop_source& stop, std::function<void()> on_poll = {})
+        : comm_(comm), stop_(stop), on_poll_(std::move(on_poll)) {
+        comm_.set_wait_hook([this] { poll(); });
     }
     StopRelay(const StopRelay&) = delete;
     StopRelay& operator=(const StopRelay&) = delete;
-    ~StopRelay() { comm_.set_meanwhile({}); }
+    ~StopRelay() { comm_.set_wait_hook({}); }
 
-    /// To be called every few milliseconds of work, on the thread of the call; the communicator does while it waits.
-    void pass_on();
-    /// Collective: afterwards nothing is under way.
+    /// Sends this rank's stop request, or receives that of another rank. Call every few milliseconds of work, on the thread of
+    /// the call. The communicator calls poll() while it waits.
+    void poll();
+    /// Collective. Afterwards no stop message is in flight.
     void end();
 
 private:
     Communicator& comm_;
     std::stop_source& stop_;
-    std::function<void()> beside_;
-    bool sent_ = false;   // by this rank
-    bool known_ = false;  // to all, or too late
+    std::function<void()> on_poll_;
+    bool sent_ = false;   // this rank has sent its stop request
+    bool known_ = false;  // no stop is to be sent or received any more: all ranks have it, or the call ends
 };
 
 class Agreement {
 public:
     explicit Agreement(Communicator& comm) : comm_(comm) {}
 
-    /// Runs `part`; throws on all ranks if it threw on any: Error, or what is not one on the rank that threw it.
+    /// Collective. Runs `part`, and throws on all ranks if `part` threw on any rank.
+    /// Throws: the same Error on all ranks; but a rank whose `part` threw an exception of another type rethrows that one.
     void together(const std::function<void()>& part);
 
 private:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int exchange_tag = 1;
 constexpr int stop_tag = 2;
-constexpr int pulse_tag = 3;
+constexpr int heartbeat_tag = 3;
 
 void check(int code) {
     if (code == MPI_SUCCESS) return;
@@ -25,12 +25,12 @@ void check(int code) {
     throw Error(ErrorCode::engine_failed, "MPI: " + std::string(text, std::size_t(length)));
 }
 
-class WithinMpi {
+class MpiTimer {
 public:
-    explicit WithinMpi(Traffic& traffic) : traffic_(traffic) {}
-    WithinMpi(const WithinMpi&) = delete;
-    WithinMpi& operator=(const WithinMpi&) = delete;
-    ~WithinMpi() { traffic_.cpu_seconds += thread_seconds() - begin_; }
+    explicit MpiTimer(Traffic& traffic) : traffic_(traffic) {}
+    MpiTimer(const MpiTimer&) = delete;
+    MpiTimer& operator=(const MpiTimer&) = delete;
+    ~MpiTimer() { traffic_.cpu_seconds += thread_seconds() - begin_; }
 
 private:
     Traffic& traffic_;
@@ -69,11 +69,11 @@ void Communicator::count(std::uint64_t bytes, std::uint64_t messages) {
     traffic_.messages += messages;
 }
 
-/// MPI's own waits would look after nothing else.
+/// Polls, because MPI_Waitall cannot call the wait hook.
 void Communicator::wait(std::span<MPI_Request> requests) {
     int done = 0;
     while (check(MPI_Testall(int(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE)), done == 0) {
-        if (meanwhile_) meanwhile_();
+        if (wait_hook_) wait_hook_();
         std::this_thread::yield();
     }
 }
@@ -85,22 +85,23 @@ void Communicator::taped(std::span<std::byte> result, const Run& run) {
     if (tape_ != nullptr) tape_->take(result);
 }
 
-void Communicator::count_told(std::uint64_t bytes) { count(bytes * (size_ - 1), std::bit_width(size_ - 1)); }
+void Communicator::count_broadcast(std::uint64_t bytes) { count(bytes * (size_ - 1), std::bit_width(size_ - 1)); }
 
 void Communicator::gather_equal(std::span<const std::byte> own, std::span<std::byte> all) {
-    const WithinMpi counted(traffic_);
+    const MpiTimer counted(traffic_);
     taped(all, [&] {
         MPI_Request request = MPI_REQUEST_NULL;
         check(MPI_Iallgather(own.data(), int(own.size()), MPI_BYTE, all.data(), int(own.size()), MPI_BYTE, comm_,
                              &request));
         wait({&request, 1});
     });
-    count_told(own.size());
+    count_broadcast(own.size());
 }
 
 void Communicator::gather_parts(const Values& own, std::span<const std::size_t> begins, void* all) {
-    const WithinMpi counted(traffic_);
-    if (begins.back() > std::size_t(INT32_MAX)) throw Error(ErrorCode::resource_limit, "too much to tell all ranks");
+    const MpiTimer counted(traffic_);
+    if (begins.back() > std::size_t(INT32_MAX))
+        throw Error(ErrorCode::resource_limit, "more than 2^31 - 1 values to gather on all ranks");
     std::vector<int> counts(size_);
     for (unsigned r = 0; r < size_; ++r) counts[r] = int(begins[r + 1] - begins[r]);
     const std::vector<int> places(begins.begin(), begins.end() - 1);
@@ -110,14 +111,14 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
         check(MPI_Type_commit(&item));
         MPI_Request request = MPI_REQUEST_NULL;
         check(MPI_Iallgatherv(own.data, counts[rank_], item, all, counts.data(), places.data(), item, comm_, &request));
-        check(MPI_Type_free(&item));  // which the request outlives
+        check(MPI_Type_free(&item));  // the pending request keeps the type alive
         wait({&request, 1});
     });
-    count_told(std::uint64_t(counts[rank_]) * own.item_bytes);
+    count_broadcast(std::uint64_t(counts[rank_]) * own.item_bytes);
 }
 
 void Communicator::add_up(std::span<std::uint64_t> values) {
-    const WithinMpi counted(traffic_);
+    const MpiTimer counted(traffic_);
     for (std::span<std::uint64_t> left = values; !left.empty();) {
         const auto some =
             left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(std::uint64_t))));
@@ -132,7 +133,7 @@ void Communicator::add_up(std::span<std::uint64_t> values) {
 }
 
 void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
-    const WithinMpi counted(traffic_);
+    const MpiTimer counted(traffic_);
     for (std::span<std::byte> left = bytes; !left.empty();) {
         const auto some = left.first(std::min(left.size(), message_bytes_));
         taped(some, [&] {
@@ -140,13 +141,13 @@ void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
             check(MPI_Ibcast(some.data(), int(some.size()), MPI_BYTE, int(from), comm_, &request));
             wait({&request, 1});
         });
-        if (rank_ == from) count_told(some.size());
+        if (rank_ == from) count_broadcast(some.size());
         left = left.subspan(some.size());
     }
 }
 
 Exchange Communicator::plan_exchange(RankCounts sent) {
-    const WithinMpi counted(traffic_);
+    const MpiTimer counted(traffic_);
     Exchange exchange{std::move(sent), RankCounts(size_)};
     taped(std::as_writable_bytes(std::span(exchange.received)), [&] {
         MPI_Request request = MPI_REQUEST_NULL;
@@ -160,7 +161,7 @@ Exchange Communicator::plan_exchange(RankCounts sent) {
 
 namespace {
 
-/// Where each rank's part begins, in bytes, and the end.
+/// Returns the begin of each rank's part, then the end of the last part. In bytes.
 std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_bytes) {
     std::vector<std::uint64_t> begins = {0};
     for (const std::uint64_t values : counts) begins.push_back(begins.back() + values * item_bytes);
@@ -170,7 +171,7 @@ std::vector<std::uint64_t> begins_of(const RankCounts& counts, std::size_t item_
 }  // namespace
 
 void Communicator::exchange_parts(const Values& out, void* in, const Exchange& counts) {
-    const WithinMpi counted(traffic_);
+    const MpiTimer counted(traffic_);
     taped({static_cast<std::byte*>(in), counts.incoming() * out.item_bytes}, [&] { send_parts(out, in, counts); });
 }
 
@@ -183,8 +184,8 @@ void Communicator::send_parts(const Values& out, void* in, const Exchange& count
     const auto length = [&](std::uint64_t at, std::uint64_t end) {
         return int(std::min<std::uint64_t>(message_bytes_, end - at));
     };
-    // Messages of one rank arrive in the order in which they were sent. Each begins with the ranks after it, so that not
-    // all send to the same one at first.
+    // Messages of one rank arrive in the order in which they were sent. Each rank sends first to the ranks after it, so that
+    // the ranks do not all send to the same rank at first.
     for (unsigned i = 1; i < size_; ++i) {
         const unsigned r = (rank_ + size_ - i) % size_;
         for (std::uint64_t at = to_begins[r]; at < to_begins[r + 1]; at += message_bytes_) {
@@ -234,16 +235,16 @@ bool Communicator::send_heartbeat() {
     int gone = 0;
     check(MPI_Test(&heartbeat_, &gone, MPI_STATUS_IGNORE));
     if (gone == 0) return false;
-    check(MPI_Isend(nullptr, 0, MPI_BYTE, 0, pulse_tag, comm_, &heartbeat_));
+    check(MPI_Isend(nullptr, 0, MPI_BYTE, 0, heartbeat_tag, comm_, &heartbeat_));
     return true;
 }
 
 std::optional<unsigned> Communicator::receive_heartbeat() {
     int there = 0;
     MPI_Status status{};
-    check(MPI_Iprobe(MPI_ANY_SOURCE, pulse_tag, comm_, &there, &status));
+    check(MPI_Iprobe(MPI_ANY_SOURCE, heartbeat_tag, comm_, &there, &status));
     if (there == 0) return {};
-    check(MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, pulse_tag, comm_, MPI_STATUS_IGNORE));
+    check(MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, heartbeat_tag, comm_, MPI_STATUS_IGNORE));
     return unsigned(status.MPI_SOURCE);
 }
 

@@ -1,8 +1,10 @@
-// Communicator: what the engine asks of MPI, typed, with failures as Errors and every byte counted.
+// Communicator: typed wrapper of the MPI functions that the engine uses. Counts all traffic.
 //
-// Every function but rank() and size() is collective: all ranks call it, in the same order. What is sent are the bytes of
-// trivially copyable values, so all ranks run on machines of one kind. Counts are 64 bit; a part that is longer than
-// `most_message_bytes` goes as several messages.
+// Calls      functions that send or receive are collective, unless their comment says otherwise: all ranks call them, in the
+//            same order.
+// Data       bytes of trivially copyable values, so all ranks must run on machines of one kind. Counts are 64 bit. A part that
+//            is longer than `most_message_bytes` is sent as several messages.
+// Errors     a failure of MPI throws Error{engine_failed}.
 #pragma once
 
 #include <mpi.h>
@@ -21,17 +23,18 @@
 
 namespace octopair {
 
-/// What one rank has sent to others. How MPI sends what all ranks take part in is its own affair; counted is what its usual
-/// ways come to: what a rank tells all, once for each other rank, in log2 as many messages; a sum, twice.
+/// Data that one rank has sent to others. How MPI implements its collective functions is unknown, so usual algorithms are
+/// assumed. Data for all ranks counts once for each other rank, in about log2(ranks) messages. A sum of n bytes counts as
+/// 2 n (ranks - 1) / ranks bytes, in twice as many messages.
 struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
-    double cpu_seconds = 0;  ///< of the thread, within MPI
+    double cpu_seconds = 0;  ///< processor time of the calling thread within MPI
 };
 
-/// How many values go to each rank, or come from each, one rank's after another's.
+/// Number of values that are sent to each rank, or received from each rank. Indexed by rank.
 using RankCounts = std::vector<std::uint64_t>;
 
-/// How many values a rank sends to each, and receives from each.
+/// Number of values that a rank sends to each rank, and receives from each rank.
 struct Exchange {
     RankCounts sent, received;
 
@@ -40,7 +43,7 @@ struct Exchange {
     }
 };
 
-/// What all ranks told, rank after rank; `begins` has one more than there are ranks.
+/// Values of all ranks, in rank order. The values of rank r begin at begins[r]; `begins` ends with the number of values.
 template <typename T>
 struct Gathered {
     std::vector<T> values;
@@ -51,8 +54,8 @@ class Communicator {
 public:
     static constexpr std::size_t most_message_bytes = std::size_t(1) << 30;
 
-    /// A duplicate of `comm`, which keeps its own. Throws Error{usage} outside MPI_Init and MPI_Finalize,
-    /// Error{engine_failed}, as all functions do where MPI fails.
+    /// Works on a duplicate of `comm`, so its messages do not mix with those of the caller.
+    /// Throws: Error{usage} before MPI_Init, after MPI_Finalize, and for MPI_COMM_NULL.
     explicit Communicator(MPI_Comm comm, std::size_t message_bytes = most_message_bytes);
     Communicator(const Communicator&) = delete;
     Communicator& operator=(const Communicator&) = delete;
@@ -60,23 +63,24 @@ public:
 
     unsigned rank() const { return rank_; }
     unsigned size() const { return size_; }
-    /// Whether any thread may call, beside others of the program.
+    /// Returns whether any thread may call MPI at any time (MPI_THREAD_MULTIPLE).
     bool any_thread() const { return any_thread_; }
     const Traffic& traffic() const { return traffic_; }
 
-    /// What is done again and again while a function waits for other ranks; may be empty.
-    void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
-    /// Borrowed; null: none.
+    /// Sets a function that is called repeatedly while another function waits for other ranks; may be empty.
+    void set_wait_hook(std::function<void()> hook) { wait_hook_ = std::move(hook); }
+    /// Sets the tape that records or replays results. Borrowed; null: none.
     void set_tape(MessageTape* tape) { tape_ = tape; }
 
-    /// One value of each rank.
+    /// Returns one value of each rank.
     template <typename T>
     std::vector<T> all_gather(const T& own) {
         std::vector<T> all(size_);
         gather_equal(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)));
         return all;
     }
-    /// As many as each has; in all less than 2^31.
+    /// Returns the values of all ranks. The ranks may pass different numbers of values.
+    /// Throws: Error{resource_limit} for 2^31 values or more in total.
     template <typename T>
     Gathered<T> all_gather(std::span<const T> own) {
         Gathered<T> all;
@@ -88,38 +92,40 @@ public:
         gather_parts({bytes.data(), sizeof(T)}, all.begins, all.values.data());
         return all;
     }
-    /// Each value becomes the sum of all ranks'.
+    /// Replaces each value by its sum over all ranks. Requires: the same number of values on all ranks.
     void add_up(std::span<std::uint64_t> values);
     std::uint64_t sum(std::uint64_t value) {
         add_up({&value, 1});
         return value;
     }
-    /// `values` of rank `from` come to all; their number is known to all.
+    /// Copies `values` of rank `from` to all ranks. Requires: the same number of values on all ranks.
     template <typename T>
     void broadcast(std::span<T> values, unsigned from) {
         broadcast_bytes(std::as_writable_bytes(values), from);
     }
-    /// With sent[r] values for each rank r, learns how many come from each.
+    /// Returns the counts of an exchange in which this rank sends sent[r] values to each rank r.
     Exchange plan_exchange(RankCounts sent);
-    /// The first counts.sent[0] values of `out` go to rank 0, and so on; `in` has room for what comes.
+    /// Sends the first counts.sent[0] values of `out` to rank 0, the next counts.sent[1] to rank 1, and so on. Stores the
+    /// received values in `in`, in rank order. Requires: `in` has room for counts.incoming() values.
     template <typename T>
     void exchange(const T* out, T* in, const Exchange& counts) {
         static_assert(std::is_trivially_copyable_v<T>);
         exchange_parts({out, sizeof(T)}, in, counts);
     }
 
-    /// Not collective: a message without content goes to all others. finish_stop() waits until it has gone.
+    /// Not collective. Starts to send a message without content to all other ranks.
     void send_stop();
+    /// Not collective. Waits until the messages of send_stop() are sent.
     void finish_stop();
-    /// Whether one has come and was not received yet.
+    /// Not collective. Returns whether a stop message has arrived that is not yet received.
     bool stop_has_come();
-    /// Waits for that of a rank.
+    /// Not collective. Waits for the stop message of rank `from` and receives it.
     void receive_stop(unsigned from);
 
-    /// Not collective: a message without content goes to rank 0, which is another one. False where the last one is still on
-    /// its way.
+    /// Not collective. Starts to send a message without content to rank 0. Returns false, and sends nothing, while the previous
+    /// heartbeat is in flight. Requires: this rank is not rank 0.
     bool send_heartbeat();
-    /// The rank that one has come from, if one has; on rank 0.
+    /// Not collective. Receives one heartbeat and returns its sender; none if no heartbeat has arrived. Requires: rank 0.
     std::optional<unsigned> receive_heartbeat();
 
 private:
@@ -133,9 +139,9 @@ private:
     void exchange_parts(const Values& out, void* in, const Exchange& counts);
     void send_parts(const Values& out, void* in, const Exchange& counts);
     void count(std::uint64_t bytes, std::uint64_t messages);
-    void count_told(std::uint64_t bytes);
+    void count_broadcast(std::uint64_t bytes);
     void wait(std::span<MPI_Request> requests);
-    /// Has `run` make `result`, unless the tape has it.
+    /// Calls `run`, which fills `result`, and records the result on the tape. While the tape replays, reads `result` from it.
     template <typename Run>
     void taped(std::span<std::byte> result, const Run& run);
     bool replaying() const { return tape_ != nullptr && tape_->replaying(); }
@@ -145,7 +151,7 @@ private:
     bool any_thread_ = false;
     std::size_t message_bytes_;
     Traffic traffic_;
-    std::function<void()> meanwhile_;
+    std::function<void()> wait_hook_;
     std::vector<MPI_Request> stops_;
     MessageTape* tape_ = nullptr;
     MPI_Request heartbeat_ = MPI_REQUEST_NULL;

@@ -1,6 +1,6 @@
-// CostMeter: what a call costs this rank, step by step, without the time that it spends within MPI.
+// Metered: measures the processor time of each step of a call on this rank, without the time spent within MPI.
 //
-// Processor time of the calling thread: on a machine with fewer cores than ranks, the only time that means anything.
+// Processor time of the calling thread is used, because wall-clock time is meaningless with fewer cores than ranks.
 #pragma once
 
 #include <ctime>
@@ -10,14 +10,14 @@
 
 namespace octopair {
 
-/// Seconds of this thread.
+/// Returns the processor time of this thread.
 inline double thread_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
 }
 
-/// Adds what a block costs to a step's seconds, however the block is left.
+/// Adds the processor time of its scope to `seconds`, also if an exception leaves the scope.
 class Metered {
 public:
     Metered(const Communicator& comm, double& seconds) : comm_(comm), seconds_(seconds) {}

@@ -8,9 +8,9 @@ namespace octopair {
 
 namespace {
 
-constexpr std::chrono::milliseconds most_apart(1000);
+constexpr std::chrono::milliseconds max_interval(1000);
 
-/// As a number of seconds is read.
+/// Returns a time in seconds as text, such as "1.500 s".
 std::string seconds_text(std::chrono::milliseconds time) {
     std::string text = std::to_string(time.count() / 1000);
     if (const auto rest = time.count() % 1000; rest > 0) text += "." + std::to_string(1000 + rest).substr(1);
@@ -22,20 +22,20 @@ std::string seconds_text(std::chrono::milliseconds time) {
 Heartbeat::Heartbeat(Communicator& comm, std::chrono::milliseconds silence)
     : comm_(comm),
       silence_(silence),
-      apart_(std::min(most_apart, silence / 8)),
-      heard_(comm.size()),
+      interval_(std::min(max_interval, silence / 8)),
+      last_heard_(comm.size()),
       received_(comm.size(), 0) {}
 
 void Heartbeat::begin() {
     last_ = Clock::now();
-    std::ranges::fill(heard_, last_);
+    std::ranges::fill(last_heard_, last_);
 }
 
 void Heartbeat::beat() {
     if (lost_) throw Error(ErrorCode::engine_failed, *lost_);
     const auto now = Clock::now();
-    if (now - last_ < apart_) return;
-    comm_.rank() == 0 ? look(now) : send(now);
+    if (now - last_ < interval_) return;
+    comm_.rank() == 0 ? check_silence(now) : send(now);
 }
 
 void Heartbeat::send(Clock::time_point now) {
@@ -46,19 +46,19 @@ void Heartbeat::send(Clock::time_point now) {
 void Heartbeat::receive() {
     while (const auto rank = comm_.receive_heartbeat()) {
         ++received_[*rank];
-        heard_[*rank] = last_;
+        last_heard_[*rank] = last_;
     }
 }
 
-/// Silence counts while rank 0 listens: it may have been stopped itself, together with all others.
-void Heartbeat::look(Clock::time_point now) {
+/// Silence counts only while rank 0 itself checks regularly: rank 0 may have been stopped together with all other ranks.
+void Heartbeat::check_silence(Clock::time_point now) {
     const bool listened = now - last_ < silence_ / 2;
     last_ = now;
-    if (!listened) std::ranges::fill(heard_, now);
+    if (!listened) std::ranges::fill(last_heard_, now);
     receive();
-    const auto longest = std::min_element(heard_.begin() + 1, heard_.end());
-    if (longest == heard_.end() || now - *longest < silence_) return;
-    lost_ = "rank " + std::to_string(longest - heard_.begin()) + " has not answered for " + seconds_text(silence_);
+    const auto longest = std::min_element(last_heard_.begin() + 1, last_heard_.end());
+    if (longest == last_heard_.end() || now - *longest < silence_) return;
+    lost_ = "rank " + std::to_string(longest - last_heard_.begin()) + " has not answered for " + seconds_text(silence_);
     throw Error(ErrorCode::engine_failed, *lost_);
 }
 

@@ -1,7 +1,8 @@
-// MessageTape: what a rank got from the others in a call, so that it can make the same call again without them.
+// MessageTape: records the data that a rank receives from others in a call, so that the rank can repeat the call alone.
 //
-// For measurements: where more ranks than cores take turns, each finds the caches full of the others' data. A rank that
-// repeats its part alone costs what it would on a machine of its own. And for looking at what one rank of many does.
+// Purpose    measurements with more ranks than cores: ranks that take turns evict each other's data from the caches. A rank
+//            that repeats its part alone costs what it would cost on a machine of its own. The tape also helps to examine one
+//            rank of many.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +17,12 @@ namespace octopair {
 
 class MessageTape {
 public:
-    /// Of the next call, which is collective.
+    /// Records the next call, which is collective.
     void record() {
         results_.clear();
         replaying_ = false;
     }
-    /// The next call, which must be the same, is this rank's alone.
+    /// Replays the recorded call on this rank alone. Requires: the next call equals the recorded one.
     void replay() {
         next_ = 0;
         replaying_ = true;
@@ -31,18 +32,19 @@ public:
     void take(std::span<const std::byte> result) { results_.emplace_back(result.begin(), result.end()); }
     void give(std::span<std::byte> result) {
         if (next_ >= results_.size() || results_[next_].size() != result.size()) {
-            throw Error(ErrorCode::engine_failed, "not the call that was recorded");
+            throw Error(ErrorCode::engine_failed, "the replayed call differs from the recorded call");
         }
         std::ranges::copy(results_[next_++], result.begin());
     }
 
 private:
-    std::vector<std::vector<std::byte>> results_;  // of each collective function
+    std::vector<std::vector<std::byte>> results_;  // result of each collective function, in the order of the calls
     std::size_t next_ = 0;
     bool replaying_ = false;
 };
 
-/// Of an MPI engine's calls from now on; null: none. Borrowed. Throws Error{usage} unless make_mpi_engine made the engine.
+/// Sets the tape of the later calls of an MPI engine; null: none. Borrows `tape`.
+/// Throws: Error{usage} unless make_mpi_engine made the engine.
 void use_tape(Engine& engine, MessageTape* tape);
 
 }  // namespace octopair

@@ -7,7 +7,7 @@
 
 namespace octopair {
 
-void Relay::hand_on(unsigned from, const Give& give) {
+void Relay::forward(unsigned from, const Give& give) {
     if (from == 0) {
         agreement_.together([&] {
             if (comm_.rank() == 0) give(take_);
@@ -20,11 +20,11 @@ void Relay::hand_on(unsigned from, const Give& give) {
 }
 
 void Relay::send(unsigned from, const Give& give) {
-    bool all_know = false;  // what is thrown meanwhile is thrown on all
-    const auto pass_on = [&] {
-        all_know = true;
-        pass(from);
-        all_know = false;
+    bool thrown_on_all = false;  // true while exceptions come from send_held(), which throws them on all ranks
+    const auto send_batch = [&] {
+        thrown_on_all = true;
+        send_held(from);
+        thrown_on_all = false;
     };
     try {
         give([&](std::span<const Pair> pairs) {
@@ -34,20 +34,20 @@ void Relay::send(unsigned from, const Give& give) {
                 pairs = pairs.subspan(some.size());
                 if (held_.size() == tuning().ranks.relayed) {
                     count_path(Path::relay_full);
-                    pass_on();
+                    send_batch();
                 }
             }
         });
     } catch (...) {
-        if (all_know) throw;
+        if (thrown_on_all) throw;
         agreement_.together([] { throw; });
     }
-    if (!held_.empty()) pass(from);
-    pass(from);
+    if (!held_.empty()) send_held(from);
+    send_held(from);
 }
 
-/// What is held; nothing says that no more will come.
-void Relay::pass(unsigned from) {
+/// Sends the held pairs to rank 0. A batch of size 0 ends the transfer.
+void Relay::send_held(unsigned from) {
     agreement_.together([] {});
     std::uint64_t size = held_.size();
     comm_.broadcast(std::span(&size, 1), from);

@@ -1,4 +1,4 @@
-// Relay: pairs of any rank on their way to the receiver that rank 0 has, some at a time.
+// Relay: sends the pairs of any rank to the sink of rank 0, in batches.
 #pragma once
 
 #include <functional>
@@ -16,23 +16,24 @@ class Relay {
 public:
     using Give = std::function<void(const PairSink&)>;
 
-    /// `take`: of rank 0; borrowed.
+    /// `take`: the sink of rank 0, not used on other ranks; borrowed.
     Relay(Communicator& comm, const PairSink& take) : comm_(comm), agreement_(comm), take_(take) {}
 
-    /// Collective: rank `from` calls give(sink), and what that gives the sink is taken on rank 0, in that order. The sink is for
-    /// the thread of the call. What `give` or `take` throws is thrown as by Agreement::together.
-    void hand_on(unsigned from, const Give& give);
+    /// Collective. Rank `from` calls give(sink). The pairs that `give` passes to `sink` reach the sink of rank 0, in the same
+    /// order. `give` must call `sink` on the thread of the call. Throws: as Agreement::together for exceptions of `give`
+    /// and of the sink of rank 0.
+    void forward(unsigned from, const Give& give);
 
 private:
     void send(unsigned from, const Give& give);
-    void pass(unsigned from);
+    void send_held(unsigned from);
     void receive(unsigned from);
 
     Communicator& comm_;
     Agreement agreement_;
     const PairSink& take_;
-    std::vector<Pair> held_;  // on the rank that sends
-    Buffer<Pair> received_;   // on rank 0
+    std::vector<Pair> held_;  // next batch, on the rank that sends
+    Buffer<Pair> received_;   // last batch, on rank 0
 };
 
 }  // namespace octopair

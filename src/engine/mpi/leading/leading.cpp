@@ -21,44 +21,45 @@ namespace octopair {
 
 namespace {
 
-/// What each rank has, whether it leads or follows.
+/// State of a rank that leads or follows: communicators, heartbeat, slices and search.
 class RankGroup {
 public:
     RankGroup(MPI_Comm comm, const LeadingOptions& options)
-        : told_(comm),
-          searched_(comm),
-          heartbeat_(told_, options.silence),
-          search_(searched_, {.threads = options.threads}, [this] { heartbeat_.beat(); }) {}
+        : control_comm_(comm),
+          search_comm_(comm),
+          heartbeat_(control_comm_, options.silence),
+          search_(search_comm_, {.threads = options.threads}, [this] { heartbeat_.beat(); }) {}
 
-    Communicator& told() { return told_; }
+    Communicator& control_comm() { return control_comm_; }
     Heartbeat& heartbeat() { return heartbeat_; }
-    /// Rank 0 gives the assignment, the others get it.
-    void tell(Assignment& assignment) { told_.broadcast(std::span(&assignment, 1), 0); }
-    /// A call has begun: until it is over, ranks that wait show that they do.
+    /// Collective. Copies the assignment of rank 0 to the other ranks.
+    void broadcast(Assignment& assignment) { control_comm_.broadcast(std::span(&assignment, 1), 0); }
+    /// Starts the heartbeat of a call. From now on a rank also beats while it waits.
     void begin() {
         heartbeat_.begin();
-        told_.set_meanwhile([this] { heartbeat_.beat(); });
+        control_comm_.set_wait_hook([this] { heartbeat_.beat(); });
     }
-    /// Collective. `request`: on rank 0, null on the others.
+    /// Collective. Runs a call. `request`: null on all ranks but rank 0.
     Summary find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
                  const detail::Control& control);
 
 private:
-    Communicator told_, searched_;  // of what is told and dealt out, and of the search
-    SliceDistribution slices_{told_};
+    Communicator control_comm_, search_comm_;  // `control_comm_`: for assignments, slices and heartbeats
+    SliceDistribution slices_{control_comm_};
     Heartbeat heartbeat_;
     RankSearch search_;
 };
 
 Summary RankGroup::find(const Assignment& assignment, const detail::Request* request, const detail::Output& output,
-                      const detail::Control& control) {
+                        const detail::Control& control) {
     slices_.make(assignment, request, control.stop);
     const Options options = assignment.options();
     const Objects* const second = assignment.join ? &slices_.slice(1) : nullptr;
     return search_.run({slices_.slice(0), second, options}, output, control, Recipients::first);
 }
 
-/// What the caller's functions threw. Ranks tell each other but the words of it; the caller shall have it as it was.
+/// Keeps the first exception that the caller's functions throw. Ranks exchange only its message, but the caller must get the
+/// original exception.
 class Captured {
 public:
     template <typename... Arguments>
@@ -102,26 +103,26 @@ public:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control);
 
 private:
-    void look_for_lost();
+    void report_lost_rank();
 
     RankGroup group_;
     std::function<void(const std::string&)> lost_;
 };
 
-/// The others end with it.
+/// Ends follow() on the other ranks.
 Leader::~Leader() {
     if (group_.heartbeat().lost()) return;
     try {
         group_.begin();
         Assignment none;
-        group_.tell(none);
+        group_.broadcast(none);
         group_.heartbeat().end();
     } catch (const std::exception&) {
-        look_for_lost();
+        report_lost_rank();
     }
 }
 
-void Leader::look_for_lost() {
+void Leader::report_lost_rank() {
     if (group_.heartbeat().lost() && lost_) lost_(*group_.heartbeat().lost());
 }
 
@@ -134,11 +135,11 @@ Summary Leader::run(const detail::Request& request, const detail::Output& output
     try {
         Assignment assignment = Assignment::of(request, output_kind_of(output));
         group_.begin();
-        group_.tell(assignment);
+        group_.broadcast(assignment);
         summary = group_.find(assignment, &request, {output.list, output.sink == nullptr ? nullptr : &sink},
-                                {control.stop, progress});
+                              {control.stop, progress});
     } catch (...) {
-        look_for_lost();
+        report_lost_rank();
         captured.rethrow();
         throw;
     }
@@ -165,10 +166,10 @@ private:
 
     TicketLock ticket_lock_;
     Leader leader_;
-    detail::JobQueue jobs_{*this};  // the last, so that it ends first
+    detail::JobQueue jobs_{*this};  // last member, so that it is destroyed first
 };
 
-/// Whoever waits for long sleeps for long, but no longer than a person notices.
+/// Backoff of a waiting rank. The sleep grows with the time waited, up to 5 ms, a delay that a person does not notice.
 class Backoff {
 public:
     void operator()() const {
@@ -181,7 +182,7 @@ private:
     std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
-/// A rank that is not the first.
+/// A rank other than rank 0.
 class Follower {
 public:
     Follower(MPI_Comm comm, const LeadingOptions& options) : group_(comm, options) {}
@@ -194,8 +195,8 @@ public:
 private:
     Assignment wait() {
         Assignment next;
-        group_.told().set_meanwhile(Backoff());
-        group_.tell(next);
+        group_.control_comm().set_wait_hook(Backoff());
+        group_.broadcast(next);
         group_.begin();
         return next;
     }
@@ -209,7 +210,7 @@ private:
         try {
             (void)group_.find(assignment, nullptr, output, {{}, nobody});
         } catch (const Error&) {
-            return;  // rank 0 tells it to its caller
+            return;  // rank 0 throws the same Error to its caller
         }
     }
 
@@ -222,7 +223,8 @@ void check_leading_threads() {
     int level = 0;
     MPI_Query_thread(&level);
     if (level >= MPI_THREAD_SERIALIZED) return;
-    throw Error(ErrorCode::engine_failed, "MPI allows calls from one thread alone (no MPI_THREAD_SERIALIZED)");
+    throw Error(ErrorCode::engine_failed,
+                "MPI allows calls from one thread only; this engine needs MPI_THREAD_SERIALIZED");
 }
 
 std::unique_ptr<Engine> make_leading_engine(MPI_Comm comm, const LeadingOptions& options) {

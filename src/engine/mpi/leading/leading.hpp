@@ -1,8 +1,8 @@
-// Leading: rank 0 has the objects and makes the calls, the other ranks follow.
+// Leading engine: rank 0 has the objects and makes the calls; the other ranks follow.
 //
-// On rank 0 an engine like those of one process: its caller knows nothing of ranks. Each call deals the objects out
-// (dealing.hpp), has all ranks find pairs (rank_search.hpp), and receives them all, in order. The other ranks are in follow()
-// as long as that engine lives.
+// Rank 0     has an engine that its caller uses like an engine of one process. Each call distributes the objects to all ranks
+//            (slice_distribution.hpp), runs the search on all ranks (rank_search.hpp), and receives all pairs, in order.
+// Others     run follow() until the engine of rank 0 is destroyed.
 #pragma once
 
 #include <mpi.h>
@@ -17,23 +17,27 @@
 namespace octopair {
 
 struct LeadingOptions {
-    unsigned threads = 1;  ///< of each rank; 0: one per core
-    /// That a rank may be silent while a call is under way, however long that takes; the same on all ranks.
+    unsigned threads = 1;  ///< number of threads of each rank; 0: one per core
+    /// Longest time that a rank may be silent during a call; the same on all ranks. A rank that works is not silent, so calls
+    /// may take longer.
     std::chrono::milliseconds silence{60'000};
-    /// Told on rank 0, on the thread of a call or of the engine's end, of a rank that was silent for longer, before that call
-    /// throws Error{engine_failed}. Calls that come after it wait for their stop: the program must end, by MPI_Abort.
+    /// Receives a message on rank 0 when a rank was silent for longer, before the current call throws Error{engine_failed}.
+    /// Runs on the thread of that call, or of the engine's destructor. Later calls only wait for their stop request, so the
+    /// program must end by MPI_Abort.
     std::function<void(const std::string& what)> lost = {};
 };
 
-/// Throws Error{engine_failed} unless MPI was started with MPI_THREAD_SERIALIZED or more, which is what a leading engine needs.
+/// Throws: Error{engine_failed} unless MPI was started with MPI_THREAD_SERIALIZED or more, which a leading engine requires.
 void check_leading_threads();
 
-/// Collective, with follow() on the other ranks of `comm`. The engine must go before MPI_Finalize. It may be used from any thread.
-/// Throws Error{engine_failed} if MPI fails.
+/// Collective: call on rank 0, with follow() on the other ranks of `comm`. Returns the engine of rank 0.
+/// Requires: the engine is destroyed before MPI_Finalize. Throws: Error{engine_failed} if MPI fails.
+/// Thread safety: any thread may use the engine.
 std::unique_ptr<Engine> make_leading_engine(MPI_Comm comm, const LeadingOptions& options = {});
 
-/// Collective, with make_leading_engine() on rank 0. Takes part in its calls until it goes; sleeps in between. What goes wrong in
-/// a call is told on rank 0. Throws as make_leading_engine().
+/// Collective: call on all ranks but rank 0, with make_leading_engine() on rank 0. Runs this rank's part of the engine's calls
+/// until the engine is destroyed; sleeps between calls. The call on rank 0 reports the errors of all ranks.
+/// Throws: as make_leading_engine().
 void follow(MPI_Comm comm, const LeadingOptions& options = {});
 
 }  // namespace octopair

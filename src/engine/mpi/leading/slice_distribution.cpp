@@ -39,7 +39,8 @@ Options Assignment::options() const {
     return options;
 }
 
-void SliceDistribution::make(const Assignment& assignment, const detail::Request* request, const std::stop_token& stop) {
+void SliceDistribution::make(const Assignment& assignment, const detail::Request* request,
+                             const std::stop_token& stop) {
     stop_ = stop;
     assignment_ = &assignment;
     for (unsigned set = 0; set < (assignment.join ? 2 : 1); ++set) {
@@ -49,7 +50,7 @@ void SliceDistribution::make(const Assignment& assignment, const detail::Request
     }
 }
 
-/// `all` on rank 0.
+/// `all`: the objects of the set on rank 0; null on the other ranks.
 template <typename Real>
 void SliceDistribution::distribute_set(unsigned set, const Objects* all, Buffer<Box<Real>>& boxes) {
     const std::uint64_t size = assignment_->sets[set].objects;
@@ -76,7 +77,7 @@ void SliceDistribution::distribute_set(unsigned set, const Objects* all, Buffer<
     }
 }
 
-/// What is sent in a round is the parts of some ranks' slices, one after another, as they lie.
+/// Sends `all` in rounds. A round is a contiguous range of `all`, so it has parts of the slices of one or more ranks.
 template <typename Item>
 void SliceDistribution::distribute(std::span<const Item> all, std::uint64_t size, std::span<Item> own) {
     const std::uint64_t step = tuning().ranks.round_bytes / sizeof(Item);

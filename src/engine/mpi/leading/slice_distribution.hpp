@@ -1,7 +1,7 @@
-// Dealing: rank 0, which has all objects of a call, tells the others what is asked, and gives each rank its slice.
+// SliceDistribution: rank 0, which has all objects of a call, sends each rank its slice. Assignment announces the call.
 //
-// Slices are contiguous and about equally long, in the order of the ranks. They go in rounds of some megabytes, between which
-// a stop is seen.
+// Slices are contiguous, about equally long, and in rank order. They are sent in rounds of some megabytes; each round first
+// checks for a stop request.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace octopair {
 
-/// What rank 0 tells the others: the next call, or that none will follow. As it is sent.
+/// Message of rank 0 to the other ranks: parameters of the next call, or `end`: no call follows. Broadcast as bytes.
 struct Assignment {
     struct Set {
         std::uint64_t objects = 0;
@@ -30,17 +30,17 @@ struct Assignment {
     std::array<Set, 2> sets = {};
 
     static Assignment of(const detail::Request& request, OutputKind output_kind);
-    /// Without a progress.
+    /// Returns the options of the call, without a progress function.
     Options options() const;
 };
 
-/// A rank's slice of each set of a call; that of rank 0 lies where the call's objects do. Its memory is kept for the next.
+/// A rank's slice of each set of a call. Rank 0 uses its part of the call's objects in place. Memory is kept for later calls.
 class SliceDistribution {
 public:
     explicit SliceDistribution(Communicator& comm) : comm_(comm) {}
 
-    /// Collective. On rank 0 with the call's objects, which are borrowed until the next one. Throws as
-    /// Agreement::together: where there is no memory on a rank, Error{cancelled} on a stop.
+    /// Collective. Distributes the objects of `request`, which is null on all ranks but rank 0. Borrows the objects until the
+    /// next call. Throws: as Agreement::together, for a rank that is out of memory; Error{cancelled} after a stop request.
     void make(const Assignment& assignment, const detail::Request* request, const std::stop_token& stop);
     const Objects& slice(unsigned set) const { return slices_[set]; }
 
@@ -54,7 +54,7 @@ private:
     void distribute(std::span<const Item> all, std::uint64_t size, std::span<Item> own);
     template <typename Real>
     void distribute_set(unsigned set, const Objects* all, Buffer<Box<Real>>& boxes);
-    /// Where the slice of a rank begins among so many; of the rank after the last, their end.
+    /// Returns the begin of a rank's slice of `size` objects. Returns `size` for the number of ranks.
     std::uint64_t begin(std::uint64_t size, unsigned rank) const { return size * rank / comm_.size(); }
 
     Communicator& comm_;

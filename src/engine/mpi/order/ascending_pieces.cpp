@@ -68,9 +68,9 @@ PiecePlan AscendingPieces::plan(const PairList& found, const RowBins& bins) {
     return {bins, counts, {.ranks = comm_.size()}};
 }
 
-// NOLINTNEXTLINE(readability-function-size): what, by which plan, which part of it, where to, and until when.
-void AscendingPieces::bring_together(PairList& found, const PiecePlan& plan, unsigned window,
-                                     detail::PairStorage& piece, const std::stop_token& stop) {
+// NOLINTNEXTLINE(readability-function-size): pairs, plan, window, output, stop.
+void AscendingPieces::exchange_and_sort(PairList& found, const PiecePlan& plan, unsigned window,
+                                        detail::PairStorage& piece, const std::stop_token& stop) {
     Agreement agreement(comm_);
     RankCounts to_each;
     agreement.together([&] { to_each = pack(found, plan); });

@@ -1,8 +1,9 @@
-// AscendingPieces: pairs that ranks have found in any order, brought into one ascending sequence over all ranks.
+// AscendingPieces: sorts the pairs that ranks found in any order into one ascending sequence over all ranks.
 //
-// The objects of `a` are cut into pieces with about equally many pairs, for each rank as many as it takes windows; pairs go to
-// the rank of their `a`, which sorts them, window after window. Where each rank keeps its pairs, its pieces are neighbours;
-// where they go on to rank 0, the pieces of a window are.
+// Invariants 1. The objects `a` are divided into pieces with about equally many pairs: one piece for each rank and window.
+//            2. Each pair is sent to the rank that owns the piece of its `a`. That rank sorts it, window after window.
+//            3. If each rank keeps its pairs, the pieces of a rank are adjacent in the sequence. If the pairs are sent on to
+//               rank 0, the pieces of a window are adjacent.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +20,10 @@
 
 namespace octopair {
 
-/// How pieces are shared out.
+/// Numbering of the pieces, in ascending order of their objects.
 struct PieceGrid {
     unsigned ranks = 1, windows = 1;
-    bool by_window = false;  ///< neighbours are those of a window, rather than those of a rank
+    bool by_window = false;  ///< pieces of a window are adjacent; otherwise pieces of a rank are
 
     std::size_t size() const { return std::size_t(ranks) * windows; }
     unsigned rank(std::size_t piece) const { return unsigned(by_window ? piece % ranks : piece / windows); }
@@ -32,46 +33,46 @@ struct PieceGrid {
     }
 };
 
-/// Which pairs are which rank's, and in which window. The same on all ranks.
+/// Assignment of pairs to ranks and windows. The same on all ranks.
 class PiecePlan {
 public:
-    /// `counts`: of all ranks' pairs, by bin.
+    /// `counts`: number of pairs of each bin, on all ranks together.
     PiecePlan(const RowBins& bins, std::span<const std::uint64_t> counts, const PieceGrid& grid);
 
     const RowBins& bins() const { return bins_; }
     unsigned windows() const { return grid_.windows; }
     unsigned owner(const Pair& pair) const { return grid_.rank(pieces_[bins_.bin(pair)]); }
-    /// The objects whose pairs are a rank's in a window.
+    /// Returns the objects `a` of a rank's piece of a window.
     ObjectRange rows(unsigned rank, unsigned window) const;
-    /// Of all its windows.
+    /// Returns the number of pairs of a rank, in all its windows.
     std::uint64_t pairs(unsigned rank) const;
-    /// Of a window of a rank, how many pairs are among the first `limit` of all.
+    /// Returns how many pairs of a rank's piece of a window are among the first `limit` pairs of the sequence.
     std::uint64_t allowed(unsigned rank, unsigned window, std::uint64_t limit) const;
-    /// Whether any rank's part of a window has such.
+    /// Returns whether a window has pairs, on any rank, among the first `limit` pairs of the sequence.
     bool is_wanted(unsigned window, std::uint64_t limit) const;
-    /// The bins of a window, of all ranks.
+    /// Returns a mark for each bin: nonzero if the bin belongs to the window, on any rank.
     std::vector<std::uint8_t> marks(unsigned window) const;
 
 private:
     RowBins bins_;
     PieceGrid grid_;
-    std::vector<std::size_t> cuts_;      // of the bins: where each piece begins, and the end
-    std::vector<std::uint32_t> pieces_;  // of each bin
-    std::vector<std::uint64_t> before_;  // pairs before each piece, and all
+    std::vector<std::size_t> cuts_;      // first bin of each piece, then the number of bins
+    std::vector<std::uint32_t> pieces_;  // piece of each bin
+    std::vector<std::uint64_t> before_;  // number of pairs before each piece, then the number of all pairs
 };
 
 class AscendingPieces {
 public:
-    /// `columns`: above every `b`.
+    /// `columns`: exclusive upper bound of every `b`. Borrows `comm` and `team`.
     AscendingPieces(Communicator& comm, Team& team, std::uint64_t columns)
         : comm_(comm), team_(team), columns_(columns) {}
 
-    /// Collective: by what all ranks have found.
+    /// Collective. Returns a plan with one window for the pairs that all ranks found. `found`: those of this rank.
     PiecePlan plan(const PairList& found, const RowBins& bins);
-    /// Collective: appends this rank's pairs of a window, of what all ranks found of it, to `piece`. Empties `found`. Throws
-    /// as Agreement::together.
-    void bring_together(PairList& found, const PiecePlan& plan, unsigned window, detail::PairStorage& piece,
-                        const std::stop_token& stop);
+    /// Collective. Sends the pairs of `found`, which all belong to `window`, to their ranks; empties `found`. Appends the pairs
+    /// of this rank's piece of the window to `piece`, ascending. Throws: as Agreement::together.
+    void exchange_and_sort(PairList& found, const PiecePlan& plan, unsigned window, detail::PairStorage& piece,
+                           const std::stop_token& stop);
 
 private:
     RankCounts pack(const PairList& found, const PiecePlan& plan);

@@ -11,7 +11,7 @@ namespace octopair {
 
 namespace {
 
-/// A key, and how many of its rank's it stands for.
+/// A sampled key, and the number of keys of its rank that it represents.
 struct SampledKey {
     std::uint64_t key, weight;
 };

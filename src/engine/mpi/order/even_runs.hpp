@@ -1,4 +1,4 @@
-// Sorting over ranks: which of the keys that each rank has in order belong to which rank.
+// Splitters for a sample sort over ranks: they divide the sorted keys of each rank into one run for each rank.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace octopair {
 
-/// Collective. `keys`: this rank's, ascending. How many of them, from the first on, go to each rank, such that every rank gets
-/// about equally many of all, none that is less than one of the rank before, and all that are equal. Throws as
-/// Agreement::together.
+/// Collective. `keys`: keys of this rank, ascending. Returns how many of them go to each rank, in order from the first key.
+/// All ranks get about equally many keys. A rank gets no key less than a key of the rank before. Equal keys go to one rank.
+/// Throws: as Agreement::together.
 RankCounts even_runs(Communicator& comm, std::span<const std::uint64_t> keys);
 
 }  // namespace octopair

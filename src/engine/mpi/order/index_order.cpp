@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-/// The positions of some indices in their order.
+/// Returns the permutation that sorts `indices`.
 std::vector<std::uint32_t> order_of(std::span<const std::uint64_t> indices) {
     std::vector<std::uint32_t> order(indices.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> order_of(std::span<const std::uint64_t> indices) {
     return order;
 }
 
-/// Makes `to` those objects in that order.
+/// Fills `to` with `objects` and their indices, permuted by `order`.
 void arrange(const Objects& objects, std::span<const std::uint64_t> indices, std::span<const std::uint32_t> order,
              ObjectArrays& to) {
     to.resize(order.size());
@@ -35,7 +35,7 @@ void arrange(const Objects& objects, std::span<const std::uint64_t> indices, std
 
 }  // namespace
 
-/// The same on all ranks.
+/// Collective. Returns whether the ranks pass indices; the same on all ranks.
 bool IndexOrder::are_given(const Objects& own, std::span<const std::uint64_t> indices) {
     Agreement(comm_).together([&] {
         if (!indices.empty() && indices.size() != own.size()) {
@@ -46,7 +46,7 @@ bool IndexOrder::are_given(const Objects& own, std::span<const std::uint64_t> in
     const bool given = comm_.sum(indices.size()) > 0;
     Agreement(comm_).together([&] {
         if (given && indices.size() != own.size()) {
-            throw Error(ErrorCode::usage, "other ranks give indices, this one gives none");
+            throw Error(ErrorCode::usage, "no indices are given, but other ranks give indices");
         }
     });
     return given;
@@ -56,7 +56,7 @@ void IndexOrder::take(const JointCall& call, unsigned set, const Objects& own, s
     ObjectArrays& arrays = arrays_[set];
     arrays = {.wide = call.wide[set], .padded = call.padded[set], .indexed = true};
     if (are_given(own, indices)) {
-        bring_together(arrays, own, indices);
+        exchange_and_sort(arrays, own, indices);
         objects_[set] = arrays.view();
         return;
     }
@@ -65,7 +65,7 @@ void IndexOrder::take(const JointCall& call, unsigned set, const Objects& own, s
     objects_[set] = own;
 }
 
-void IndexOrder::bring_together(ObjectArrays& arrays, const Objects& own, std::span<const std::uint64_t> indices) {
+void IndexOrder::exchange_and_sort(ObjectArrays& arrays, const Objects& own, std::span<const std::uint64_t> indices) {
     Agreement agreement(comm_);
     ObjectArrays sent{.wide = arrays.wide, .padded = arrays.padded, .indexed = true};
     ObjectArrays received{.wide = arrays.wide, .padded = arrays.padded, .indexed = true};

@@ -1,4 +1,4 @@
-// IndexOrder: the objects of a call in the order of indices that the caller gave them, whichever ranks they came from.
+// IndexOrder: sorts the objects of a call over all ranks by the indices that the caller gave them.
 #pragma once
 
 #include <array>
@@ -15,17 +15,20 @@ class IndexOrder {
 public:
     explicit IndexOrder(Communicator& comm) : comm_(comm) {}
 
-    /// Collective. A set of the call: each rank gives some of its objects, and their indices or, all ranks, none. Borrows the
-    /// objects. Throws Error{bad_input} for an index that is there twice or not for each object.
+    /// Collective. Sorts a set of the call. Each rank passes its slice of the set, with an index for each object. If all ranks
+    /// pass no indices, objects keep their order and their positions are the indices. Borrows the objects.
+    /// Throws: Error{bad_input} if two objects have the same index, or a rank has fewer or more indices than objects;
+    /// Error{usage} if only some ranks pass indices.
     void take(const JointCall& call, unsigned set, const Objects& own, std::span<const std::uint64_t> indices);
 
-    /// Of a set: this rank's part of the sequence, ascending, and what the objects in it are called.
+    /// Returns this rank's part of a sorted set.
     const Objects& objects(unsigned set) const { return objects_[set]; }
+    /// Returns the indices of these objects, ascending.
     std::span<const std::uint64_t> indices(unsigned set) const { return arrays_[set].indices.span(); }
 
 private:
     bool are_given(const Objects& own, std::span<const std::uint64_t> indices);
-    void bring_together(ObjectArrays& arrays, const Objects& own, std::span<const std::uint64_t> indices);
+    void exchange_and_sort(ObjectArrays& arrays, const Objects& own, std::span<const std::uint64_t> indices);
 
     Communicator& comm_;
     std::array<ObjectArrays, 2> arrays_;

@@ -1,4 +1,4 @@
-// Pairs of indices of 64 bits: what a rank finds in numbers of its own becomes its piece of the pairs of all.
+// Pairs of 64-bit indices: converts the pairs that a rank found, in its own object numbers, and sorts pairs over all ranks.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@
 
 namespace octopair {
 
-/// The pairs of `found`, whose `a` and `b` are called so; `pairs` is empty before.
+/// Appends the pairs of `found` to `pairs`, with `a` and `b` replaced by their indices. Requires: `pairs` is empty.
 void name_pairs(const PairList& found, std::span<const std::uint64_t> a_indices,
                 std::span<const std::uint64_t> b_indices, std::vector<Pair64>& pairs);
 
-/// Collective: this rank's pairs become its piece of the ascending sequence of all. Throws as Agreement::together.
+/// Collective. Replaces this rank's pairs by its piece of the ascending sequence of the pairs of all ranks.
+/// Throws: as Agreement::together.
 void sort_over_ranks(Communicator& comm, std::vector<Pair64>& pairs);
 
 }  // namespace octopair

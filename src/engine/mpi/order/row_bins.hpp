@@ -1,4 +1,4 @@
-// RowBins: neighbouring objects, by whom pairs are counted and shared out as their `a`.
+// RowBins: bins of consecutive objects. Pairs are counted, and assigned to ranks, by the bin of their `a`.
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ public:
 
     std::size_t size() const { return std::size_t(rows_ >> shift_) + 1; }
     std::size_t bin(const Pair& pair) const { return pair.a >> shift_; }
-    /// The first object of a bin, or the end of all.
+    /// Returns the first object of a bin, or the number of objects if there is none.
     std::uint64_t begin(std::size_t bin) const {
         const std::uint64_t row = std::uint64_t(bin) << shift_;
         return row < rows_ ? row : rows_;
@@ -31,10 +31,10 @@ private:
     unsigned shift_;
 };
 
-/// Which pairs are wanted: those whose bin has a mark. Borrowed.
+/// Selection of pairs: those whose bin has a nonzero mark. Borrows the marks.
 struct WantedRows {
     RowBins bins{0};
-    std::span<const std::uint8_t> marks = {};  ///< none: all are wanted
+    std::span<const std::uint8_t> marks = {};  ///< by bin; empty: all pairs are wanted
 };
 
 }  // namespace octopair

@@ -7,29 +7,29 @@ namespace octopair {
 
 namespace {
 
-/// How many values of a list go from a rank, and where to.
-struct ToldSizes {
+/// Transfer of a rank's list: receiving rank and number of values.
+struct ListTransfer {
     std::uint64_t to, values;
 };
 
-Exchange exchange_of(const std::vector<ToldSizes>& told, unsigned rank) {
-    Exchange exchange{RankCounts(told.size(), 0), RankCounts(told.size(), 0)};
-    if (told[rank].to != rank) exchange.sent[told[rank].to] = told[rank].values;
-    for (unsigned from = 0; from < told.size(); ++from) {
-        if (from != rank && told[from].to == rank) exchange.received[from] = told[from].values;
+Exchange exchange_of(const std::vector<ListTransfer>& transfers, unsigned rank) {
+    Exchange exchange{RankCounts(transfers.size(), 0), RankCounts(transfers.size(), 0)};
+    if (transfers[rank].to != rank) exchange.sent[transfers[rank].to] = transfers[rank].values;
+    for (unsigned from = 0; from < transfers.size(); ++from) {
+        if (from != rank && transfers[from].to == rank) exchange.received[from] = transfers[from].values;
     }
     return exchange;
 }
 
 }  // namespace
 
-std::vector<SortedList> ListExchange::bring(const SortedList& own, unsigned to) {
+std::vector<SortedList> ListExchange::exchange(const SortedList& own, unsigned to) {
     const unsigned rank = comm_.rank();
     const std::size_t octants = own.home_begins.size();
-    std::vector<ToldSizes> told = comm_.all_gather(ToldSizes{to, own.entries.size()});
-    const Exchange entries = exchange_of(told, rank);
-    for (ToldSizes& one : told) one.values = 2 * octants;
-    const Exchange counts = exchange_of(told, rank);
+    std::vector<ListTransfer> transfers = comm_.all_gather(ListTransfer{to, own.entries.size()});
+    const Exchange entries = exchange_of(transfers, rank);
+    for (ListTransfer& transfer : transfers) transfer.values = 2 * octants;
+    const Exchange counts = exchange_of(transfers, rank);
     Agreement(comm_).together([&] {
         const Metered metered(comm_, costs_.pack);
         if (to != rank) pack(own);
@@ -59,7 +59,7 @@ void ListExchange::pack(const SortedList& list) {
 std::vector<SortedList> ListExchange::unpack(std::size_t octants) {
     begins_.resize_discard(received_counts_.size());
     std::vector<SortedList> lists;
-    std::size_t begin = 0;  // of the entries that follow
+    std::size_t begin = 0;  // first entry of the next list
     for (std::size_t i = 0; i < received_counts_.size(); i += 2 * octants) {
         const auto homes = begins_.span().subspan(i, octants), ghosts = begins_.span().subspan(i + octants, octants);
         std::uint64_t at = 0;

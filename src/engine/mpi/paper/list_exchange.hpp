@@ -1,6 +1,6 @@
-// ListExchange: sorted lists of several ranks, brought to one that is to merge them.
+// ListExchange: sends sorted lists of several ranks to the rank that merges them.
 //
-// A list travels as its entries and, of each octant, how many are home and how many are not.
+// A list is sent as its entries and two counts for each octant: the number of home entries and the number of ghosts.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace octopair {
 
 class ListExchange {
 public:
-    /// `costs`: packing and unpacking adds to these. Borrows both.
+    /// Borrows both. Adds the time of packing and unpacking to `costs`.
     ListExchange(Communicator& comm, RankCosts& costs) : comm_(comm), costs_(costs) {}
 
-    /// Collective: this rank's list goes to a rank, or nowhere if that is itself. Returns those that came, in the order of the
-    /// ranks; kept until the next call. All lists are of as many octants. Throws as Agreement::together.
-    std::vector<SortedList> bring(const SortedList& own, unsigned to);
+    /// Collective. Sends this rank's list to rank `to`; sends nothing if `to` is this rank. Returns the received lists, in rank
+    /// order; their memory stays valid until the next call. Requires: all lists have the same number of octants.
+    /// Throws: as Agreement::together.
+    std::vector<SortedList> exchange(const SortedList& own, unsigned to);
 
 private:
     void pack(const SortedList& list);

@@ -5,7 +5,7 @@
 
 namespace octopair {
 
-// NOLINTNEXTLINE(readability-function-size): what, by which octants, what the others call it, until when.
+// NOLINTNEXTLINE(readability-function-size): objects, octants, number of the first object, stop.
 SortedList ListMaker::make(const EntrySource& source, const OctreeLayout& layout, std::uint32_t first_object,
                            const std::stop_token& stop) {
     memory_.resize(source.size(), 1, layout.directory.octants().size(), 1);

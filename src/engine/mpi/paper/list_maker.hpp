@@ -1,4 +1,4 @@
-// ListMaker: the sorted list of a rank's objects, in the paper's arrangement.
+// ListMaker: makes the sorted list of a rank's objects, in the paper's arrangement.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@ namespace octopair {
 
 class ListMaker {
 public:
-    /// Encodes and sorts the objects of a source, whose numbers among all begin at `first_object`. The list is kept until the
-    /// next call. Throws Error{cancelled}, LinearOctree::Invalid.
+    /// Encodes and sorts the objects of a source. Returns their list, whose memory stays valid until the next call.
+    /// `first_object`: number of the first object among the objects of all ranks.
+    /// Throws: Error{cancelled}; LinearOctree::Invalid.
     SortedList make(const EntrySource& source, const OctreeLayout& layout, std::uint32_t first_object,
                     const std::stop_token& stop);
 

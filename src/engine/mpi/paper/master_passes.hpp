@@ -1,4 +1,4 @@
-// MasterPasses: what the master of the paper's arrangement does alone: it merges the lists of all ranks, and scans.
+// MasterPasses: the passes that the master of the paper's arrangement runs alone: merge of the lists of all ranks, and scan.
 #pragma once
 
 #include <utility>
@@ -13,12 +13,12 @@ namespace octopair {
 
 class MasterPasses final : public ThreadPasses {
 public:
-    /// `costs`: build() adds to these. Borrows both.
+    /// Borrows `comm` and `costs`. build() adds its time to `costs`.
     MasterPasses(Communicator& comm, RankCosts& costs, unsigned threads)
         : ThreadPasses(threads), comm_(comm), costs_(costs) {}
 
-    /// Of the next build(), and all passes over it. Borrows the lists' contents and `stops`.
-    void take(OctreeLayout layout, std::vector<SortedList> lists, StopRelay& stops) {
+    /// Sets the lists that the next build() merges. Borrows `stops` and the lists' memory for all passes over that octree.
+    void set_lists(OctreeLayout layout, std::vector<SortedList> lists, StopRelay& stops) {
         layout_ = std::move(layout);
         lists_ = std::move(lists);
         stops_ = &stops;

@@ -17,13 +17,13 @@ Objects part_of(const Objects& all, std::size_t begin, std::size_t count) {
     return std::visit([&](const auto& boxes) { return Objects{boxes.subspan(begin, count), padding}; }, all.boxes);
 }
 
-/// Which objects are dealt to which rank: a run in the order of all, so some of each set.
+/// Assignment of objects to ranks: one run of the objects of all sets, in order. So a run may have objects of both sets.
 class Runs {
 public:
     Runs(const JointCall& joint, unsigned ranks) : joint_(joint), ranks_(ranks) {}
 
     std::uint64_t begin(unsigned rank) const { return joint_.objects() * rank / ranks_; }
-    /// In a set.
+    /// Returns the begin of the rank's run within a set.
     std::uint64_t begin(unsigned rank, unsigned set) const { return within(begin(rank), set); }
     std::uint64_t size(unsigned rank, unsigned set) const { return begin(rank + 1, set) - begin(rank, set); }
 
@@ -46,7 +46,7 @@ BoxSource source_of(const JointCall& joint, const std::array<Objects, 2>& sets) 
     return {sets[0], joint.join ? &sets[1] : nullptr, joint.form};
 }
 
-/// What the others learn of the search.
+/// Result of the master's search. Broadcast to the other ranks.
 struct Found {
     std::uint64_t pairs = 0, entries = 0;
     bool truncated = false;
@@ -63,7 +63,7 @@ MasterSearch::MasterSearch(Communicator& comm, RankCosts& costs, const MpiOption
 Summary MasterSearch::run(const Task& task) {
     const Sets all = gather(task);
     OctreeLayout layout = plan(task, all);
-    const Sets own = deal_out(task, all);
+    const Sets own = distribute(task, all);
     Summary summary;
     SortedList list;
     {
@@ -74,7 +74,7 @@ Summary MasterSearch::run(const Task& task) {
     Found found;
     Agreement(comm_).together([&] {
         if (!is_master()) return;
-        passes_.take(std::move(layout), std::move(lists), task.stops);
+        passes_.set_lists(std::move(layout), std::move(lists), task.stops);
         const Summary whole = scan(task, all);
         found = {whole.pairs, whole.entries, whole.truncated};
         summary.steps.merge = whole.steps.merge;
@@ -87,7 +87,7 @@ Summary MasterSearch::run(const Task& task) {
     return summary;
 }
 
-/// All objects, on the master; elsewhere none.
+/// Returns all objects on the master, and empty sets on other ranks.
 MasterSearch::Sets MasterSearch::gather(const Task& task) {
     const JointCall& joint = task.joint;
     const auto sizes = comm_.all_gather(joint.sizes);
@@ -134,8 +134,8 @@ OctreeLayout MasterSearch::plan(const Task& task, const Sets& all) {
     return layout;
 }
 
-/// This rank's run. The master's own stays where it is.
-MasterSearch::Sets MasterSearch::deal_out(const Task& task, const Sets& all) {
+/// Returns this rank's run. The master's run stays in place.
+MasterSearch::Sets MasterSearch::distribute(const Task& task, const Sets& all) {
     const JointCall& joint = task.joint;
     const Runs runs(joint, comm_.size());
     Sets own;
@@ -143,7 +143,7 @@ MasterSearch::Sets MasterSearch::deal_out(const Task& task, const Sets& all) {
         Exchange counts{RankCounts(comm_.size(), 0), RankCounts(comm_.size(), 0)};
         if (!is_master()) counts.received[0] = runs.size(comm_.rank(), set);
         for (unsigned rank = 1; is_master() && rank < comm_.size(); ++rank) counts.sent[rank] = runs.size(rank, set);
-        ObjectArrays& arrays = dealt_[set];
+        ObjectArrays& arrays = distributed_[set];
         set_form(arrays, joint, set);
         Agreement(comm_).together([&] {
             const Metered metered(comm_, costs_.pack);
@@ -176,16 +176,16 @@ SortedList MasterSearch::make_list(const Task& task, const Sets& own, const Octr
     return list;
 }
 
-/// Those that the master is to merge: of the ranks of its machine as they are, of other machines merged there.
+/// Returns, on the master, the lists to merge: those of the ranks of its machine, and one merged list of each other machine.
 std::vector<SortedList> MasterSearch::bring_to_master(const Task& task, const SortedList& own) {
     const unsigned rank = comm_.rank(), leader = rank - rank % ranks_per_machine_;
-    std::vector<SortedList> lists = within_machines_.bring(own, leader);
+    std::vector<SortedList> lists = within_machines_.exchange(own, leader);
     lists.insert(lists.begin(), own);
     SortedList merged = own;
     Agreement(comm_).together([&] {
         if (rank == leader && !is_master() && lists.size() > 1) merged = merge_machine(task, lists);
     });
-    const std::vector<SortedList> of_machines = to_master_.bring(merged, rank == leader ? 0 : rank);
+    const std::vector<SortedList> of_machines = to_master_.exchange(merged, rank == leader ? 0 : rank);
     lists.insert(lists.end(), of_machines.begin(), of_machines.end());
     return lists;
 }
@@ -211,7 +211,7 @@ Summary MasterSearch::scan(const Task& task, const Sets& all) {
         const detail::Request request{all[0], task.joint.join ? &all[1] : nullptr, task.options};
         summary = search_.run(request, task.output, {task.stop, task.progress});
     }
-    costs_.scan -= costs_.merge - merged;  // which is part of the search
+    costs_.scan -= costs_.merge - merged;  // the merge is part of the search
     return summary;
 }
 

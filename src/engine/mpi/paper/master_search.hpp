@@ -1,13 +1,14 @@
-// MasterSearch: what a rank does in a call of the paper's arrangement, which is there to be compared with.
+// MasterSearch: runs a call of the paper's arrangement on one rank. This arrangement exists for comparison.
 //
-//   gather  all objects to the master, rank 0, from the ranks that have some
-//   plan    the octree's octants: the master, which tells all
-//   deal    equal runs of objects: the master, to all ranks
-//   list    encoded and sorted: each rank its run                                             (list_maker.hpp)
-//   merge   the lists of a machine's ranks: the first of these; the lists of all: the master  (list_exchange.hpp)
-//   scan    the master, alone, as the local engine would                                      (master_passes.hpp)
+//   gather      all ranks send their objects to the master, rank 0
+//   plan        the master chooses the octants of the octree and broadcasts them
+//   distribute  the master sends each rank an equal run of the objects
+//   list        each rank encodes and sorts its run                                           (list_maker.hpp)
+//   merge       the first rank of each machine merges the lists of the machine's ranks; the
+//               master merges the results                                                     (list_exchange.hpp)
+//   scan        the master scans alone, like the local engine                                 (master_passes.hpp)
 //
-// The octree is that of the local engine, so the master finds what that finds; the others' pieces are empty.
+// Result     the octree is that of the local engine, so the master finds the same pairs. The pieces of other ranks are empty.
 //
 // Source: Lucchesi, Egbert, Harris 2014, sections 3.3 and 4.
 #pragma once
@@ -29,7 +30,7 @@ namespace octopair {
 
 class MasterSearch {
 public:
-    /// `costs`: each call adds to these. Borrows both.
+    /// Borrows `comm` and `costs`. Each call adds its time to `costs`.
     MasterSearch(Communicator& comm, RankCosts& costs, const MpiOptions& options);
 
     /// A call that all ranks have joined. Borrows all.
@@ -37,12 +38,13 @@ public:
         const detail::Output& output;
         const Options& options;
         const JointCall& joint;
-        const std::array<Objects, 2>& slices;  ///< that this rank brought
+        const std::array<Objects, 2>& slices;  ///< this rank's slice of each set
         StopRelay& stops;
         std::stop_token stop;
         const ProgressSink& progress;
     };
-    /// Collective. The summary is that of all ranks, but for the steps, which are this rank's. Throws as Agreement::together.
+    /// Collective. Returns the summary of all ranks, except that its steps are those of this rank.
+    /// Throws: as Agreement::together.
     Summary run(const Task& task);
 
 private:
@@ -51,7 +53,7 @@ private:
     static unsigned sets(const Task& task) { return task.joint.join ? 2 : 1; }
     Sets gather(const Task& task);
     OctreeLayout plan(const Task& task, const Sets& all);
-    Sets deal_out(const Task& task, const Sets& all);
+    Sets distribute(const Task& task, const Sets& all);
     SortedList make_list(const Task& task, const Sets& own, const OctreeLayout& layout);
     std::vector<SortedList> bring_to_master(const Task& task, const SortedList& own);
     SortedList merge_machine(const Task& task, std::span<const SortedList> lists);
@@ -62,7 +64,7 @@ private:
     unsigned ranks_per_machine_;
     MasterPasses passes_;
     Search search_{passes_};
-    std::array<ObjectArrays, 2> gathered_, dealt_;
+    std::array<ObjectArrays, 2> gathered_, distributed_;
     ListMaker maker_;
     ListExchange within_machines_{comm_, costs_}, to_master_{comm_, costs_};
     Buffer<Entry> merged_;

@@ -1,4 +1,4 @@
-// How work in a row is cut among ranks.
+// Division of a sequence of work items into contiguous parts with about equal work.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace octopair {
 
-/// Where each of `parts` begins among the items, and the end: cuts between items, such that each part has about the same
-/// work. A part may be empty. A function of the arguments alone.
+/// Returns the first item of each of `parts` parts, then the number of items. `work`: work of each item. Parts have about the
+/// same work; a part may be empty. The result depends only on the arguments.
 inline std::vector<std::size_t> even_cuts(std::span<const std::uint64_t> work, std::size_t parts) {
     const double all = double(std::accumulate(work.begin(), work.end(), std::uint64_t(0)));
     std::vector<std::size_t> begins = {0};

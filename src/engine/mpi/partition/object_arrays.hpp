@@ -1,4 +1,4 @@
-// ObjectArrays: objects of one set on their way from rank to rank, as arrays.
+// ObjectArrays: arrays of objects of one set that are sent between ranks.
 #pragma once
 
 #include <hwy/cache_control.h>
@@ -13,13 +13,13 @@
 namespace octopair {
 
 struct ObjectArrays {
-    bool wide = false;     ///< boxes are float64: `wide_boxes` has them, otherwise `boxes`
-    bool padded = false;   ///< otherwise `padding` is empty
-    bool indexed = false;  ///< objects are called by `indices`, otherwise by `positions`
+    bool wide = false;     ///< boxes are float64, in `wide_boxes`; otherwise float32, in `boxes`
+    bool padded = false;   ///< `padding` is used
+    bool indexed = false;  ///< objects are identified by `indices`; otherwise by `positions`
     Buffer<Box3f> boxes = {};
     Buffer<Box3d> wide_boxes = {};
     Buffer<double> padding = {};
-    Buffer<std::uint32_t> positions = {};  ///< in the set, of all ranks'
+    Buffer<std::uint32_t> positions = {};  ///< of the objects in the set
     Buffer<std::uint64_t> indices = {};
 
     std::size_t size() const { return indexed ? indices.size() : positions.size(); }
@@ -30,8 +30,8 @@ struct ObjectArrays {
         if (indexed) indices.resize_discard(objects);
         if (!indexed) positions.resize_discard(objects);
     }
-    /// Calls use(copy), where copy(to, from) makes object `from` of `objects`, of this form, number `to`: its box, its
-    /// padding.
+    /// Calls use(copy). copy(to, from) copies box and padding of object `from` of `objects` to place `to`.
+    /// Requires: `objects` have the same form (`wide`, `padded`).
     template <typename Use>
     void copying(const Objects& objects, Use&& use) {
         const auto with = [&](auto* to_boxes, auto from_boxes) {
@@ -52,7 +52,7 @@ struct ObjectArrays {
         if (wide) with(wide_boxes.data(), std::get<std::span<const Box3d>>(objects.boxes));
         if (!wide) with(boxes.data(), std::get<std::span<const Box3f>>(objects.boxes));
     }
-    /// The same of what objects are called: by their indices, or by their number in the slice and where that begins.
+    /// Calls use(name). name(to, from) stores the index of object `from` at place `to`, or its position, `slice_begin + from`.
     template <typename Use>
     void naming(std::span<const std::uint64_t> from_indices, std::uint64_t slice_begin, Use&& use) {
         if (indexed) {
@@ -73,7 +73,7 @@ struct ObjectArrays {
     }
 
 private:
-    /// Objects go to many places in turn, which no processor follows by itself.
+    /// Prefetches memory that is written soon. Hardware prefetchers do not follow writes that alternate between many places.
     template <typename T>
     static void fetch_ahead(const T* place) {
         constexpr std::size_t ahead_bytes = 112;
@@ -81,7 +81,8 @@ private:
     }
 };
 
-/// Collective: boxes and paddings of `out`, which is of the form of `in`; what comes stands in `in` from `place` on.
+/// Collective. Sends boxes and paddings of `out`. Stores the received ones in `in`, from `place` on.
+/// Requires: `out` and `in` have the same form; `in` is large enough.
 // NOLINTNEXTLINE(readability-function-size): from, to, where there, how many.
 inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArrays& in, const Exchange& counts,
                              std::size_t place = 0) {
@@ -93,7 +94,8 @@ inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArray
     if (in.padded) comm.exchange(out.padding.data(), in.padding.data() + place, counts);
 }
 
-/// Collective: `out` holds what is to be sent; `in`, of the same form and large enough, gets what comes.
+/// Collective. Sends the objects of `out`, with their indices or positions. Stores the received ones in `in`.
+/// Requires: `out` and `in` have the same form; `in` is large enough.
 inline void exchange(Communicator& comm, const ObjectArrays& out, ObjectArrays& in, const Exchange& counts) {
     exchange_objects(comm, out.view(), in, counts);
     if (out.indexed) comm.exchange(out.indices.data(), in.indices.data(), counts);

@@ -8,12 +8,14 @@ namespace octopair {
 
 namespace {
 
-constexpr double tested_an_entry = 64;  // boxes that a sweep tests while all else is done for an entry; measured
+/// Cost of all work on an entry besides the tests of the sweep, in box tests. Measured.
+constexpr double tests_per_entry_cost = 64;
 
-/// A sweep tests each entry against those that it meets on its axis.
+/// Returns the estimated work in an octant, in box tests. A sweep tests each entry against the entries that overlap it on the
+/// sweep's axis.
 std::uint64_t work_of(const OctantLoad& load, unsigned level) {
     const double met = double(load.extent) / double(cells_per_axis >> level);
-    return std::uint64_t(double(load.entries) * (tested_an_entry + met));
+    return std::uint64_t(double(load.entries) * (tests_per_entry_cost + met));
 }
 
 std::vector<std::uint64_t> work_of(const Directory& directory, std::span<const OctantLoad> loads) {

@@ -1,8 +1,9 @@
-// OctantOwners: which rank owns which octants: the pre-order of the octree, cut into one run for each rank.
+// OctantOwners: assignment of octants to ranks.
 //
-// A rank's run may be empty. An object belongs to every rank that owns an octant with an entry of it, and where it is kept
-// in an octant above, to every rank that owns one of those below which it touches: so what is handed down to a rank's octants
-// is there too.
+// Invariants 1. Each rank owns one run of the pre-order of the octree. A run may be empty.
+//            2. An object belongs to each rank that owns an octant with an entry of the object.
+//            3. If an entry is kept in an inner octant, the object also belongs to each rank that owns a descendant that the
+//               box touches. So a rank has all objects that are handed down to its octants.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +16,10 @@
 
 namespace octopair {
 
-/// What there is to do in an octant: sums over its entries.
+/// Measures of the work in an octant: sums over its entries.
 struct OctantLoad {
     std::uint64_t entries = 0;
-    std::uint64_t extent = 0;  ///< in cells, on the axis on which a box is shortest
+    std::uint64_t extent = 0;  ///< extent of each box on its shortest axis, summed; in cells
 
     void add(const CellBox& box) {
         ++entries;
@@ -36,8 +37,8 @@ struct OctantLoad {
 
 class OctantOwners {
 public:
-    /// Borrows the directory. Cuts it between octants so that each of `ranks` has about the same work with these loads, one
-    /// for each octant: a function of these numbers alone.
+    /// Divides the octants of `directory` into runs of about equal work. `loads`: load of each octant. The result depends only
+    /// on the arguments. Borrows the directory.
     OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
@@ -45,13 +46,13 @@ public:
     OctantIndex end(unsigned rank) const { return OctantIndex(begins_[rank + 1]); }
     unsigned owner(OctantIndex octant) const { return owners_[octant]; }
 
-    /// All octants that a box belongs in lie, in pre-order, from the first of these to the last.
+    /// Range of the pre-order, from `first` to `last`, that has all octants that a box belongs to.
     struct Reach {
         OctantIndex first = 0, last = 0;
-        bool only = false;  ///< there are no others
+        bool only = false;  ///< the box belongs to no octants but `first` and `last`
     };
-    /// `home`, `end`: the leaves that the box begins and ends in. A cell that is on no axis before another does not come
-    /// before it in pre-order.
+    /// Returns the reach of a box. `home`, `end`: the leaves of its low and its high corner. A cell that is not before another
+    /// cell on any axis is not before it in pre-order, so the corners bound the range.
     static Reach reach(const CellBox& box, const Directory& directory, Directory::Leaf home, Directory::Leaf end) {
         const unsigned natural = natural_level(box), level = home.level();
         const unsigned crossed = crossed_axes(box, level);
@@ -60,15 +61,17 @@ public:
     }
     bool is_shared(const Reach& reach) const { return owner(reach.first) != owner(reach.last); }
 
-    /// Calls place(rank) for each rank that a box belongs to which reaches beyond the leaf it begins in, `home`; a rank
-    /// may come more than once.
+    /// Calls place(rank) for each rank that a box belongs to, possibly more than once. `home`: the leaf of its low corner.
+    /// Requires: the box extends beyond `home`.
     template <typename Place>
     void for_each_owner(const CellBox& box, Directory::Leaf home, Place&& place) const {
-        for_each_octant_of(box, directory_, home, [&](OctantIndex octant, unsigned) { add_owners(box, octant, place); });
+        for_each_octant_of(box, directory_, home,
+                           [&](OctantIndex octant, unsigned) { add_owners(box, octant, place); });
     }
 
 private:
-    /// Of an octant that the box touches, and all below.
+    /// Calls place() for the owners of `octant` and of its descendants that the box touches.
+    /// Requires: the box touches `octant`.
     template <typename Place>
     void add_owners(const CellBox& box, OctantIndex octant, Place& place) const {
         const Octant& parent = directory_.octants()[octant];

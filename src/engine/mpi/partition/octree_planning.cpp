@@ -21,7 +21,7 @@ namespace {
 /// This rank's part of the sample.
 struct OwnSample {
     std::vector<Entry> boxes;
-    std::vector<Entry> for_space;  ///< of these, what the space is fitted to
+    std::vector<Entry> for_space;  ///< subset of `boxes` that the space is fitted to
 };
 
 OwnSample own_sample(const JointCall& call, const BoxSource& own) {
@@ -40,11 +40,11 @@ OwnSample own_sample(const JointCall& call, const BoxSource& own) {
     return taken;
 }
 
-constexpr unsigned frame_measures = 3 * SpaceSample::measures;
+constexpr unsigned space_measures = 3 * SpaceSample::measures;
 
-/// The rank that measures one of them.
+/// Returns the rank that computes measure `number` of the space.
 unsigned measurer(unsigned number, unsigned ranks) {
-    return ranks < frame_measures ? number % ranks : number * ranks / frame_measures;
+    return ranks < space_measures ? number % ranks : number * ranks / space_measures;
 }
 
 Space fit_together(Communicator& comm, std::span<const Entry> own, std::uint64_t objects) {
@@ -55,7 +55,7 @@ Space fit_together(Communicator& comm, std::span<const Entry> own, std::uint64_t
     RankCounts to_each(ranks, 0);
     agreement.together([&] {
         for (unsigned rank = 0; rank < ranks; ++rank) {
-            for (unsigned number = 0; number < frame_measures; ++number) {
+            for (unsigned number = 0; number < space_measures; ++number) {
                 if (measurer(number, ranks) != rank) continue;
                 const unsigned axis = number / SpaceSample::measures;
                 for (const Entry& box : own) out.push_back({box.min[axis], box.max[axis]});
@@ -68,14 +68,14 @@ Space fit_together(Communicator& comm, std::span<const Entry> own, std::uint64_t
     agreement.together([&] { in.resize(counts.incoming()); });
     comm.exchange(out.data(), in.data(), counts);
 
-    std::vector<unsigned> numbers;  // of the measures that are this rank's
-    for (unsigned number = 0; number < frame_measures; ++number) {
+    std::vector<unsigned> numbers;  // measures that this rank computes
+    for (unsigned number = 0; number < space_measures; ++number) {
         if (measurer(number, ranks) == comm.rank()) numbers.push_back(number);
     }
     std::vector<SpaceSample::Measured> measured;
     agreement.together([&] {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            // Each rank has sent as many for one as for another.
+            // Each rank has sent equally many intervals for each measure.
             std::vector<Interval> intervals;
             auto from = in.begin();
             for (const std::uint64_t received : counts.received) {
@@ -90,24 +90,25 @@ Space fit_together(Communicator& comm, std::span<const Entry> own, std::uint64_t
     const auto by_rank = comm.all_gather(std::span<const SpaceSample::Measured>(measured));
     SpaceSample::AllMeasured all;
     std::vector<std::size_t> next = by_rank.begins;
-    for (unsigned number = 0; number < frame_measures; ++number) {
+    for (unsigned number = 0; number < space_measures; ++number) {
         all[number] = by_rank.values[next[measurer(number, ranks)]++];
     }
     return Space::fit(all, objects);
 }
 
-/// A box of this rank's part of the sample, in an octant of the top.
+/// A box of this rank's part of the sample, in an octant of the shared top.
 struct SharedTopBox {
-    std::uint32_t octant;  ///< its number
-    std::uint32_t box;     ///< of the sample
-    bool kept;             ///< by an octant above, or this one
+    std::uint32_t octant;  ///< number of the octant
+    std::uint32_t box;     ///< number of the box in the sample
+    bool kept;             ///< the entry is kept by this octant or by an ancestor
 };
 
-/// The octants that all ranks divide together, level by level, and those below that are left.
+/// The octants at the top of the octree that all ranks divide together, level by level. Octants that are not decided here are
+/// "left": one rank grows the subtree of each of them.
 class SharedTop {
 public:
-    /// Divides octants until none has more than `most` boxes of the sample, or none that has is to be divided. The sums that
-    /// decide are the same on all ranks. `own`: this rank's part of the sample; borrowed.
+    /// Divides octants until each one has at most `most` boxes of the sample, or is not to be divided. The sums that decide are
+    /// the same on all ranks. `own`: this rank's part of the sample. Borrows `comm`, `growth` and `own`.
     SharedTop(Communicator& comm, const SplitRule& growth, std::uint64_t most, std::span<const CellBox> own)
         : comm_(comm), growth_(growth), most_(most), own_(own) {
         octants_.push_back({OctantCube{}});
@@ -121,15 +122,17 @@ public:
         number_left(0);
     }
 
-    /// Those that are left, in pre-order: how many boxes of all ranks' samples each has, and where it is.
+    /// Returns the number of sample boxes, on all ranks, of each octant that is left, in pre-order.
     const std::vector<std::uint64_t>& sizes() const { return left_sizes_; }
+    /// Returns an octant that is left. `left`: its number among those in pre-order.
     const OctantCube& octant(std::size_t left) const { return octants_[left_[left]].octant; }
-    /// This rank's boxes in them; of each, which one it is in.
+    /// Returns this rank's sample boxes in octants that are left.
     std::span<const SharedTopBox> boxes() const { return boxes_left_; }
+    /// Returns the number of the box's octant among those that are left.
     std::uint32_t number(const SharedTopBox& box) const { return octants_[box.octant].number; }
     const CellBox& cells(const SharedTopBox& box) const { return own_[box.box]; }
 
-    /// The shape of the whole tree, with the shapes of those that were left in pre-order.
+    /// Returns the shape of the whole octree. `left`: the shapes of the octants that are left, in pre-order.
     SplitFlags shape(std::span<const std::uint8_t> left) const {
         SplitFlags whole;
         append_shape(0, left, whole);
@@ -141,14 +144,14 @@ private:
     struct SharedTopOctant {
         OctantCube octant;
         State state = State::left;
-        std::uint32_t below = 0;   ///< the first of its eight
-        std::uint32_t number = 0;  ///< among those left
-        std::uint64_t size = 0;
+        std::uint32_t below = 0;   ///< number of the first of its eight children
+        std::uint32_t number = 0;  ///< number among the octants that are left
+        std::uint64_t size = 0;    ///< number of sample boxes, on all ranks
     };
 
-    /// The octants from `first` on; `boxes` are those in them, and become those in the octants below.
+    /// Divides the octants from `first` on. `boxes`: the boxes in these octants; replaced by those in their children.
     void divide(std::size_t first, std::vector<SharedTopBox>& boxes) {
-        constexpr std::size_t each = 5;  // counts
+        constexpr std::size_t each = 5;  // counts of an octant
         std::vector<std::uint64_t> sums;
         Agreement(comm_).together([&] {
             sums.resize(each * (octants_.size() - first), 0);
@@ -214,7 +217,7 @@ private:
         for (std::size_t digit = 0; digit < 8; ++digit) number_left(octant.below + digit);
     }
 
-    /// `left` is moved past what is taken.
+    /// Appends the shape of octant `i` and its descendants. Removes the shapes that are used from the front of `left`.
     void append_shape(std::size_t i, std::span<const std::uint8_t>& left, SplitFlags& shape) const {
         const SharedTopOctant& octant = octants_[i];
         if (octant.state != State::left) {
@@ -233,24 +236,25 @@ private:
     const SplitRule& growth_;
     std::uint64_t most_;
     std::span<const CellBox> own_;
-    std::vector<SharedTopOctant> octants_;  // level after level
+    std::vector<SharedTopOctant> octants_;  // level by level
     std::vector<SharedTopBox> boxes_left_;
-    std::vector<std::size_t> left_;  // in pre-order
+    std::vector<std::size_t> left_;  // numbers of the octants that are left, in pre-order
     std::vector<std::uint64_t> left_sizes_;
 };
 
-/// A box on its way to the rank that grows an octant.
-struct DealtBox {
-    std::uint32_t octant;  ///< its number among those left
-    std::uint32_t kept;    ///< whether by an octant above
+/// A sample box that is sent to the rank that grows its octant.
+struct SentBox {
+    std::uint32_t octant;  ///< number of the octant among those that are left
+    std::uint32_t kept;    ///< 1 if the octant or an ancestor keeps the entry, else 0
     std::array<std::uint32_t, 3> lo, hi;
 };
 
-/// What the ranks have of the octants that are left comes together: those of this rank, whole.
-std::vector<SampledOctant> deal_out(Communicator& comm, const SharedTop& top) {
+/// Collective. Sends sample boxes to the ranks that grow their octants. Returns the octants that this rank grows, with the
+/// boxes of all ranks.
+std::vector<SampledOctant> collect_octants(Communicator& comm, const SharedTop& top) {
     Agreement agreement(comm);
     const std::vector<std::size_t> cuts = even_cuts(top.sizes(), comm.size());
-    std::vector<DealtBox> out;
+    std::vector<SentBox> out;
     RankCounts to_each(comm.size(), 0);
     agreement.together([&] {
         const auto rank_of = [&](const SharedTopBox& box) {
@@ -269,7 +273,7 @@ std::vector<SampledOctant> deal_out(Communicator& comm, const SharedTop& top) {
         }
     });
     const Exchange counts = comm.plan_exchange(std::move(to_each));
-    std::vector<DealtBox> in;
+    std::vector<SentBox> in;
     agreement.together([&] { in.resize(counts.incoming()); });
     comm.exchange(out.data(), in.data(), counts);
     const std::size_t first = cuts[comm.rank()], end = cuts[comm.rank() + 1];
@@ -277,7 +281,7 @@ std::vector<SampledOctant> deal_out(Communicator& comm, const SharedTop& top) {
     agreement.together([&] {
         own.resize(end - first);
         for (std::size_t i = first; i < end; ++i) own[i - first].octant = top.octant(i);
-        for (const DealtBox& box : in) {
+        for (const SentBox& box : in) {
             SampledOctant& sampled = own[box.octant - first];
             (box.kept != 0 ? sampled.kept : sampled.inside)
                 .push_back({{box.lo[0], box.lo[1], box.lo[2], 0}, {box.hi[0], box.hi[1], box.hi[2], 0}});
@@ -289,7 +293,7 @@ std::vector<SampledOctant> deal_out(Communicator& comm, const SharedTop& top) {
 }  // namespace
 
 OctreeLayout plan_together(Communicator& comm, const JointCall& call, const BoxSource& own,
-                              const std::stop_token& stop) {
+                           const std::stop_token& stop) {
     Agreement agreement(comm);
     OwnSample sample;
     agreement.together([&] { sample = own_sample(call, own); });
@@ -304,7 +308,7 @@ OctreeLayout plan_together(Communicator& comm, const JointCall& call, const BoxS
     const SplitRule growth = split_rule(call.objects(), stop);
     const std::uint64_t most = octant_sample(call.objects()).size() / (tuning().ranks.octants * comm.size());
     const SharedTop top(comm, growth, most, cells);
-    std::vector<SampledOctant> own_octants = deal_out(comm, top);
+    std::vector<SampledOctant> own_octants = collect_octants(comm, top);
     SplitFlags own_shapes;
     agreement.together([&] {
         throw_if_stopped(stop);

@@ -1,12 +1,13 @@
-// Planting: the octants of an octree grown by all ranks together, from a sample of which each rank has a part.
+// Octree planning: all ranks together choose the octants of the octree, from a sample of which each rank has a part.
 //
-//   space   each of the nine numbers that it is fitted to is measured on one rank
-//   top     octants with much of the sample are divided by all ranks, level by level: each counts its part, and the sums
-//           decide
-//   rest    the octants below are dealt out in runs of the pre-order with about as many boxes of the sample; each rank grows
-//           its own
-// The shapes of all, in pre-order, are that of the whole tree, which every rank then knows: the tree that the local engine
-// grows from the same sample.
+//   space   each of the nine measures that the space is fitted to is computed on one rank
+//   top     all ranks split the octants with a large part of the sample, level by level: each rank counts its part of the
+//           sample, and the sums decide
+//   rest    the remaining octants are assigned to ranks, in runs of the pre-order with about equally many boxes of the sample;
+//           each rank grows its subtrees
+//
+// Result     the shapes of all subtrees, in pre-order, give the shape of the whole octree. All ranks gather this shape. It
+//            equals the octree that the local engine grows from the same sample.
 #pragma once
 
 #include <stop_token>
@@ -18,8 +19,8 @@
 
 namespace octopair {
 
-/// Collective. `own`: this rank's objects. Throws as Agreement::together.
+/// Collective. Returns the space and the octants of the octree. `own`: this rank's objects. Throws: as Agreement::together.
 OctreeLayout plan_together(Communicator& comm, const JointCall& call, const BoxSource& own,
-                              const std::stop_token& stop);
+                           const std::stop_token& stop);
 
 }  // namespace octopair

@@ -14,11 +14,11 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t most_batch = default_tuning.ranks.batch;
-constexpr std::size_t check_interval = 1 << 15;  // objects between looks for a stop
+constexpr std::size_t check_interval = 1 << 15;  // number of objects between two checks for a stop request
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): what is routed, where, with which memory, until when.
+// NOLINTNEXTLINE(readability-function-size): call, objects, octree, memory, stop.
 Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
                  std::stop_token stop)
     : call_(call),
@@ -42,14 +42,14 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLay
     blocks_.resize(count);
 }
 
-void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
-    // Loads are as long as the tree: one copy for each thread, none for one alone.
+void Routing::find_homes(Executor& executor, std::span<OctantLoad> loads) {
+    // The loads have one element for each octant. Each thread adds to a copy of its own; a single thread needs no copy.
     const std::size_t shares = std::min<std::size_t>(executor.width(), blocks_.size());
     std::mutex mutex;
     executor.for_each(shares, [&](std::size_t share) {
         std::vector<OctantLoad> copy(shares > 1 ? loads.size() : 0);
         const std::span<OctantLoad> own = shares > 1 ? std::span(copy) : loads;
-        for (std::size_t i = share; i < blocks_.size(); i += shares) find(blocks_[i], own);
+        for (std::size_t i = share; i < blocks_.size(); i += shares) find_homes(blocks_[i], own);
         const std::lock_guard lock(mutex);
         for (std::size_t octant = 0; octant < copy.size(); ++octant) loads[octant].add(copy[octant]);
     });
@@ -61,7 +61,7 @@ void Routing::find(Executor& executor, std::span<OctantLoad> loads) {
 
 namespace {
 
-/// The cells of objects [begin, begin + cells.size()) of a source; false if one of them is not a box.
+/// Stores the cells of objects [begin, begin + cells.size()) of a source. Returns false if one of the boxes is invalid.
 bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, std::span<CellBox> cells) {
     if (const auto boxes = source.plain(begin, cells.size()); !boxes.empty()) {
         space.cells(boxes, cells);
@@ -76,7 +76,7 @@ bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, 
 
 }  // namespace
 
-void Routing::find(Block& block, std::span<OctantLoad> loads) {
+void Routing::find_homes(Block& block, std::span<OctantLoad> loads) {
     const Directory& directory = layout_.directory;
     const std::size_t batch_size = tuning().ranks.batch;
     std::array<CellBox, most_batch> cells, ends;
@@ -92,7 +92,7 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
         directory.leaves(std::span(cells).first(count), homes);
         std::size_t crossing = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            // No branch on whether a box crosses, which nothing foretells.
+            // No branch on whether a box crosses: the processor could not predict it.
             const bool crosses = !within(cells[i], homes[i].level());
             places_[begin + i] = homes[i].octant();
             crossers[crossing] = std::uint32_t(i);
@@ -111,13 +111,13 @@ void Routing::find(Block& block, std::span<OctantLoad> loads) {
     }
 }
 
-void Routing::address(Executor& executor, const OctantOwners& owners) {
+void Routing::assign_owners(Executor& executor, const OctantOwners& owners) {
     owners_ = &owners;
     several_ = owners.ranks();
-    executor.for_each(blocks_.size(), [&](std::size_t i) { address(blocks_[i]); });
+    executor.for_each(blocks_.size(), [&](std::size_t i) { assign_owners(blocks_[i]); });
 }
 
-void Routing::address(Block& block) {
+void Routing::assign_owners(Block& block) {
     block.counts.assign(several_ + 1, 0);
     for (std::size_t i = block.objects.begin; i < block.objects.end; ++i) {
         places_[i] = owners_->owner(places_[i]);
@@ -136,7 +136,7 @@ void Routing::address(Block& block) {
 }
 
 void Routing::share(Block& block, std::span<const Crosser> crossers) const {
-    // Between the first and the last octant of a reach there may be some that the box does not touch.
+    // Between the first and the last octant of a reach there may be octants that the box does not touch.
     std::vector<std::size_t> unclear;
     for (const Crosser& crosser : crossers) {
         if (!crosser.reach.only) unclear.push_back(crosser.object);
@@ -180,7 +180,8 @@ std::uint64_t Routing::shared_objects() const {
     return objects;
 }
 
-/// Calls place(object, where), objects ascending; next[rank] is where the next of a rank's goes.
+/// Calls place(object, to) for each copy of each object, objects ascending. next[rank]: place of the next object of a rank;
+/// advanced by each copy.
 template <typename Place>
 void Routing::for_each_copy(const Block& block, RankCounts& next, const Place& place) const {
     const std::uint32_t* owners = block.owners.data();
@@ -194,7 +195,7 @@ void Routing::for_each_copy(const Block& block, RankCounts& next, const Place& p
 }
 
 void Routing::pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const {
-    // Where each block's go: by rank, then by block.
+    // places[block][rank]: place of the block's first object for a rank. Places are ordered by rank, then by block.
     std::vector<RankCounts> places(blocks_.size(), RankCounts(owners_->ranks()));
     std::uint64_t at = 0;
     for (unsigned rank = 0; rank < owners_->ranks(); ++rank) {

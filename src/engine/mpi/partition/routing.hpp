@@ -1,12 +1,12 @@
-// Routing: objects on their way to the ranks that own their octants.
+// Routing: prepares the objects of a rank for sending to the ranks that own their octants.
 //
-//   find     each object's home leaf -> how much work each octant makes with this rank's objects
-//   address  with the owners: the ranks that each object goes to, and how many objects go to each rank
-//   pack     boxes, paddings, positions or indices, one rank's after another's, each rank's ascending by position
-// What arrives from all ranks, in their order, is then again ascending by position, set after set; so within a rank objects
-// have numbers of their own, in the same order as their positions.
+//   find_homes     finds the home leaf of each object, and the load that this rank's objects add to each octant
+//   assign_owners  finds the ranks that each object is sent to, and the number of objects for each rank
+//   pack           copies boxes, paddings, and positions or indices to arrays: ordered by receiving rank, then by position
 //
-// Each step goes over blocks of objects, which threads share.
+// Invariants 1. The objects received from all ranks, in rank order, are ascending by position, set after set. So a rank numbers
+//               its received objects in the order of their positions.
+//            2. Each step works on blocks of objects. Threads share the blocks.
 #pragma once
 
 #include <array>
@@ -35,11 +35,11 @@ class Routing {
     struct Block {
         unsigned set = 0;
         ObjectBlock objects = {};                // of the source
-        std::optional<std::size_t> bad = {};     // the first that is not a box
-        std::vector<Crosser> crossers = {};      // out of the leaf that they begin in; ascending
-        RankCounts counts = {};                  // of each rank
-        std::vector<std::uint32_t> owners = {};  // of those that may have several: how many, and these
-        std::uint64_t shared = 0;
+        std::optional<std::size_t> bad = {};     // first object of the first batch with an invalid box
+        std::vector<Crosser> crossers = {};      // objects whose boxes extend beyond their home leaf; ascending
+        RankCounts counts = {};                  // number of objects for each rank
+        std::vector<std::uint32_t> owners = {};  // for each object marked `several_`: number of owners, then the owners
+        std::uint64_t shared = 0;                // number of objects with several owners
 
         void begin(unsigned of_set, const ObjectBlock& block) {
             set = of_set;
@@ -52,30 +52,33 @@ class Routing {
     };
 
 public:
-    /// What is kept from call to call: pages that are new have to be cleared first.
+    /// Memory that is kept between calls, because the operating system must clear new pages first.
     class Memory {
         friend Routing;
         std::vector<Block> blocks_;
         Buffer<std::uint32_t> places_;
     };
 
-    /// Borrows all. `source`: this rank's objects.
+    /// Borrows all arguments but the token. `source`: this rank's objects.
     Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
             std::stop_token stop);
 
-    /// Adds to `loads`, empty ones, one for each octant. Throws Error{cancelled}; BadObject for a box that is not one.
-    void find(Executor& executor, std::span<OctantLoad> loads);
-    /// Borrows `owners` until the end.
-    void address(Executor& executor, const OctantOwners& owners);
-    /// After address(): how many of a set go to each rank, and how many of all have several owners.
+    /// Finds the home leaf of each object. Stores the estimated load of each octant in `loads`.
+    /// Requires: `loads` has one empty load for each octant. Throws: Error{cancelled}; BadObject for an invalid box.
+    void find_homes(Executor& executor, std::span<OctantLoad> loads);
+    /// Finds the ranks that each object is sent to. Borrows `owners` as long as this object lives. Requires: find_homes().
+    void assign_owners(Executor& executor, const OctantOwners& owners);
+    /// Returns how many objects of a set go to each rank. Requires: assign_owners().
     RankCounts counts(unsigned set) const;
+    /// Returns the number of objects with several owners. Requires: assign_owners().
     std::uint64_t shared_objects() const;
-    /// Those of a set.
+    /// Copies the objects of a set to `out`, ordered by receiving rank, then by position. `objects`: this rank's slice of the
+    /// set. Requires: assign_owners().
     void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
 
 private:
-    void find(Block& block, std::span<OctantLoad> loads);
-    void address(Block& block);
+    void find_homes(Block& block, std::span<OctantLoad> loads);
+    void assign_owners(Block& block);
     void share(Block& block, std::span<const Crosser> crossers) const;
     template <typename Place>
     void for_each_copy(const Block& block, RankCounts& next, const Place& place) const;
@@ -84,11 +87,11 @@ private:
     const BoxSource& source_;
     const OctreeLayout& layout_;
     std::stop_token stop_;
-    std::size_t counted_stride_ = 1;  // of batches: what octants hold is known from a part well enough
+    std::size_t counted_stride_ = 1;  // loads are estimated from one batch of so many, which is exact enough
     std::vector<Block>& blocks_;
     const OctantOwners* owners_ = nullptr;
-    Buffer<std::uint32_t>& places_;  // of each object: the leaf that it begins in; after address() its owner
-    std::uint32_t several_ = 0;      // in place of an owner
+    Buffer<std::uint32_t>& places_;  // home leaf of each object; after assign_owners() its owner, or `several_`
+    std::uint32_t several_ = 0;      // marks objects that may have several owners
 };
 
 }  // namespace octopair

@@ -15,7 +15,7 @@ namespace octopair {
 namespace {
 
 [[noreturn]] void throw_damaged_result() {
-    throw Error(ErrorCode::engine_failed, "what worker processes left in shared memory makes no sense");
+    throw Error(ErrorCode::engine_failed, "shared memory: the results of the worker processes are damaged");
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ namespace {
 ProcessPasses::ProcessPasses(WorkerPool& pool, const SharedArrays& arrays) : pool_(pool), inputs_(arrays) {}
 
 void ProcessPasses::build(Call& call, double) {
-    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(roomy_bytes()));
+    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(max_region_bytes()));
     regions_ = {arena_};
     pass_ = {};
     inputs_.place(call, pool_, pass_, regions_);
@@ -34,18 +34,18 @@ void ProcessPasses::build(Call& call, double) {
     pass_.arena_region = arena_->number;
 }
 
-/// Sends the workers on the errand that pass_ is, with their pairs to the region `pairs`.
+/// Runs `pass_` on the workers, which write their pairs to the region `pairs`.
 void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch) {
     pass_.pairs_region = pairs->number;
     std::vector<std::shared_ptr<Region>> needed = regions_;
     needed.push_back(pairs);
-    // The steps before the scan are told together with it.
+    // The progress of this stage includes the steps before the scan.
     call.progress.stage(progress, std::max<std::uint64_t>(1, call.source.size() * 5 / 4));
     std::uint64_t shown = 0;
     watch.stop = call.stop.get_token();
-    watch.look = [&, look = std::move(watch.look)] {
+    watch.poll = [&, poll = std::move(watch.poll)] {
         show_progress(call, shown);
-        if (look) look();
+        if (poll) poll();
     };
     try {
         (void)pool_.run(pass_, needed, watch);
@@ -65,7 +65,7 @@ void ProcessPasses::show_progress(Call& call, std::uint64_t& shown) {
     if (scanned > shown) call.progress.add(scanned - std::exchange(shown, scanned));
 }
 
-/// Times are those of the slowest worker: the steps end together.
+/// Adds the times of the slowest worker to the summary: all workers leave a step together.
 void ProcessPasses::take_results(Call& call) {
     StepSeconds steps;
     for (unsigned i = 0; i < pass_.workers; ++i) {
@@ -92,11 +92,11 @@ std::span<Share> ProcessPasses::shares_done() {
     return shares;
 }
 
-/// A region that no list holds any more.
+/// Returns a region for pairs that no list holds. Creates one if necessary.
 std::shared_ptr<Region> ProcessPasses::free_pairs() {
     auto found = std::find_if(pairs_.begin(), pairs_.end(), [](const auto& region) { return region.use_count() == 1; });
     if (found == pairs_.end()) {
-        pairs_.push_back(pool_.add_region(SharedMemory::create(roomy_bytes())));
+        pairs_.push_back(pool_.add_region(SharedMemory::create(max_region_bytes())));
         found = pairs_.end() - 1;
     }
     return *found;
@@ -110,7 +110,7 @@ std::uint64_t ProcessPasses::count(Call& call, double progress) {
     return all;
 }
 
-/// Counting cannot be done again for one share, which may have been counted in part: where a worker is lost, all of it is.
+/// Repeats the whole pass when a worker is lost: a single share cannot be repeated, as it may already be partly counted.
 void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
     struct Again {};
     pass_.kind = PassKind::count_by_object;
@@ -118,7 +118,7 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
     for (bool again = true; again;) {
         try {
             PassWatch watch;
-            watch.lost = [](unsigned) { throw Again{}; };
+            watch.on_worker_lost = [](unsigned) { throw Again{}; };
             run(call, progress, pairs, std::move(watch));
             again = false;
         } catch (const Again&) {
@@ -145,7 +145,7 @@ void ProcessPasses::list_ascending(Call& call, detail::PairStorage& list, const 
     append_runs(list, pairs);
 }
 
-/// The list keeps the memory that the workers wrote to, or gets a copy.
+/// Appends the runs of all shares. The list keeps the memory that the workers wrote to, or gets a copy.
 void ProcessPasses::append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs) {
     const ControlBlockView& view = pool_.view();
     const std::uint64_t written = view.control_block().next_block.load();
@@ -175,8 +175,8 @@ void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double prog
     pass_.block_pairs = size.block_pairs;
     RingReader reader(pool_, pairs->memory, pass_, deliver);
     PassWatch watch;
-    watch.look = [&] { (void)reader.take(); };
-    watch.lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
+    watch.poll = [&] { (void)reader.take(); };
+    watch.on_worker_lost = [&](unsigned slot) { reader.forget_unfinished(slot); };
     run(call, progress, pairs, std::move(watch));
     while (reader.take()) throw_if_stopped(call.stop.get_token());
     if (!reader.complete(pool_.shares())) throw_damaged_result();

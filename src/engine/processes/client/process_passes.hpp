@@ -1,24 +1,24 @@
-// ProcessPasses: the passes of a call, made by a pool of workers.
+// ProcessPasses: runs the passes of a call on a pool of worker processes.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/search.hpp"
 
 namespace octopair {
 
 class ProcessPasses final : public Passes {
 public:
-    /// Both must outlive it.
+    /// Requires: `pool` and `arrays` outlive this object.
     ProcessPasses(WorkerPool& pool, const SharedArrays& arrays);
 
     unsigned width() const override { return pool_.workers(); }
     void end() noexcept override { regions_.clear(); }
-    /// The octree is built by the pass that comes next: one errand for both.
+    /// Prepares the inputs. The next pass builds the octree, so workers need only one request for both.
     void build(Call& call, double progress) override;
     std::uint64_t count(Call& call, double progress) override;
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
@@ -37,9 +37,9 @@ private:
     WorkerPool& pool_;
     SharedInputs inputs_;
     std::shared_ptr<Region> arena_;
-    std::vector<std::shared_ptr<Region>> pairs_;  // with one owner, they are free
+    std::vector<std::shared_ptr<Region>> pairs_;  // free for use if this is their only owner
     Pass pass_;
-    std::vector<std::shared_ptr<Region>> regions_;  // that each pass of the call needs, beside one for its pairs
+    std::vector<std::shared_ptr<Region>> regions_;  // needed by each pass of the call, apart from the pairs' region
 };
 
 }  // namespace octopair

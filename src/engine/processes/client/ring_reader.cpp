@@ -11,7 +11,7 @@ namespace octopair {
 namespace {
 
 [[noreturn]] void throw_damaged_ring() {
-    throw Error(ErrorCode::engine_failed, "what a worker left in its ring makes no sense");
+    throw Error(ErrorCode::engine_failed, "shared memory: the ring of a worker is damaged");
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ RingSize ring_size(std::uint64_t pairs, unsigned slots) {
 
 bool RingReader::take() {
     const bool more = take_next();
-    // A share whose last block was taken may be done again all the same, by a worker that took over.
+    // Drop blocks of shares that were already delivered: a replacement worker may have run such a share again.
     for (unsigned slot = 0; slot < pass_.workers; ++slot) {
         while (const auto entry = front(slot)) {
             if (entry->share >= share_) break;
@@ -35,7 +35,7 @@ bool RingReader::take() {
 }
 
 bool RingReader::take_next() {
-    // A share that is not begun yet has the number of another pass.
+    // A share that has not begun has another pass's number in its state.
     for (unsigned blocks = 0; share_ < most_shares;) {
         const Share& share = pool_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
@@ -53,15 +53,15 @@ bool RingReader::take_next() {
     return false;
 }
 
-/// What is next in the ring of a slot.
+/// Returns the front entry of a slot's ring, or nothing if the ring is empty.
 std::optional<RingEntry> RingReader::front(unsigned number) const {
     const Slot& slot = pool_.view().slot(number);
     const std::uint64_t taken = slot.ring_taken.load();
     const std::uint64_t filled = slot.ring_filled.load();
     if (filled == taken) return std::nullopt;
     const RingEntry entry = pool_.view().ring_entry(number, taken);
-    const bool sound = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs;
-    if (!sound) throw_damaged_ring();
+    const bool valid = filled - taken <= pass_.ring_blocks && entry.pairs <= pass_.block_pairs;
+    if (!valid) throw_damaged_ring();
     return entry;
 }
 
@@ -71,7 +71,7 @@ void RingReader::give_back(unsigned number) {
     slot.command.raise();
 }
 
-/// Takes a block of the slot that has the next share; false if there is none.
+/// Takes the front block of the slot that has the next share, and delivers its new pairs. Returns false if the ring is empty.
 bool RingReader::take_block(unsigned number) {
     const auto next = front(number);
     if (!next) return false;

@@ -1,8 +1,10 @@
-// RingReader: the client's side of a stream. It hands out the pairs of shares in the order of the shares.
+// RingReader: the client's side of a stream. Takes blocks of pairs from the rings and delivers them in the order of shares.
 //
-// A slot does its shares in order and hands over their blocks in order, so the block that is next of all is next in the
-// ring of the slot that has that share. While that slot's share is not next, its ring may fill up and it waits; the one
-// whose share is next always finds room, because all that it handed over before has been taken.
+// Invariants
+//   A slot runs its shares in ascending order and writes their blocks to its ring in order.
+//   The next block of the stream is therefore at the front of the ring of the slot that has the next share.
+//   A slot whose share is not the next one may fill its ring, and then waits.
+//   The slot with the next share always finds room, because all its earlier blocks have been taken: no deadlock.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +16,12 @@
 namespace octopair {
 
 struct RingSize {
-    std::uint64_t blocks = 0;       ///< of a slot
-    std::uint64_t block_pairs = 0;  ///< of a block
+    std::uint64_t blocks = 0;       ///< number of blocks in the ring of one slot
+    std::uint64_t block_pairs = 0;  ///< capacity of one block, in pairs
 };
 
-/// So that all slots together hold at most `pairs`.
+/// Returns the ring size for which the rings of `slots` slots together hold at most `pairs` pairs. Each ring has at least
+/// 2 blocks of 1 pair.
 RingSize ring_size(std::uint64_t pairs, unsigned slots);
 
 class RingReader {
@@ -26,12 +29,13 @@ public:
     RingReader(WorkerPool& pool, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
         : pool_(pool), pairs_(pairs), pass_(pass), deliver_(deliver) {}
 
-    /// Hands out some of what is there; true, and the client's event is raised, if that is not all. What `deliver` throws
-    /// is passed on.
+    /// Delivers a limited number of the blocks that are ready. Returns true, and raises the client's event, if the limit was
+    /// reached, so more blocks may be ready.
+    /// Throws: what `deliver` throws; Error{engine_failed} if a ring is damaged.
     bool take();
-    /// The worker of a slot is gone, and another will do its share again: what it left of it is dropped.
+    /// Drops the blocks of a slot's unfinished share, after its worker has ended. The replacement worker runs the share again.
     void forget_unfinished(unsigned slot);
-    /// Whether it has handed out all of so many shares.
+    /// Returns true if all pairs of `shares` shares have been delivered.
     bool complete(std::uint64_t shares) const { return share_ == shares; }
 
 private:
@@ -44,9 +48,9 @@ private:
     SharedMemory& pairs_;
     const Pass& pass_;
     const Deliver& deliver_;
-    std::uint64_t share_ = 0;      // the next one
-    std::uint64_t delivered_ = 0;  // pairs of it
-    std::uint64_t passed_ = 0;     // pairs of it in blocks taken since it was begun last
+    std::uint64_t share_ = 0;      // the share to deliver next
+    std::uint64_t delivered_ = 0;  // pairs of share_ that have been delivered
+    std::uint64_t passed_ = 0;     // pairs of share_ in blocks taken since a worker last began the share
 };
 
 }  // namespace octopair

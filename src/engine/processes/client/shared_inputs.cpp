@@ -37,7 +37,8 @@ std::shared_ptr<Region> SharedArrays::find(std::span<const std::byte> memory) co
     return holds ? region : nullptr;
 }
 
-void SharedInputs::place(const Call& call, WorkerPool& pool, Pass& pass, std::vector<std::shared_ptr<Region>>& regions) {
+void SharedInputs::place(const Call& call, WorkerPool& pool, Pass& pass,
+                         std::vector<std::shared_ptr<Region>>& regions) {
     const detail::Request& request = call.request;
     stop_ = call.stop.get_token();
     used_ = 0;
@@ -65,14 +66,14 @@ ArrayRef SharedInputs::place(std::span<const std::byte> memory, WorkerPool& pool
     constexpr std::uint64_t alignment = 64;
     if (memory.empty()) return {};
     if (const auto shared = arrays_.find(memory)) {
-        pool.introduce(shared);
+        pool.register_region(shared);
         regions.push_back(shared);
         return {shared->number, std::uint64_t(memory.data() - shared->memory.data()), 0};
     }
-    if (copies_ == nullptr) copies_ = pool.add_region(SharedMemory::create(roomy_bytes()));
+    if (copies_ == nullptr) copies_ = pool.add_region(SharedMemory::create(max_region_bytes()));
     regions.push_back(copies_);
     const ArrayRef copy{copies_->number, used_, 0};
-    constexpr std::size_t piece = std::size_t(1) << 24;  // bytes: a few milliseconds
+    constexpr std::size_t piece = std::size_t(1) << 24;  // bytes: a few milliseconds between checks for a stop
     for (std::size_t at = 0; at < memory.size(); at += piece) {
         throw_if_stopped(stop_);
         const auto part = memory.subspan(at, std::min(piece, memory.size() - at));

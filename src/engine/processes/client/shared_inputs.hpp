@@ -1,4 +1,4 @@
-// The objects of a call in shared memory: where they lie already, or copied there.
+// SharedInputs: gives workers the objects of a call in shared memory. Copies arrays that are not already there.
 #pragma once
 
 #include <map>
@@ -13,25 +13,28 @@
 
 namespace octopair {
 
-/// Arrays that the application had an engine allocate. They may outlive it. Thread-safe.
+/// Arrays in shared memory that the application allocated with an engine. They may outlive the engine.
+/// Thread safety: any thread.
 class SharedArrays {
 public:
-    /// Throws Error{resource_limit}.
+    /// Returns an array of `bytes` bytes, registered in `arrays` until its last owner releases it.
+    /// Throws: Error{resource_limit}.
     static std::shared_ptr<void> allocate(const std::shared_ptr<SharedArrays>& arrays, std::size_t bytes);
-    /// The one that holds this memory, or none.
+    /// Returns the region that contains `memory`, or null.
     std::shared_ptr<Region> find(std::span<const std::byte> memory) const;
 
 private:
     mutable std::mutex mutex_;
-    std::map<const std::byte*, std::weak_ptr<Region>> regions_;  // by where they begin
+    std::map<const std::byte*, std::weak_ptr<Region>> regions_;  // keyed by their first byte
 };
 
-/// Gives a pass its objects, and keeps the copies from call to call.
+/// Places the objects of a call in shared memory. Keeps the memory of copies for later calls.
 class SharedInputs {
 public:
     explicit SharedInputs(const SharedArrays& arrays) : arrays_(arrays) {}
 
-    /// Sets the sets of `pass`; appends what its workers need to `regions`. Throws Error{resource_limit, cancelled}.
+    /// Sets `first`, `second` and `join` of `pass`. Appends the regions that workers need to `regions`.
+    /// Throws: Error{resource_limit}, Error{cancelled}.
     void place(const Call& call, WorkerPool& pool, Pass& pass, std::vector<std::shared_ptr<Region>>& regions);
 
 private:
@@ -40,8 +43,8 @@ private:
 
     const SharedArrays& arrays_;
     std::shared_ptr<Region> copies_;
-    std::uint64_t used_ = 0;
-    std::stop_token stop_;  // of the call
+    std::uint64_t used_ = 0;  // bytes of copies_
+    std::stop_token stop_;    // of the current call
 };
 
 }  // namespace octopair

@@ -18,13 +18,13 @@ using Clock = std::chrono::steady_clock;
 /// Pseudo share `preparing - slot`: the worker died before its first share.
 constexpr std::uint64_t preparing = ~std::uint64_t(0);
 
-SharedMemory make_desk(unsigned workers) {
+SharedMemory make_control_memory(unsigned workers) {
     SharedMemory memory = SharedMemory::create(ControlBlockLayout::bytes(workers));
     ControlBlockView::lay_out(memory, workers);
     return memory;
 }
 
-/// Whether a pass is another attempt at what the one before it was to do: the same shares.
+/// Returns true if `a` and `b` are attempts at the same work, with the same shares.
 bool same_work(const Pass& a, const Pass& b) {
     return a.job == b.job && a.kind == b.kind && a.built == b.built && a.bounds.rows.begin == b.bounds.rows.begin;
 }
@@ -32,7 +32,10 @@ bool same_work(const Pass& a, const Pass& b) {
 }  // namespace
 
 WorkerPool::WorkerPool(std::string program, unsigned workers)
-    : program_(std::move(program)), control_memory_(make_desk(workers)), view_(control_memory_), pool_(workers) {
+    : program_(std::move(program)),
+      control_memory_(make_control_memory(workers)),
+      view_(control_memory_),
+      pool_(workers) {
     for (unsigned slot = 0; slot < workers; ++slot) start(slot);
 }
 
@@ -40,11 +43,11 @@ WorkerPool::~WorkerPool() = default;
 
 std::shared_ptr<Region> WorkerPool::add_region(SharedMemory memory) {
     auto region = std::make_shared<Region>(std::move(memory));
-    introduce(region);
+    register_region(region);
     return region;
 }
 
-void WorkerPool::introduce(const std::shared_ptr<Region>& region) {
+void WorkerPool::register_region(const std::shared_ptr<Region>& region) {
     if (region->number != 0) return;
     region->number = next_region_++;
     regions_.push_back(region);
@@ -60,7 +63,7 @@ void WorkerPool::count_fault(std::uint64_t& fault) {
     ++fault;
 }
 
-/// Starts a worker for a slot, and gives it the control block.
+/// Starts a worker for a slot and sends it the control block. Throws: Error after three failed starts.
 void WorkerPool::start(unsigned slot) {
     Member& member = pool_[slot];
     std::string how;
@@ -82,29 +85,30 @@ void WorkerPool::throw_cannot_start(const std::string& how) const {
     throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
 }
 
-/// Replaces the workers that ended between passes, and those that could not be started before.
+/// Replaces workers that ended between passes or could not be started before.
 void WorkerPool::restart_workers() {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         Member& member = pool_[slot];
-        if (member.process != nullptr && member.process->look() == ProcessState::runs) continue;
-        // What it left undone is not wanted any more.
-        view_.slot(slot).asked.store(view_.slot(slot).finished.load());
+        if (member.process != nullptr && member.process->poll_state() == ProcessState::runs) continue;
+        // Cancel the worker's unfinished pass: its result is no longer needed.
+        view_.slot(slot).requested.store(view_.slot(slot).finished.load());
         if (member.process != nullptr) {
-            count_fault(member.process->look() == ProcessState::ended ? faults_.ended : faults_.stopped);
+            count_fault(member.process->poll_state() == ProcessState::ended ? faults_.ended : faults_.stopped);
         }
         start(slot);
     }
 }
 
-/// Gives the control block to a pass.
-void WorkerPool::announce(const Pass& pass) {
+/// Writes a new pass to the control block, resets the slots and wakes the workers.
+void WorkerPool::publish_pass(const Pass& pass) {
     if (++number_ == 0) ++number_;
     ControlBlock& control_block = view_.control_block();
     control_block.pass = pass;
     control_block.next_block.store(0);
     control_block.next_run.store(0);
-    control_block.pages_left.store(std::int64_t(std::min(pass.bounds.most / page_pairs(), std::uint64_t(1) << 62)));
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    control_block.pages_left.store(
+        std::int64_t(std::min(pass.bounds.max_pairs / page_pairs(), std::uint64_t(1) << 62)));
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         Slot& part = view_.slot(slot);
         part.outcome = Outcome::none;
         part.share.store(0);
@@ -113,28 +117,29 @@ void WorkerPool::announce(const Pass& pass) {
         part.pages_taken.store(0);
         part.ring_filled.store(0);
         part.ring_taken.store(0);
-        part.asked.store(number_);
+        part.requested.store(number_);
         part.command.raise();
     }
 }
 
-std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch) {
+std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions,
+                              const PassWatch& watch) {
     if (::getpid() != owner_)
-        throw Error(ErrorCode::usage, "the workers belong to the process that this one was forked from");
+        throw Error(ErrorCode::usage, "the engine belongs to the parent process: make a new engine after fork");
     if (!same_work(pass, last_pass_)) {
         deaths_by_share_.clear();
         for (Member& member : pool_) member.deaths_between_shares = 0;
     }
     last_pass_ = pass;
-    taking_part_ = pass.workers;
-    // A client that keeps looking would take time from workers that have no other core.
-    looks_ = taking_part_ < std::thread::hardware_concurrency() ? worker_limits::max_spins_for_pass_end : 0;
+    active_workers_ = pass.workers;
+    // A polling client would take processor time from the workers if there are no more cores than workers.
+    max_spins_ = active_workers_ < std::thread::hardware_concurrency() ? worker_limits::max_spins_for_pass_end : 0;
     needed_ = regions;
     failure_ = nullptr;
     forget_regions();
     restart_workers();
-    for (unsigned slot = 0; slot < taking_part_; ++slot) send_regions(slot);
-    announce(pass);
+    for (unsigned slot = 0; slot < active_workers_; ++slot) send_regions(slot);
+    publish_pass(pass);
 
     const std::stop_callback wake(watch.stop, [&] { view_.control_block().for_client.raise(); });
     changed_at_ = Clock::now();
@@ -145,44 +150,44 @@ std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<
         const bool check = !over && Clock::now() >= next_check;
         if (check) next_check = Clock::now() + worker_limits::check_interval;
         try {
-            look(watch, over, check);
+            poll(watch, over, check);
         } catch (...) {
             fail(std::current_exception());
         }
-        if (!over && !check) view_.control_block().for_client.wait(seen, next_check - Clock::now(), looks_);
+        if (!over && !check) view_.control_block().for_client.wait(seen, next_check - Clock::now(), max_spins_);
     }
     if (failure_ != nullptr) std::rethrow_exception(std::exchange(failure_, nullptr));
     shares_ = view_.slot(0).shares;
     return number_;
 }
 
-/// What is new, of a pass that may be over, and now and then whether its workers live.
-void WorkerPool::look(const PassWatch& watch, bool over, bool check) {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+/// Handles new results and a stop request. `over`: all workers have finished. `check`: also check that the workers are alive.
+void WorkerPool::poll(const PassWatch& watch, bool over, bool check) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         if (failure_ == nullptr && finished(slot) && view_.slot(slot).outcome != Outcome::done) fail_as_worker(slot);
     }
     if (failure_ == nullptr) {
         if (watch.stop.stop_requested() && !over) throw Error(ErrorCode::cancelled, "cancelled");
-        if (watch.look) watch.look();
+        if (watch.poll) watch.poll();
     }
     if (check) check_members(watch);
 }
 
 bool WorkerPool::finished(unsigned slot) const { return view_.slot(slot).finished.load() == number_; }
 
-/// A slot without a worker has nothing to end.
+/// Returns true if all active workers have finished the pass. A slot without a process counts as finished.
 bool WorkerPool::all_finished() const {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         if (pool_[slot].process != nullptr && !finished(slot)) return false;
     }
     return true;
 }
 
 void WorkerPool::check_members(const PassWatch& watch) {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         Member& member = pool_[slot];
         if (member.process == nullptr) continue;
-        const ProcessState state = member.process->look();
+        const ProcessState state = member.process->poll_state();
         if (state == ProcessState::runs) {
             const bool attached = view_.slot(slot).attached.load() != 0;
             if (attached) member.failed_starts = 0;
@@ -195,7 +200,7 @@ void WorkerPool::check_members(const PassWatch& watch) {
     if (failure_ == nullptr) check_deadlock();
 }
 
-/// Fails the pass if all workers wait for each other. A worker that died can leave such a state in the shared tables.
+/// Fails the pass if all workers wait for each other. A worker that died may have left such a state in the shared tables.
 void WorkerPool::check_deadlock() {
     const std::uint64_t now = events();
     if (now != last_events_ || !all_wait()) {
@@ -209,7 +214,7 @@ void WorkerPool::check_deadlock() {
 }
 
 bool WorkerPool::all_wait() const {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         if (!finished(slot) && view_.slot(slot).waits.load() == 0) return false;
     }
     return true;
@@ -217,15 +222,16 @@ bool WorkerPool::all_wait() const {
 
 /// Activity counter of the pass, used to detect a deadlock among the workers.
 std::uint64_t WorkerPool::events() const {
-    std::uint64_t events = view_.control_block().among_workers.count.load() + view_.control_block().for_client.count.load();
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    std::uint64_t events =
+        view_.control_block().among_workers.count.load() + view_.control_block().for_client.count.load();
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         const Slot& part = view_.slot(slot);
         events += part.command.count.load() + part.ring_filled.load() + part.ring_taken.load() + part.share.load();
     }
     return events;
 }
 
-/// A worker has ended, or must because it does nothing any more: what it was at is left to another.
+/// Ends a lost worker: one that died, is stopped (`stopped`) or did not attach in time. Starts its replacement.
 void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch& watch) {
     Member& member = pool_[slot];
     const bool attached = view_.slot(slot).attached.load() != 0;
@@ -241,7 +247,7 @@ void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch
         if (finished(slot)) return;
         if (attached) count_death(slot);
         if (failure_ != nullptr) return;
-        if (watch.lost) watch.lost(slot);
+        if (watch.on_worker_lost) watch.on_worker_lost(slot);
         Slot& part = view_.slot(slot);
         view_.control_block().pass = last_pass_;
         part.share.store(0);
@@ -254,7 +260,8 @@ void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch
     }
 }
 
-/// Counts what a share did to a worker. Throws Error{engine_failed} if it is too much.
+/// Counts the death of a slot's worker for the share that it was running.
+/// Throws: Error{engine_failed} if too many workers died in that share.
 void WorkerPool::count_death(unsigned slot) {
     const Slot& part = view_.slot(slot);
     std::uint64_t share = part.share.load();
@@ -262,8 +269,8 @@ void WorkerPool::count_death(unsigned slot) {
     if (share > 0 && share <= most_shares) {
         const Share& record = view_.shares(share - 1, 1)[0];
         const ShareState state = ShareState::of(record.state.load());
-        const bool under_way = state.is(number_, ShareStatus::claimed) && state.slot == slot;
-        if (!under_way || record.step >= step_names.size()) return check_crash_loop(slot);
+        const bool is_running = state.is(number_, ShareStatus::claimed) && state.slot == slot;
+        if (!is_running || record.step >= step_names.size()) return check_crash_loop(slot);
         step = Step(record.step);
         count_fault(faults_.in_share[std::size_t(step)]);
     } else {
@@ -271,35 +278,36 @@ void WorkerPool::count_death(unsigned slot) {
         share = preparing - slot;
     }
     if (++deaths_by_share_[share] < worker_limits::max_deaths_per_share) return;
-    throw Error(ErrorCode::engine_failed, std::string("the same work, of step ") + step_names[std::size_t(step)] +
-                                              ", has ended " + std::to_string(worker_limits::max_deaths_per_share) +
-                                              " worker processes");
+    throw Error(ErrorCode::engine_failed, std::to_string(worker_limits::max_deaths_per_share) +
+                                              " worker processes died in the same share of step " +
+                                              step_names[std::size_t(step)]);
 }
 
-/// Throws Error{engine_failed} where worker after worker of a slot ends between two shares.
+/// Throws: Error{engine_failed} if too many consecutive workers of a slot died outside any share.
 void WorkerPool::check_crash_loop(unsigned slot) {
     Member& member = pool_[slot];
     member.deaths_between_shares =
         Clock::now() - member.started_at > worker_limits::healthy_lifetime ? 1 : member.deaths_between_shares + 1;
     if (member.deaths_between_shares < worker_limits::max_deaths_between_shares) return;
-    throw Error(ErrorCode::engine_failed, "worker processes keep ending between their shares");
+    throw Error(ErrorCode::engine_failed, "worker processes die repeatedly outside any share");
 }
 
-/// Ends the pass: its workers are told to stop.
+/// Fails the pass and sends its workers a stop message. Later failures of the pass are ignored.
 void WorkerPool::fail(std::exception_ptr failure) {
     if (failure_ != nullptr) return;
     failure_ = std::move(failure);
     failed_at_ = Clock::now();
     view_.control_block().stopped.store(number_);
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         if (pool_[slot].process != nullptr) (void)pool_[slot].process->stop_pass(number_);
     }
 }
 
+/// Fails the pass with the error of a slot's worker.
 void WorkerPool::fail_as_worker(unsigned slot) {
     const Slot& part = view_.slot(slot);
     std::string message(part.message.data(), strnlen(part.message.data(), part.message.size()));
-    if (message.empty()) message = "a worker process failed and did not say why";
+    if (message.empty()) message = "a worker process failed without an error message";
     switch (part.outcome) {
         case Outcome::bad_box:
             return fail(std::make_exception_ptr(LinearOctree::Invalid{std::size_t(part.number)}));
@@ -313,9 +321,9 @@ void WorkerPool::fail_as_worker(unsigned slot) {
     fail(std::make_exception_ptr(Error(known ? ErrorCode(part.error_code) : ErrorCode::engine_failed, message)));
 }
 
-/// Workers that do not leave a pass that failed are killed.
+/// Kills workers that are still in a failed pass.
 void WorkerPool::kill_unresponsive_workers() {
-    for (unsigned slot = 0; slot < taking_part_; ++slot) {
+    for (unsigned slot = 0; slot < active_workers_; ++slot) {
         if (pool_[slot].process == nullptr || finished(slot)) continue;
         pool_[slot].process = nullptr;
         count_fault(faults_.stopped);
@@ -325,7 +333,7 @@ void WorkerPool::kill_unresponsive_workers() {
 void WorkerPool::send_regions(unsigned slot) {
     for (const auto& region : needed_) {
         if (pool_[slot].process->send_region(region->number, region->memory)) continue;
-        // It may just have ended; who takes no message otherwise must.
+        // The worker has just ended, or no longer reads its messages and is therefore killed.
         (void)pool_[slot].process->end();
         return;
     }

@@ -1,7 +1,9 @@
-// WorkerPool: the workers of an engine, the control block that they share with the client, and what happens to them.
+// WorkerPool: starts, supervises and replaces the worker processes of an engine. Owns the control block.
 //
-// A worker that dies or is stopped during a pass is replaced at once, and the one that takes over its slot does its share
-// again. A share that has ended three workers ends its job.
+// Invariants
+//   A worker that dies or is stopped during a pass is replaced in its slot. The replacement worker runs the unfinished share
+//   again.
+//   A share in which three workers died fails the pass (worker_limits.hpp).
 #pragma once
 
 #include <sys/types.h>
@@ -24,21 +26,21 @@
 
 namespace octopair {
 
-/// A piece of memory that workers are sent when they need it.
+/// Shared memory with a number. A worker receives it before the first pass that needs it.
 struct Region {
     explicit Region(SharedMemory held) : memory(std::move(held)) {}
 
     SharedMemory memory;
-    std::uint32_t number = 0;  ///< given by the pool
+    std::uint32_t number = 0;  ///< assigned by the pool; 0: none yet
 };
 
-/// What the client does while a pass is under way, on the calling thread.
+/// Callbacks of the client during a pass. They run on the calling thread.
 struct PassWatch {
     std::stop_token stop;
-    /// Called whenever there may be something to see, and at least every 20 ms.
-    std::function<void()> look = {};
-    /// A worker has ended, and its slot is about to be taken over.
-    std::function<void(unsigned)> lost = {};
+    /// Called after each event of the workers, and at least every 20 ms.
+    std::function<void()> poll = {};
+    /// Called with the slot of a worker that has ended, before its replacement starts.
+    std::function<void(unsigned)> on_worker_lost = {};
 };
 
 class WorkerPool {
@@ -50,36 +52,38 @@ public:
 
     unsigned workers() const { return unsigned(pool_.size()); }
     ControlBlockView& view() { return view_; }
-    /// From now on workers may be sent it. It is forgotten with its last owner.
+    /// Returns a registered region that owns `memory`. Workers drop the region after its last owner has released it.
     std::shared_ptr<Region> add_region(SharedMemory memory);
-    /// The same of one that another made; no harm if it is known.
-    void introduce(const std::shared_ptr<Region>& region);
+    /// Assigns a number to a region that was created elsewhere. Does nothing if the region already has a number.
+    void register_region(const std::shared_ptr<Region>& region);
 
-    /// Has the first `pass.workers` workers do a pass, with `regions` at hand, and returns its number when all have ended
-    /// it well. Throws Error: what went wrong in a worker, cancelled, or that workers keep ending; what `watch` throws; and
-    /// OverBudget, LinearOctree::Invalid from a worker. Then too no worker is at work any more.
+    /// Runs a pass on the first `pass.workers` workers, which get `regions`. Returns the number of the pass after all workers
+    /// have finished it. No worker is in the pass any more when run() returns or throws.
+    /// Throws: the Error of a worker; Error{cancelled}; Error{engine_failed} if workers keep dying; OverBudget or
+    /// LinearOctree::Invalid of a worker; what `watch` throws.
     std::uint32_t run(const Pass& pass, std::span<const std::shared_ptr<Region>> regions, const PassWatch& watch);
-    /// How many shares the last pass had.
+    /// Number of shares of the last successful pass.
     std::uint64_t shares() const { return shares_; }
+    /// Number of the last pass.
     std::uint32_t number() const { return number_; }
 
-    /// The number of a new job.
+    /// Returns the number of a new job.
     std::uint32_t begin_job() { return ++job_; }
-    /// Thread-safe.
+    /// Returns the number of faults so far. Thread safety: any thread.
     WorkerFaults faults() const;
 
 private:
     struct Member {
-        std::unique_ptr<WorkerProcess> process;  ///< none where it could not be started
-        unsigned failed_starts = 0;              ///< one after another
+        std::unique_ptr<WorkerProcess> process;  ///< null if the process could not be started
+        unsigned failed_starts = 0;              ///< consecutive
         std::chrono::steady_clock::time_point started_at = {};
-        unsigned deaths_between_shares = 0;  ///< workers that soon ended outside of any share, one after another
+        unsigned deaths_between_shares = 0;  ///< consecutive early deaths outside any share
     };
     void start(unsigned slot);
     [[noreturn]] void throw_cannot_start(const std::string& how) const;
     void restart_workers();
-    void announce(const Pass& pass);
-    void look(const PassWatch& watch, bool over, bool check);
+    void publish_pass(const Pass& pass);
+    void poll(const PassWatch& watch, bool over, bool check);
     bool finished(unsigned slot) const;
     bool all_finished() const;
     void check_members(const PassWatch& watch);
@@ -103,7 +107,7 @@ private:
     std::vector<Member> pool_;
     std::vector<std::weak_ptr<Region>> regions_;
     std::uint32_t next_region_ = control_region + 1;
-    /// Of the pass. Not small, as what a broken worker writes where it should not often is.
+    /// Pass number. Starts high so that stray small integers in shared memory never match a pass.
     std::uint32_t number_ = 0x50000000;
     std::uint32_t job_ = 0;
     std::uint64_t shares_ = 0;
@@ -111,15 +115,15 @@ private:
     mutable std::mutex faults_mutex_;
     WorkerFaults faults_;
 
-    // Of the pass under way.
+    // State of the current pass.
     std::span<const std::shared_ptr<Region>> needed_;
-    unsigned taking_part_ = 0;
-    unsigned looks_ = 0;
+    unsigned active_workers_ = 0;
+    unsigned max_spins_ = 0;  // polls before the client sleeps
     std::exception_ptr failure_;
     std::chrono::steady_clock::time_point failed_at_;
-    std::uint64_t last_events_ = 0;  // as of the last change, at
-    std::chrono::steady_clock::time_point changed_at_;
-    std::map<std::uint64_t, unsigned> deaths_by_share_;  // workers that each share ended, in all attempts at the pass
+    std::uint64_t last_events_ = 0;                      // activity counter at the last change
+    std::chrono::steady_clock::time_point changed_at_;   // time of the last change
+    std::map<std::uint64_t, unsigned> deaths_by_share_;  // by share, in all attempts at the same pass
 };
 
 }  // namespace octopair

@@ -22,7 +22,8 @@ namespace {
 
 constexpr auto wait_by_handle = idtype_t(3);  // P_PIDFD, which not all headers have
 
-constexpr unsigned looks_per_long_look = 8;
+/// One of so many polls also reads /proc, which costs more.
+constexpr unsigned polls_per_proc_read = 8;
 
 [[noreturn]] void throw_cannot_start(const std::string& program, int error) {
     const bool exhausted = error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
@@ -30,8 +31,8 @@ constexpr unsigned looks_per_long_look = 8;
                 "cannot start the worker program " + program + ": " + std::strerror(error));
 }
 
-/// What a worker begins with: its socket, no other descriptor of the application, no signal blocked or ignored, and a
-/// process group of its own, so that an interrupt from the keyboard is the application's to handle.
+/// Start conditions of a worker: its socket, no other descriptor of the application, no signal blocked or ignored, and its
+/// own process group. An interrupt from the keyboard then reaches only the application.
 class SpawnSettings {
 public:
     explicit SpawnSettings(int socket) {
@@ -40,7 +41,7 @@ public:
         good = good && ::posix_spawn_file_actions_adddup2(&actions_, socket, worker_socket) == 0;
         good = good && ::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0) == 0;
         good = good && ::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0) == 0;
-        // Where the application has closed it, a descriptor of shared memory would become what errors are written to.
+        // If the application has closed stderr, a descriptor of shared memory would get its number and receive error text.
         if (::fcntl(2, F_GETFD) < 0) {
             good = good && ::posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0) == 0;
         }
@@ -72,17 +73,18 @@ private:
     posix_spawnattr_t attributes_{};
 };
 
-bool ended(const Descriptor& handle, int most_milliseconds) {
+/// Returns true if the process ended within the time; -1: waits without a limit.
+bool wait_for_end(const Descriptor& handle, int max_milliseconds) {
     pollfd waiting{handle.number(), POLLIN, 0};
     int ready = 0;
     do {
-        ready = ::poll(&waiting, 1, most_milliseconds);
+        ready = ::poll(&waiting, 1, max_milliseconds);
     } while (ready < 0 && errno == EINTR);
     return ready > 0;
 }
 
-std::string in_words(const siginfo_t& info) {
-    if (info.si_pid == 0) return "of unknown cause";
+std::string describe_end(const siginfo_t& info) {
+    if (info.si_pid == 0) return "for an unknown reason";
     if (info.si_code == CLD_EXITED) return "with exit status " + std::to_string(info.si_status);
     return "by signal " + std::to_string(info.si_status);
 }
@@ -98,7 +100,7 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
         ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(), environ);
     if (error != 0) throw_cannot_start(program, error);
     handle_ = Descriptor(int(::syscall(SYS_pidfd_open, id_, 0)));
-    if (!handle_.open() && errno != ESRCH) {  // which says that it has ended, and was waited for by somebody
+    if (!handle_.open() && errno != ESRCH) {  // ESRCH: it has ended, and the application has waited for it
         const int reason = errno;
         ::kill(id_, SIGKILL);
         while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
@@ -110,17 +112,17 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
 
 WorkerProcess::~WorkerProcess() { (void)end(); }
 
-ProcessState WorkerProcess::look() {
-    if (!handle_.open() || ended(handle_, 0)) return ProcessState::ended;
+ProcessState WorkerProcess::poll_state() {
+    if (!handle_.open() || wait_for_end(handle_, 0)) return ProcessState::ended;
     siginfo_t info{};
     const int result = ::waitid(wait_by_handle, id_t(handle_.number()), &info, WSTOPPED | WNOHANG);
     if (result == 0 && info.si_pid != 0) return ProcessState::stopped;
-    if (++looks_ % looks_per_long_look != 0 || !shown_as_stopped()) return ProcessState::runs;
-    return ended(handle_, 0) ? ProcessState::ended : ProcessState::stopped;
+    if (++polls_ % polls_per_proc_read != 0 || !is_stopped_in_proc()) return ProcessState::runs;
+    return wait_for_end(handle_, 0) ? ProcessState::ended : ProcessState::stopped;
 }
 
-/// A stop is told once, and may have been told to the application, waiting for its children.
-bool WorkerProcess::shown_as_stopped() const {
+/// Reads the state from /proc. waitid() reports a stop only once, possibly to the application when it waits for its children.
+bool WorkerProcess::is_stopped_in_proc() const {
     const Descriptor file(::open(("/proc/" + std::to_string(id_) + "/stat").c_str(), O_RDONLY | O_CLOEXEC));
     std::array<char, 128> text{};
     if (!file.open() || ::read(file.number(), text.data(), text.size() - 1) <= 0) return false;
@@ -129,18 +131,18 @@ bool WorkerProcess::shown_as_stopped() const {
 }
 
 std::string WorkerProcess::end() {
-    if (!handle_.open()) return "before";
+    if (!handle_.open()) return "for an unknown reason";
     siginfo_t info{};
     if (::getpid() == owner_) {
         (void)::syscall(SYS_pidfd_send_signal, handle_.number(), SIGKILL, nullptr, 0);
-        (void)ended(handle_, -1);
-        // The application may have told the system to forget its children, or waited for all of them itself.
+        (void)wait_for_end(handle_, -1);
+        // This fails if the application ignores SIGCHLD or has already waited for all its children.
         while (::waitid(wait_by_handle, id_t(handle_.number()), &info, WEXITED) != 0 && errno == EINTR) {
         }
     }
     handle_ = Descriptor();
     socket_ = Descriptor();
-    return in_words(info);
+    return describe_end(info);
 }
 
 bool WorkerProcess::send_region(std::uint32_t number, const SharedMemory& memory) {

@@ -1,4 +1,4 @@
-// WorkerProcess: a worker as the client sees it, from its start to its end.
+// WorkerProcess: the client's handle of a worker process. Starts, polls and kills the process, and sends it messages.
 #pragma once
 
 #include <sys/types.h>
@@ -14,38 +14,40 @@
 
 namespace octopair {
 
-/// What a look at a process can show.
 enum class ProcessState : std::uint8_t { runs, stopped, ended };
 
 class WorkerProcess {
 public:
-    /// Starts `program` for a slot. Throws Error{resource_limit} where the system has no process or descriptor to give,
-    /// Error{engine_failed} where the program cannot be run.
+    /// Starts `program` for a slot.
+    /// Throws: Error{resource_limit} if the system has no more processes or descriptors; Error{engine_failed} if the program
+    /// cannot be run.
     WorkerProcess(const std::string& program, unsigned slot);
-    /// Ends it, if it has not ended.
+    /// Kills the process if it still runs.
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-    ProcessState look();
-    /// Kills it and waits for its end; returns how it ended, in words.
+    /// Returns the current state of the process. Does not wait.
+    ProcessState poll_state();
+    /// Kills the process and waits for its end. Returns a description of how it ended, for messages.
     std::string end();
 
-    /// Once each; false if the worker takes no message.
+    /// Sends a region unless it was sent before. Returns false if the message cannot be sent.
     bool send_region(std::uint32_t number, const SharedMemory& memory);
-    /// Lets it forget the regions that are not `wanted`.
+    /// Makes the worker drop the regions for which `wanted` is false.
     void forget_all_but(const std::function<bool(std::uint32_t)>& wanted);
+    /// Sends a stop request for a pass. Returns false if the message cannot be sent.
     bool stop_pass(std::uint32_t pass);
 
 private:
-    bool shown_as_stopped() const;
+    bool is_stopped_in_proc() const;
 
     pid_t id_ = -1;
-    unsigned looks_ = 0;
-    pid_t owner_;        // a process that this one forks may not end its workers
+    unsigned polls_ = 0;
+    pid_t owner_;        // the only process that may kill the worker: not one forked from it
     Descriptor handle_;  // pidfd
     Descriptor socket_;
-    std::set<std::uint32_t> regions_;
+    std::set<std::uint32_t> regions_;  // regions that were sent
 };
 
 }  // namespace octopair

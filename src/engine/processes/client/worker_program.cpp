@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> places(const std::string& packaged) {
+std::vector<std::string> candidate_paths(const std::string& packaged) {
     std::vector<std::string> found;
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -32,16 +32,17 @@ std::vector<std::string> places(const std::string& packaged) {
 
 }  // namespace
 
-std::string find_worker_program(const std::string& asked, const std::string& packaged) {
-    if (!asked.empty()) return asked;
+std::string find_worker_program(const std::string& requested, const std::string& packaged) {
+    if (!requested.empty()) return requested;
     const char* const named = std::getenv("OCTOPAIR_WORKER");
     if (named != nullptr && *named != 0) return named;
-    std::string looked;
-    for (const std::string& place : places(packaged)) {
-        if (::access(place.c_str(), X_OK) == 0) return place;
-        looked += (looked.empty() ? "" : ", ") + place;
+    std::string tried;
+    for (const std::string& path : candidate_paths(packaged)) {
+        if (::access(path.c_str(), X_OK) == 0) return path;
+        tried += (tried.empty() ? "" : ", ") + path;
     }
-    throw Error(ErrorCode::engine_failed, "cannot find the worker program; looked for " + looked);
+    throw Error(ErrorCode::engine_failed,
+                "cannot find the worker program; set OCTOPAIR_WORKER to its path; tried " + tried);
 }
 
 }  // namespace octopair

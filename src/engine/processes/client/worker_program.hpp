@@ -1,13 +1,14 @@
-// Where the program of the workers is.
+// Finds the program of the workers, octopair-worker.
 #pragma once
 
 #include <string>
 
 namespace octopair {
 
-/// `asked` if it is not empty; or what OCTOPAIR_WORKER names; or octopair-worker beside this program, in libexec/octopair
-/// beside its folder, where the package says (`packaged`, may be empty), as installed, or as built. Throws
-/// Error{engine_failed} that says where it looked.
-std::string find_worker_program(const std::string& asked, const std::string& packaged);
+/// Returns the first of: `requested` if not empty; the path in OCTOPAIR_WORKER; the first executable of the candidates.
+/// Candidates: octopair-worker in the folder of this program, in the libexec folder beside that, at `packaged` (may be empty),
+/// in the configured installation, in the build.
+/// Throws: Error{engine_failed} with the candidates if none is executable.
+std::string find_worker_program(const std::string& requested, const std::string& packaged);
 
 }  // namespace octopair

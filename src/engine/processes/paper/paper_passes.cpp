@@ -9,7 +9,7 @@ namespace octopair {
 
 void PaperPasses::build(Call& call, double progress) {
     call.progress.stage(progress, 1);
-    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(roomy_bytes()));
+    if (arena_ == nullptr) arena_ = pool_.add_region(SharedMemory::create(max_region_bytes()));
     std::vector<std::shared_ptr<Region>> regions = {arena_};
     Pass pass;
     inputs_.place(call, pool_, pass, regions);
@@ -39,7 +39,7 @@ std::vector<SortedList> PaperPasses::find_lists(std::size_t count, const ListBou
     std::vector<SortedList> lists;
     for (const Share& share : pool_.view().shares(0, count)) {
         if (!ShareState::of(share.state.load()).is(pool_.number(), ShareStatus::done)) {
-            throw Error(ErrorCode::engine_failed, "a worker's list is not there");
+            throw Error(ErrorCode::engine_failed, "shared memory: the sorted list of a worker is missing");
         }
         lists.push_back(find_list(arena_->memory, share.first_run, bounds));
     }

@@ -1,11 +1,13 @@
-// PaperPasses: the paper's arrangement. Workers build sorted lists; the client merges them and scans, alone.
+// PaperPasses: the paper's arrangement. Workers build sorted lists; the client alone merges and scans them.
+//
+// Source: Lucchesi, Egbert, Harris 2014, section 4.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
+#include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/paper/sorted_lists.hpp"
 #include "engine/threads/thread_passes.hpp"
 
@@ -13,7 +15,7 @@ namespace octopair {
 
 class PaperPasses final : public ThreadPasses {
 public:
-    /// Both must outlive it.
+    /// Requires: `pool` and `arrays` outlive this object.
     PaperPasses(WorkerPool& pool, const SharedArrays& arrays) : ThreadPasses(1), pool_(pool), inputs_(arrays) {}
 
     void build(Call& call, double progress) override;

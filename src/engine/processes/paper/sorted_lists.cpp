@@ -24,7 +24,7 @@ void SortedLists::make(std::size_t list, const std::stop_token& stop) {
     steps.encode(block);
     const std::array whole = {NumberedOctants{list, 0, OctantIndex(memory_.octants)}};
     const std::array alone = {list};
-    // What is counted from the begin of a range is counted from that of the list.
+    // steps.count() counts from the begin of a range of octants. Here that range begins at the begin of the list.
     Buffer<std::uint64_t> begins(memory_.octants);
     std::swap(begins, memory_.begins);
     steps.count(whole[0], alone);
@@ -45,7 +45,7 @@ void SortedLists::make(std::size_t list, const std::stop_token& stop) {
 
 SortedList find_list(SharedMemory& arena, std::uint64_t head_at, const ListBounds& bounds) {
     const auto check = [](bool good) {
-        if (!good) throw Error(ErrorCode::engine_failed, "a worker's list makes no sense");
+        if (!good) throw Error(ErrorCode::engine_failed, "shared memory: the sorted list of a worker is damaged");
     };
     check(head_at % alignof(SortedListHead) == 0);
     const SortedListHead head = *arena.array<SortedListHead>(head_at, 1);

@@ -1,5 +1,7 @@
-// The paper's arrangement: each worker encodes and sorts some of the objects into a list of its own, and the client
-// merges the lists and scans alone. It is there to be compared with.
+// SortedLists: the sorted lists of the paper's arrangement, which serves as a baseline for comparison.
+//
+// Each list has the entries of one block of objects, which one worker encodes and sorts. The client alone merges the lists
+// and scans.
 //
 // Source: Lucchesi, Egbert, Harris 2014, section 4.
 #pragma once
@@ -14,19 +16,19 @@
 
 namespace octopair {
 
-/// Where in the arena a list is; in the arena as well.
+/// Describes one list: offsets in the arena, and counts. Stored in the arena itself.
 struct SortedListHead {
-    std::uint64_t entries, entry_count;              ///< Entry
-    std::uint64_t home_begins, ghost_begins, octants;  ///< of each octant's entries: those that are home, the others
-    std::uint64_t valid, object_begin;               ///< whether all of its objects are boxes; the first of them
+    std::uint64_t entries, entry_count;                ///< offset of the Entry array, and its length
+    std::uint64_t home_begins, ghost_begins, octants;  ///< offsets of the arrays, one element an octant
+    std::uint64_t valid, object_begin;                 ///< 1: all objects are valid boxes; first object
 };
 
-/// All lists of a pass, of which a worker makes some. All workers make the same SortedLists.
+/// All lists of a pass. Each worker constructs the same SortedLists, so offsets agree, and makes some of the lists.
 class SortedLists {
 public:
     SortedLists(const EntrySource& source, Arena& arena, std::size_t lists, const std::stop_token& stop);
 
-    /// Throws Error{cancelled}.
+    /// Encodes and sorts the objects of list `list`. Throws: Error{cancelled}.
     void make(std::size_t list, const std::stop_token& stop);
     const SortedListHead* head(std::size_t list) const { return &heads_[list]; }
 
@@ -40,12 +42,13 @@ private:
     Buffer<SortedListHead> heads_;
 };
 
-/// What a list must fit.
+/// Number of objects and octants that a valid list must agree with.
 struct ListBounds {
     std::uint64_t objects, octants;
 };
 
-/// The same list, as the client finds it. Throws Error{engine_failed} where it is not one.
+/// Returns the list whose head is at offset `head`, after checking it.
+/// Throws: Error{engine_failed} if the list is damaged; LinearOctree::Invalid if one of its objects is not a valid box.
 SortedList find_list(SharedMemory& arena, std::uint64_t head, const ListBounds& bounds);
 
 }  // namespace octopair

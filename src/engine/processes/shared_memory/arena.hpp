@@ -1,5 +1,8 @@
-// Arena: arrays that every worker of a pass finds at the same place, because all of them reserve the same in the same
-// order. Nothing is given back before the next job, so that a worker that takes over can follow the others.
+// Arena: allocates arrays in shared memory, at the same offsets in all workers of a pass.
+//
+// Invariants
+//   All workers reserve the same sizes in the same order, so each array has the same offset in each worker.
+//   free() does nothing, so a replacement worker can repeat the same reservations. Only rewind() frees memory.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +23,10 @@ public:
 
     /// Number of bytes that can still be reserved.
     std::uint64_t left() const { return memory_.size() - used_; }
-    /// How much is reserved, and back to that.
+    /// Returns the number of reserved bytes. rewind() frees all that was reserved after the mark.
     std::uint64_t mark() const { return used_; }
     void rewind(std::uint64_t mark) { used_ = mark; }
+    /// Returns the offset of `memory` in the arena, in bytes.
     std::uint64_t offset(const void* memory) const {
         return std::uint64_t(static_cast<const std::byte*>(memory) - memory_.data());
     }

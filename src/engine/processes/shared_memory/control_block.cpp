@@ -13,11 +13,12 @@ namespace octopair {
 
 namespace {
 
-/// Throws Error{resource_limit} unless [begin, begin + count) lies within [0, most).
+/// Throws: Error{resource_limit} unless [begin, begin + count) lies within [0, most).
 void check_range(std::uint64_t begin, std::uint64_t count, std::uint64_t most) {
     if (begin <= most && count <= most - begin) return;
-    throw Error(ErrorCode::resource_limit, "the worker processes' tables have no room for " + std::to_string(begin) +
-                                               " + " + std::to_string(count) + " of " + std::to_string(most));
+    throw Error(ErrorCode::resource_limit, "control block: a table of " + std::to_string(most) +
+                                               " rows has no room for " + std::to_string(count) + " rows from row " +
+                                               std::to_string(begin));
 }
 
 std::array<char, 32> version_text() {
@@ -40,10 +41,11 @@ void ControlBlockView::lay_out(SharedMemory& memory, unsigned slots) {
     control_block->slots = slots;
 }
 
-ControlBlockView::ControlBlockView(SharedMemory& memory) : memory_(memory), control_block_(memory.array<ControlBlock>(0, 1)) {
+ControlBlockView::ControlBlockView(SharedMemory& memory)
+    : memory_(memory), control_block_(memory.array<ControlBlock>(0, 1)) {
     slot_count_ = control_block_->slots.load();
-    const bool fits = control_block_->mark == control_mark && control_block_->layout == layout_version && control_block_->version == version_text() &&
-                      slot_count_ >= 1 && slot_count_ <= most_workers &&
+    const bool fits = control_block_->mark == control_mark && control_block_->layout == layout_version &&
+                      control_block_->version == version_text() && slot_count_ >= 1 && slot_count_ <= most_workers &&
                       memory.size() >= ControlBlockLayout::bytes(slot_count_);
     if (!fits) throw Error(ErrorCode::engine_failed, "the worker's program is of another version than the library");
     slots_ = memory.array<Slot>(ControlBlockLayout::slots, slot_count_);

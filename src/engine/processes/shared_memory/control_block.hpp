@@ -1,4 +1,4 @@
-// The control block's tables, as one process sees them: checked and committed access to what layout.hpp describes.
+// ControlBlockView: one process's view of the control block and its tables (layout.hpp). Checks and commits each access.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace octopair {
 
-/// Shows in a worker's slot that it waits, as long as it lives.
+/// Scope guard: sets `Slot::waits` while the worker waits.
 class WaitingMark {
 public:
     explicit WaitingMark(Slot& slot) : slot_(slot) { slot_.waits.store(1); }
@@ -24,16 +24,17 @@ private:
 
 class ControlBlockView {
 public:
-    /// `memory` must outlive it. Throws Error{engine_failed} if it is not a control block of this version.
+    /// Requires: `memory` outlives the view.
+    /// Throws: Error{engine_failed} if `memory` is not a control block of this version.
     explicit ControlBlockView(SharedMemory& memory);
-    /// Makes `memory` a control block.
+    /// Initialises `memory` as a control block with `slots` slots.
     static void lay_out(SharedMemory& memory, unsigned slots);
 
     ControlBlock& control_block() const { return *control_block_; }
     Slot& slot(unsigned i) const { return slots_[i]; }
     unsigned slots() const { return slot_count_; }
 
-    /// Throws Error{resource_limit} where there is no room for them.
+    // Access to rows of the tables. Throws: Error{resource_limit} if the table is too small for these rows.
     std::span<Share> shares(std::uint64_t begin, std::uint64_t count) const;
     std::span<Run> runs(std::uint64_t begin, std::uint64_t count) const;
     std::span<LoggedPage> log(unsigned slot, std::uint64_t size) const;

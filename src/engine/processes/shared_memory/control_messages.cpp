@@ -20,7 +20,7 @@ SocketPair make_socket_pair() {
 
 namespace {
 
-/// A message of one ControlMessage, and room for a descriptor that goes with it.
+/// Socket message with one ControlMessage, and space for one attached descriptor.
 struct Packet {
     explicit Packet(ControlMessage& message) {
         part = {&message, sizeof message};

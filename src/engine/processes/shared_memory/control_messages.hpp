@@ -1,4 +1,6 @@
-// ControlMessage: what the client tells a worker over their socket, which beside that shows each of them whether the other lives.
+// ControlMessage: a message from the client to a worker, sent over a socket pair.
+//
+// Each side also detects the end of the other side by its socket.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +14,22 @@ enum class ControlMessageKind : std::uint32_t { region, forget, stop };
 
 struct ControlMessage {
     ControlMessageKind kind = ControlMessageKind::region;
-    std::uint32_t number = 0;  ///< of a region, or of the pass that is to stop
-    std::uint64_t bytes = 0;   ///< of a region, whose file comes with it
+    std::uint32_t number = 0;  ///< number of the region, or of the pass to stop
+    std::uint64_t bytes = 0;   ///< size of the region, whose file descriptor is attached
 };
 
-/// The region that the control block is.
+/// Region number of the control block.
 inline constexpr std::uint32_t control_region = 1;
 
 struct SocketPair {
     Descriptor ours, theirs;
 };
 
-/// Throws Error{resource_limit}.
+/// Throws: Error{resource_limit}.
 SocketPair make_socket_pair();
 
-/// False if the other side is gone or does not read any more.
+/// Sends `message`, with the descriptor `file` if that is >= 0. Never blocks. Returns false if the message cannot be sent: the
+/// other side has ended, or has stopped reading.
 bool send_message(const Descriptor& socket, const ControlMessage& message, int file = -1);
 
 struct ReceivedMessage {
@@ -34,7 +37,7 @@ struct ReceivedMessage {
     Descriptor file;
 };
 
-/// Waits for message; nothing if the other side is gone.
+/// Waits for a message. Returns nothing if the other side has ended.
 std::optional<ReceivedMessage> receive_message(const Descriptor& socket);
 
 }  // namespace octopair

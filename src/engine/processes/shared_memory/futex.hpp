@@ -1,4 +1,4 @@
-// Waiting for a number in shared memory to change, across processes.
+// Event: lets processes wait for a change of a counter in shared memory. Built on Linux futexes.
 #pragma once
 
 #include <linux/futex.h>
@@ -15,7 +15,7 @@ namespace octopair {
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// Returns soon after `word` is no longer `value`, if it is woken; or after `most`; or for no reason.
+/// Sleeps while `word` is `value`. Returns after futex_wake_all(), after `most`, or spuriously.
 inline void futex_wait(std::atomic<std::uint32_t>& word, std::uint32_t value, std::chrono::nanoseconds most) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(most);
     const timespec timeout{time_t(seconds.count()), long((most - seconds).count())};
@@ -26,7 +26,7 @@ inline void futex_wake_all(std::atomic<std::uint32_t>& word) {
     (void)::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
 }
 
-/// A number that is raised when something happened. The system is asked only while somebody waits.
+/// Counter of events. raise() makes a system call only while some process waits.
 struct Event {
     std::atomic<std::uint32_t> count = 0;
     std::atomic<std::uint32_t> waiting = 0;
@@ -35,9 +35,9 @@ struct Event {
         count.fetch_add(1);
         if (waiting.load() != 0) futex_wake_all(count);
     }
-    /// Waits until it is raised from `seen` on, looking for a short time and then asleep, but no longer than `most`.
-    void wait(std::uint32_t seen, std::chrono::nanoseconds most, unsigned looks) {
-        for (unsigned i = 0; i < looks; ++i) {
+    /// Waits until `count` differs from `seen`: polls `spins` times, then sleeps at most `most`. May return spuriously.
+    void wait(std::uint32_t seen, std::chrono::nanoseconds most, unsigned spins) {
+        for (unsigned i = 0; i < spins; ++i) {
             if (count.load(std::memory_order_acquire) != seen) return;
 #if defined(__x86_64__) || defined(__i386__)
             __builtin_ia32_pause();

@@ -40,46 +40,48 @@ int retried(Call&& call) {
     return result;
 }
 
-/// One that nobody can execute, which some systems ask for and older ones do not know.
+/// Creates the file as not executable, which some systems require. Older kernels reject the flag; then without it.
 Descriptor create_file() {
     constexpr unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
     constexpr unsigned not_executable = 8;  // MFD_NOEXEC_SEAL of Linux 6.3, which not all headers have
     Descriptor file(::memfd_create("octopair", flags | not_executable));
     if (!file.open() && errno == EINVAL) file = Descriptor(::memfd_create("octopair", flags));
-    if (!file.open()) throw_exhausted("cannot create", errno);
+    if (!file.open()) throw_exhausted("cannot create the file", errno);
     return file;
 }
 
 }  // namespace
 
-std::uint64_t roomy_bytes() {
+std::uint64_t max_region_bytes() {
     const auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
-    // A few such files are mapped side by side.
+    // Several such files are mapped at the same time, so each may use an eighth of the RLIMIT_AS limit.
     const std::uint64_t most = std::min({memory, soft_limit(RLIMIT_FSIZE), soft_limit(RLIMIT_AS) / 8});
     return std::max(page, most / page * page);
 }
 
 SharedMemory SharedMemory::create(std::uint64_t bytes) {
-    // Beyond this limit the system would not only refuse, but send a signal that ends the process.
-    if (bytes > soft_limit(RLIMIT_FSIZE)) throw_exhausted("larger than files may be", EFBIG);
+    // Above this limit ftruncate() would not only fail, but also raise SIGXFSZ, which ends the process.
+    if (bytes > soft_limit(RLIMIT_FSIZE)) throw_exhausted("the size exceeds the limit of files (ulimit -f)", EFBIG);
     Descriptor file = create_file();
-    if (retried([&] { return ::ftruncate(file.number(), off_t(bytes)); }) != 0) throw_exhausted("cannot size", errno);
-    if (::fcntl(file.number(), F_ADD_SEALS, seals) != 0) throw_exhausted("cannot seal", errno);
+    if (retried([&] { return ::ftruncate(file.number(), off_t(bytes)); }) != 0)
+        throw_exhausted("cannot set the size of the file", errno);
+    if (::fcntl(file.number(), F_ADD_SEALS, seals) != 0) throw_exhausted("cannot seal the file", errno);
     return {std::move(file), bytes};
 }
 
 SharedMemory SharedMemory::open(Descriptor file, std::uint64_t bytes) {
     struct stat status {};
-    const bool as_said = ::fstat(file.number(), &status) == 0 && std::uint64_t(status.st_size) == bytes &&
-                         (::fcntl(file.number(), F_GET_SEALS) & seals) == seals;
-    if (!as_said) throw Error(ErrorCode::engine_failed, "shared memory is not what it was said to be");
+    const bool valid = ::fstat(file.number(), &status) == 0 && std::uint64_t(status.st_size) == bytes &&
+                       (::fcntl(file.number(), F_GET_SEALS) & seals) == seals;
+    if (!valid)
+        throw Error(ErrorCode::engine_failed, "shared memory: the received file has the wrong size or is not sealed");
     return {std::move(file), bytes};
 }
 
 SharedMemory::SharedMemory(Descriptor file, std::uint64_t bytes)
     : file_(std::move(file)), size_(bytes), committed_(std::size_t((bytes + granule - 1) / granule), false) {
     void* const mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, file_.number(), 0);
-    if (mapped == MAP_FAILED) throw_exhausted("cannot map", errno);
+    if (mapped == MAP_FAILED) throw_exhausted("cannot map the file", errno);
     data_ = static_cast<std::byte*>(mapped);
 }
 
@@ -95,7 +97,7 @@ SharedMemory::~SharedMemory() {
 
 void SharedMemory::refuse(std::uint64_t bytes) const {
     throw Error(ErrorCode::resource_limit,
-                "shared memory: " + std::to_string(bytes) + " bytes more do not fit into " + std::to_string(size_));
+                "shared memory: " + std::to_string(bytes) + " more bytes do not fit into " + std::to_string(size_));
 }
 
 void SharedMemory::commit(std::uint64_t offset, std::uint64_t bytes) {
@@ -115,18 +117,18 @@ void SharedMemory::commit(std::uint64_t offset, std::uint64_t bytes) {
 void SharedMemory::commit_granules(std::uint64_t begin, std::uint64_t end) {
     const std::uint64_t offset = begin * granule;
     const std::uint64_t bytes = std::min(end * granule, size_) - offset;
-    // In pieces: one that a signal interrupts begins anew.
+    // Commit in pieces of 1 MiB: a call that a signal interrupts starts again from the begin of its piece.
     constexpr std::uint64_t piece = 1 << 20;
     for (std::uint64_t at = offset; at < offset + bytes; at += piece) {
         const auto size = off_t(std::min(piece, offset + bytes - at));
         if (retried([&] { return ::fallocate(file_.number(), 0, off_t(at), size); }) != 0) {
-            throw_exhausted("no more to be had", errno);
+            throw_exhausted("cannot commit more memory", errno);
         }
     }
 #ifdef MADV_POPULATE_WRITE
-    // Mapped at once rather than page by page as they are touched. Kernels that cannot do so map them then.
+    // Map the pages now, not one by one at first access. Kernels without this call map them at first access.
     const int error = ::madvise(data_ + offset, bytes, MADV_POPULATE_WRITE) == 0 ? 0 : errno;
-    if (error == ENOMEM || error == EFAULT) throw_exhausted("cannot map", error);
+    if (error == ENOMEM || error == EFAULT) throw_exhausted("cannot map the file", error);
 #endif
     for (std::uint64_t i = begin; i < end; ++i) committed_[i] = true;
 }

@@ -1,8 +1,9 @@
-// Memory that processes share: a file without a name (memfd), mapped by each of them.
+// SharedMemory: memory that several processes share. An anonymous file (memfd) that each process maps.
 //
-// A file is made as large as it may ever become, and sealed so that nobody can shrink or grow it: no access within it can
-// fail for its size. Memory is given to it piece by piece, before it is touched (commit): where there is none left,
-// commit() throws, and no access later dies of a bus error. What was given is kept.
+// Invariants
+//   The file has its maximum size from the start and is sealed: no process can shrink or grow it.
+//   A range is committed before its first access. commit() throws if memory runs out, so no access raises SIGBUS.
+//   Committed memory stays committed.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +15,16 @@
 
 namespace octopair {
 
-/// How large a file is made that may have to hold anything: the memory of this machine, or less where the process may
-/// not map so much.
-std::uint64_t roomy_bytes();
+/// Returns the size of files whose use is not known in advance: the memory of this machine, or less where limits of the
+/// process (RLIMIT_FSIZE, RLIMIT_AS) require it.
+std::uint64_t max_region_bytes();
 
 class SharedMemory {
 public:
-    /// A new file of `bytes`. Throws Error{resource_limit}.
+    /// Creates a file of `bytes`. Throws: Error{resource_limit}.
     static SharedMemory create(std::uint64_t bytes);
-    /// One that another process made. Throws Error{engine_failed} unless it is of this size, and sealed.
+    /// Maps a file that another process created.
+    /// Throws: Error{engine_failed} unless its size is `bytes` and it is sealed; Error{resource_limit}.
     static SharedMemory open(Descriptor file, std::uint64_t bytes);
 
     SharedMemory(SharedMemory&& other) noexcept;
@@ -37,11 +39,13 @@ public:
         return byte >= data_ && byte < data_ + size_;
     }
 
-    /// Makes [offset, offset + bytes) fit for use, here and now; soon done where it is already. Thread-safe. Throws
-    /// Error{resource_limit}, also where the range is not within the file.
+    /// Commits and maps the bytes [offset, offset + bytes). Fast if they are already committed.
+    /// Throws: Error{resource_limit} if memory runs out or the range exceeds the file.
+    /// Thread safety: any thread.
     void commit(std::uint64_t offset, std::uint64_t bytes);
 
-    /// An array within the file, committed. Throws Error{resource_limit} where it is not within it.
+    /// Returns the array of `count` elements at byte `offset`, and commits it.
+    /// Throws: Error{resource_limit} if memory runs out or the array exceeds the file.
     template <typename T>
     T* array(std::uint64_t offset, std::uint64_t count) {
         if (count > size_ / sizeof(T)) refuse(count);
@@ -59,7 +63,7 @@ private:
     std::uint64_t size_ = 0;
     std::byte* data_ = nullptr;
     std::mutex mutex_;
-    std::vector<bool> committed_;  // granules, as far as this process knows
+    std::vector<bool> committed_;  // granules that this process has committed
 };
 
 }  // namespace octopair

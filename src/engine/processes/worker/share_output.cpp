@@ -63,7 +63,7 @@ private:
     }
 
     OutputPlace place_;
-    std::span<Pair> block_;  // what is free of it
+    std::span<Pair> block_;  // free part of the current block
     Runs runs_;
 };
 
@@ -122,7 +122,7 @@ private:
     Slot& slot_;
     std::uint64_t share_ = 0;
     std::span<Pair> block_;
-    std::size_t held_ = 0;  // pairs in it
+    std::size_t held_ = 0;  // pairs in block_
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Where the pairs of a worker's shares go, in each kind of pass.
+// ShareOutput: the output for the pairs of a worker's shares. Each kind of pass has its own output.
 //
-// A share's pairs become visible when the share is done, all at once; but those of a stream as they come.
+// The pairs of a share become visible together, when the share is done. Only in a stream, each block becomes visible as soon
+// as it is full.
 #pragma once
 
 #include <memory>
@@ -15,13 +16,13 @@ namespace octopair {
 class ShareOutput {
 public:
     virtual ~ShareOutput() = default;
-    /// Of the share that begins; the last one is over. Valid until the next.
+    /// Begins a share. Returns its writer, valid until the next begin(). Requires: the previous share has ended.
     virtual ShareWriter& begin(const WorkSharing::Task& task) = 0;
-    /// Completes the record of the share that began.
+    /// Completes the record of the current share.
     virtual void end(const WorkSharing::Task& task) = 0;
 };
 
-/// What outputs write to.
+/// Destination of outputs: the tables and the region `pairs`.
 struct OutputPlace {
     ControlBlockView& view;
     SharedMemory& pairs;
@@ -31,16 +32,16 @@ struct OutputPlace {
 
 /// Counts the pairs of each share.
 std::unique_ptr<ShareOutput> make_count_output();
-/// Counts the pairs of each object, together with the other workers.
+/// Adds the number of pairs of each object to `counts`, which all workers share.
 std::unique_ptr<ShareOutput> make_count_by_object_output(std::span<std::uint32_t> counts);
 /// Lists the pairs of each share.
 std::unique_ptr<ShareOutput> make_list_output(const OutputPlace& place);
-/// Hands each share's pairs to the client, block by block; waits while it holds as many as it may.
+/// Writes each share's pairs to the slot's ring, block by block. Waits while the ring is full.
 std::unique_ptr<ShareOutput> make_stream_output(const OutputPlace& place, const Pass& pass);
 
-/// The next block of the region `pairs`. Throws Error{resource_limit}.
+/// Returns the next unused block of the region `pairs`. Throws: Error{resource_limit}.
 std::span<Pair> take_block(const OutputPlace& place);
-/// Makes `runs` the result of a share.
+/// Stores `runs` as the result of a share in its record.
 void record_runs(const OutputPlace& place, std::span<const std::span<const Pair>> runs, Share& record);
 
 }  // namespace octopair

@@ -13,19 +13,19 @@ namespace {
 std::uint64_t page_bytes() { return page_pairs() * sizeof(Pair); }
 
 [[noreturn]] void throw_damaged_buckets() {
-    throw Error(ErrorCode::engine_failed, "what a worker left of its buckets makes no sense");
+    throw Error(ErrorCode::engine_failed, "shared memory: the buckets of a worker are damaged");
 }
 
 }  // namespace
 
-/// Pages of the region `pairs`, as many as the pass may have until it comes to the last step.
+/// Allocates pages in the region `pairs`. The pass has a budget of pages until set_unlimited() is called for the last step.
 class SharedBuckets::RegionPages final : public Pages {
 public:
     explicit RegionPages(const OutputPlace& place)
         : place_(place), taken_(place.view.slot(place.shares.slot()).pages_taken) {}
 
     void set_unlimited() { limited_ = false; }
-    /// What a predecessor took after its last commit is not counted.
+    /// Resets the number of pages to that of the last commit. Returns pages that a dead worker took later to the budget.
     void restore(std::uint64_t taken) {
         place_.view.control_block().pages_left.fetch_add(std::int64_t(taken_.exchange(taken) - taken));
     }
@@ -79,7 +79,7 @@ ShareWriter& SharedBuckets::begin(const WorkSharing::Task&) {
     return *writer_;
 }
 
-/// Takes up what this slot's buckets held when its last share was done.
+/// Restores the buckets of this slot from its last commit.
 void SharedBuckets::restore() {
     commit_ = last_commit(place_.shares.slot());
     if (commit_ == 0) return pages_->restore(0);
@@ -109,7 +109,7 @@ void SharedBuckets::end(const WorkSharing::Task& task) {
     task.record.commit = ++commit_;
 }
 
-/// The number of the last commit of a slot that came with a share that is done; 0 if there is none.
+/// Returns the number of the slot's last commit that belongs to a finished share of the scan; 0 if there is none.
 std::uint64_t SharedBuckets::last_commit(unsigned slot) const {
     std::uint64_t last = 0;
     for (Share& share : place_.view.shares(0, place_.shares.shares())) {
@@ -151,7 +151,8 @@ void SharedBuckets::order(WorkSharing& shares) {
         std::vector<PageString> strings;
         strings.reserve(of_slots.size());
         for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[task.index]));
-        // The pages of the share before are free now that it is done; those of this one must last until then.
+        // The input pages of the previous share are free now, because that share is done. The input pages of this share must
+        // stay unchanged until it is done, in case a replacement worker sorts them again.
         for (Pair* const page : spent) pages_->give_back(page);
         spent.clear();
         record_runs(place_, sort.sort(std::move(strings), place_.stop, &spent), task.record);

@@ -1,8 +1,10 @@
-// The ascending order among workers: each slot has buckets of its own (bucket_sort.hpp), and the buckets are sorted as
-// shares of a last step.
+// SharedBuckets: sorts pairs into ascending order with several workers. Each slot has its own buckets (bucket_sort.hpp), and
+// the buckets are sorted as shares of a last step.
 //
-// What a slot's buckets hold is committed with each share that is done: which pages they have, and how many pairs. So a
-// worker that takes over a slot goes on from the last share that was done, and what was taken for others is not counted.
+// Invariants
+//   Each share that is done has committed the content of its slot's buckets: their pages and numbers of pairs.
+//   A replacement worker continues from the last commit of its slot.
+//   Pages that a dead worker took after its slot's last commit do not count towards the budget of pages.
 #pragma once
 
 #include <vector>
@@ -19,7 +21,7 @@ public:
     ShareWriter& begin(const WorkSharing::Task& task) override;
     void end(const WorkSharing::Task& task) override;
 
-    /// The last step: sorts the buckets of all slots.
+    /// Sorts the buckets of all slots. Requires: called as the last step of the pass, after the scan.
     void order(WorkSharing& shares);
 
 private:
@@ -35,9 +37,9 @@ private:
     const BucketPlan plan_;
     std::unique_ptr<RegionPages> pages_;
     Strings strings_;
-    std::vector<std::size_t> logged_;  // pages of each bucket
+    std::vector<std::size_t> logged_;  // for each bucket: number of its pages in the log
     std::uint64_t log_size_ = 0;
-    std::uint64_t commit_ = 0;  // the last one
+    std::uint64_t commit_ = 0;  // number of the last commit
     bool restored_ = false;
     std::unique_ptr<Writer> writer_;
 };

@@ -26,7 +26,7 @@ void WorkSharing::run(Step step, std::uint64_t count, const Body& body) {
     wait_for_others(records);
 }
 
-/// True if the share is this slot's to do: free until now, or claimed by a worker that died.
+/// Claims a share for this slot. Returns true if the share was free, or if a worker of this slot claimed it and died.
 bool WorkSharing::claim(Share& record) const {
     std::uint64_t packed = record.state.load();
     const ShareState mine{self_.pass, ShareStatus::claimed, self_.slot};

@@ -1,8 +1,10 @@
-// WorkSharing: how the workers of a pass share out each step among them.
+// WorkSharing: divides each step of a pass among the workers.
 //
-// All workers come to the same steps in the same order, each with the number of its shares. They claim shares one by one,
-// and leave a step when all of its shares are done, whoever did them. A worker that takes over a slot in the middle of a
-// pass goes through the same steps: what is done it passes over, what its slot had claimed it does.
+// Invariants
+//   All workers run the same steps in the same order, with the same numbers of shares.
+//   Workers claim shares one by one. Each worker leaves a step only when all shares of the step are done.
+//   A replacement worker runs the same steps from the first one. It skips shares that are done, and runs again the share
+//   that its slot had claimed.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +16,13 @@
 
 namespace octopair {
 
-/// Is told where a worker is: what tests of faults look at, and let happen. The worker's program has none.
+/// Receives the progress of a worker. Fault tests use an observer to make a worker fail; octopair-worker has none.
 class ShareObserver {
 public:
     virtual ~ShareObserver() = default;
     virtual void begin(Step step) = 0;
-    virtual void tick() = 0;  ///< now and then within a share
-    virtual void end() = 0;   ///< the share is complete, but not yet said to be done
+    virtual void tick() = 0;  ///< repeatedly during a share
+    virtual void end() = 0;   ///< the share's work is complete, but the share is not yet marked done
 };
 
 class WorkSharing {
@@ -33,17 +35,17 @@ public:
     WorkSharing(ControlBlockView& view, const Self& self, std::stop_token stop);
 
     struct Task {
-        std::uint64_t index;   ///< within the step
-        std::uint64_t number;  ///< within the pass
+        std::uint64_t index;   ///< number of the share in its step
+        std::uint64_t number;  ///< number of the share in its pass
         Share& record;
     };
     using Body = std::function<void(const Task&)>;
 
-    /// Calls `body` for some of `count` shares, and returns when the others are done as well. Throws Error{cancelled},
-    /// and what `body` throws.
+    /// Runs a step of `count` shares: calls `body` for each share that this worker claims, then waits until all are done.
+    /// Throws: Error{cancelled}; what `body` throws.
     void run(Step step, std::uint64_t count, const Body& body);
 
-    /// Shares of all steps so far.
+    /// Number of shares of all steps so far.
     std::uint64_t shares() const { return next_; }
     unsigned slot() const { return self_.slot; }
     std::uint32_t pass() const { return self_.pass; }
@@ -58,7 +60,7 @@ private:
     Slot& slot_;
     Self self_;
     std::stop_token stop_;
-    std::uint64_t next_ = 0;
+    std::uint64_t next_ = 0;  // number of the next step's first share
 };
 
 }  // namespace octopair

@@ -19,7 +19,7 @@ namespace octopair {
 
 namespace {
 
-/// The stop source of the pass under way, and which pass was stopped last.
+/// Stop source of the current pass, and number of the pass that was stopped last.
 class Stops {
 public:
     std::stop_token begin(std::uint32_t pass) {
@@ -46,8 +46,8 @@ public:
     Worker(Descriptor socket, unsigned slot, ShareObserver* observer)
         : socket_(std::move(socket)), number_(slot), observer_(observer), parent_(::getppid()) {}
 
-    /// Takes what the client sends, until it is gone.
-    void read_mail() {
+    /// Handles messages of the client until the client has ended.
+    void read_messages() {
         while (client_lives()) {
             std::optional<ReceivedMessage> received = receive_message(socket_);
             if (!received) return;
@@ -72,8 +72,11 @@ public:
         const FloatingPointScope scope;
         const auto memory = regions_.get(control_region);
         ControlBlockView view(*memory);
-        if (view.control_block().client != ::getppid()) throw Error(ErrorCode::engine_failed, "the client is gone");
-        if (number_ >= view.slots()) throw Error(ErrorCode::engine_failed, "there is no such slot");
+        if (view.control_block().client != ::getppid())
+            throw Error(ErrorCode::engine_failed, "the client process has ended");
+        if (number_ >= view.slots())
+            throw Error(ErrorCode::engine_failed,
+                        "the control block has no slot of the number given on the command line");
         view_ = &view;
         WorkerProgram program(view, regions_);
         Slot& slot = view.slot(number_);
@@ -81,21 +84,22 @@ public:
         view.control_block().for_client.raise();
         for (;;) {
             const std::uint32_t seen = slot.command.count.load();
-            const std::uint32_t asked = slot.asked.load();
-            if (asked == slot.finished.load()) {
+            const std::uint32_t requested = slot.requested.load();
+            if (requested == slot.finished.load()) {
                 if (forgot_.exchange(false)) program.forget_job();
                 const WaitingMark waiting(slot);
                 slot.command.wait(seen, worker_limits::max_command_sleep, worker_limits::max_spins_for_pass);
                 continue;
             }
             const Pass pass = view.control_block().pass;
-            const std::stop_token token = stops_.begin(asked);
-            if (view.control_block().stopped.load() == asked) stops_.stop(asked);
-            program.run(pass, {number_, asked, observer_}, token);
-            slot.finished.store(asked);
+            const std::stop_token token = stops_.begin(requested);
+            if (view.control_block().stopped.load() == requested) stops_.stop(requested);
+            program.run(pass, {number_, requested, observer_}, token);
+            slot.finished.store(requested);
             view.control_block().for_client.raise();
-            // It has told why; another will be sent what this one could not take.
-            if (regions_.failed()) throw Error(ErrorCode::resource_limit, "shared memory could not be taken");
+            // The pass has reported the failure. End this process: its replacement receives all regions again.
+            if (regions_.failed())
+                throw Error(ErrorCode::resource_limit, "cannot map a region of shared memory that the client sent");
         }
     }
 
@@ -108,8 +112,8 @@ private:
         }
     }
 
-    /// Waits for message or the end of the client. Its process is looked for as well: a copy of its end of the socket may
-    /// live on in some child that it forked.
+    /// Waits for a message. Returns false if the client has ended. Also checks the parent process: a child that the client
+    /// forked may keep the client's end of the socket open.
     bool client_lives() const {
         for (;;) {
             pollfd waiting{socket_.number(), POLLIN, 0};
@@ -140,13 +144,13 @@ private:
 }  // namespace
 
 void run_worker(Descriptor socket, unsigned slot, ShareObserver* observer, const std::function<void()>& gone) {
-    // It stays until the process ends, with the thread that reads its message.
+    // Static, because the detached thread below uses the worker until the process ends.
     static Worker worker(std::move(socket), slot, observer);
     std::thread([gone] {
         try {
-            worker.read_mail();
+            worker.read_messages();
         } catch (...) {
-            // Without its message it is of no use; the client starts another.
+            // A worker that cannot read messages is useless. It ends, and the client starts a replacement.
         }
         gone();
     }).detach();

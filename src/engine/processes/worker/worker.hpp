@@ -1,4 +1,4 @@
-// A worker process: does its part of each pass that the client asks for, until the client is gone.
+// The main loop of a worker process: runs its part of each pass that the client requests, until the client has ended.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,11 @@
 
 namespace octopair {
 
-/// Where a worker finds its socket.
+/// File descriptor of a worker's socket to the client.
 inline constexpr int worker_socket = 3;
 
-/// Works in `slot`, forever; `gone` is called, on another thread, when the client is gone, and must end the process.
-/// Throws Error where it cannot begin.
+/// Serves `slot` and never returns. Calls `gone` on another thread when the client has ended; `gone` must end the process.
+/// Throws: Error if the worker cannot attach to the client, or cannot map a region.
 [[noreturn]] void run_worker(Descriptor socket, unsigned slot, ShareObserver* observer,
                              const std::function<void()>& gone);
 

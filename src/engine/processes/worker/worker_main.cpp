@@ -1,4 +1,4 @@
-// octopair-worker: the program of worker processes. The process engine starts it; it is of no use by itself.
+// octopair-worker: the program of worker processes. Only the process engine starts it.
 #include <fcntl.h>
 #include <unistd.h>
 

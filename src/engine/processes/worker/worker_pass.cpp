@@ -34,7 +34,7 @@ struct Set {
     Objects objects{std::span<const Box3f>{}};
 };
 
-/// Tells an observer whenever boxes are read.
+/// Notifies an observer whenever boxes are read.
 class ObservedSource final : public EntrySource {
 public:
     ObservedSource(const EntrySource& source, ShareObserver* observer) : source_(source), observer_(observer) {}
@@ -60,7 +60,7 @@ private:
     ShareObserver* observer_;
 };
 
-/// Tells an observer whenever pairs are written.
+/// Notifies an observer whenever pairs are written.
 class ObservedWriter final : public ShareWriter {
 public:
     ObservedWriter(ShareWriter& writer, ShareObserver& observer) : writer_(writer), observer_(observer) {}
@@ -103,21 +103,21 @@ struct WorkerProgram::Job {
     Set first, second;
     std::shared_ptr<SharedMemory> memory, scratch_memory;
     Arena arena;
-    Arena scratch;  ///< where pairs will be: what nobody reads after the sort makes room for them
+    Arena scratch;  ///< data that is not read after the sort; in the region that pairs are written to later
     BoxSource source;
     LinearOctree octree;
     bool built = false;
-    std::uint64_t built_mark = 0;  // of the arena
+    std::uint64_t built_mark = 0;  // mark of the arena after the build
 };
 
 WorkerProgram::WorkerProgram(ControlBlockView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
 
 WorkerProgram::~WorkerProgram() = default;
 
-/// Shares out the steps that make the octree, in memory that all workers see.
+/// Divides the steps that build the octree among the workers. The octree is in memory that all workers share.
 class WorkerProgram::BuildExecutor final : public Executor {
 public:
-    /// `built`: the steps are done, by an earlier pass.
+    /// `built`: an earlier pass has run the steps.
     BuildExecutor(WorkSharing& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
@@ -127,7 +127,7 @@ public:
         shares_.run(step, count, [&](const WorkSharing::Task& task) { body(std::size_t(task.index)); });
     }
     void for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) override {
-        throw Error(ErrorCode::engine_failed, "a step that writes no pairs wrote some");
+        throw Error(ErrorCode::engine_failed, "a step without an output for pairs wrote pairs");
     }
 
 private:
@@ -137,13 +137,13 @@ private:
     std::size_t step_ = 0;
 };
 
-/// Shares out the steps that write pairs, and those that build the nested octrees of large octants. Each worker sorts and
-/// measures sets of boxes for itself: the results are functions of the octrees, which no longer change, so a replacement
-/// worker computes the same.
+/// Divides the steps that write pairs, and the steps that build nested octrees of large octants, among the workers. Each
+/// worker sorts and measures sets of boxes itself. The results depend only on octrees that no longer change, so a
+/// replacement worker computes the same results.
 class WorkerProgram::ScanExecutor final : public Executor {
 public:
-    /// Borrows all. `arena`: pages for nested octrees. It is not rewound before the pass ends: a worker that is slow, or
-    /// takes over, still reads octrees that others no longer need.
+    /// Borrows all arguments. `arena`: pages for nested octrees. The arena is not rewound before the pass ends: a slow or
+    /// replacement worker still reads octrees that other workers no longer need.
     ScanExecutor(WorkSharing& shares, unsigned width, ShareOutput& output, Arena& arena)
         : shares_(shares), width_(width), output_(output), arena_(arena) {}
     unsigned width() const override { return width_; }
@@ -169,8 +169,8 @@ public:
     }
 
 private:
-    /// Whether to build a nested octree in the arena. All workers of the pass decide alike: the arguments are the same,
-    /// and all have reserved the same.
+    /// Returns true if the workers should build a nested octree together, in the arena. All workers of the pass get the same
+    /// answer: they have the same arguments and have reserved the same memory.
     bool worth_sharing(std::size_t entries) const {
         const bool several_blocks = width_ > 1 && entries / tuning().build.least_block > 1;
         return several_blocks && entries <= arena_.left() / tuning().processes.nested_bytes;
@@ -180,7 +180,7 @@ private:
     unsigned width_;
     ShareOutput& output_;
     Arena& arena_;
-    std::optional<BuildExecutor> build_;  // of the nested octree that is being built
+    std::optional<BuildExecutor> build_;  // builds the current nested octree
 };
 
 void WorkerProgram::run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop) {
@@ -277,7 +277,7 @@ void WorkerProgram::scan(const Context& context) {
         case PassKind::lists:
             break;
     }
-    throw Error(ErrorCode::engine_failed, "an unknown kind of pass");
+    throw Error(ErrorCode::engine_failed, "control block: the kind of the pass is unknown");
 }
 
 void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {

@@ -1,4 +1,4 @@
-// What a worker does in a pass: the program that all workers of a pass run side by side.
+// WorkerProgram: the work of one worker in a pass. All workers of a pass run the same program concurrently.
 #pragma once
 
 #include <cstdint>
@@ -7,23 +7,23 @@
 
 #include "boxes/box_source.hpp"
 #include "engine/processes/shared_memory/arena.hpp"
-#include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/share_output.hpp"
+#include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
 #include "octree/linear_octree.hpp"
 
 namespace octopair {
 
-/// Keeps the octree from pass to pass of a job. One thread at a time.
+/// Keeps the octree between the passes of a job. Thread safety: one thread at a time.
 class WorkerProgram {
 public:
-    /// Both must outlive it.
+    /// Requires: `view` and `regions` outlive this object.
     WorkerProgram(ControlBlockView& view, WorkerRegions& regions);
     ~WorkerProgram();
 
-    /// Does a part of the pass and leaves in its slot how that ended.
+    /// Runs this worker's part of the pass and stores the outcome in its slot.
     void run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop);
-    /// Lets go of the memory of the last job. No harm if a pass of it follows.
+    /// Frees the memory of the last job. A later pass of that job starts the job again.
     void forget_job();
 
 private:

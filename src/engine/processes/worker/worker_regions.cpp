@@ -10,7 +10,7 @@ void WorkerRegions::add(std::uint32_t number, SharedMemory memory) {
     auto region = std::make_shared<SharedMemory>(std::move(memory));
     const std::lock_guard lock(mutex_);
     regions_[number] = std::move(region);
-    come_.notify_all();
+    changed_.notify_all();
 }
 
 void WorkerRegions::forget(std::uint32_t number) {
@@ -21,7 +21,7 @@ void WorkerRegions::forget(std::uint32_t number) {
 void WorkerRegions::fail(std::exception_ptr failure) {
     const std::lock_guard lock(mutex_);
     failure_ = std::move(failure);
-    come_.notify_all();
+    changed_.notify_all();
 }
 
 bool WorkerRegions::failed() {
@@ -31,13 +31,14 @@ bool WorkerRegions::failed() {
 
 std::shared_ptr<SharedMemory> WorkerRegions::get(std::uint32_t number) {
     std::unique_lock lock(mutex_);
-    come_.wait(lock, [&] { return failure_ != nullptr || regions_.contains(number); });
+    changed_.wait(lock, [&] { return failure_ != nullptr || regions_.contains(number); });
     if (failure_ != nullptr) std::rethrow_exception(failure_);
     return regions_.at(number);
 }
 
 void WorkerRegions::check_place(std::uint64_t offset, std::size_t alignment) {
-    if (offset % alignment != 0) throw Error(ErrorCode::engine_failed, "an array in shared memory lies askew");
+    if (offset % alignment != 0)
+        throw Error(ErrorCode::engine_failed, "shared memory: the offset of an array is not aligned");
 }
 
 }  // namespace octopair

@@ -1,4 +1,6 @@
-// The regions of shared memory that a worker was sent, by their numbers.
+// WorkerRegions: the regions of shared memory that a worker has received, by number.
+//
+// Thread safety: one thread may add regions while another waits for them.
 #pragma once
 
 #include <condition_variable>
@@ -18,14 +20,14 @@ class WorkerRegions {
 public:
     void add(std::uint32_t number, SharedMemory memory);
     void forget(std::uint32_t number);
-    /// One could not be taken: whoever wants any is told, from now on.
+    /// Stores the failure to map a region. From now on, get() throws `failure`.
     void fail(std::exception_ptr failure);
     bool failed();
-    /// Waits until it has come.
+    /// Returns the region `number`. Waits until the region arrives. Throws: the exception given to fail().
     std::shared_ptr<SharedMemory> get(std::uint32_t number);
 
-    /// The elements of an array, whose region is kept by `keeper`. Throws Error{resource_limit} if it does not lie within
-    /// the region, Error{engine_failed} if it lies askew.
+    /// Returns the elements of an array. `keeper` keeps the region mapped.
+    /// Throws: Error{resource_limit} if the array exceeds the region; Error{engine_failed} if its offset is not aligned.
     template <typename T>
     std::span<const T> array(const ArrayRef& ref, std::shared_ptr<SharedMemory>& keeper) {
         if (ref.count == 0) return {};
@@ -38,7 +40,7 @@ private:
     static void check_place(std::uint64_t offset, std::size_t alignment);
 
     std::mutex mutex_;
-    std::condition_variable come_;
+    std::condition_variable changed_;
     std::map<std::uint32_t, std::shared_ptr<SharedMemory>> regions_;
     std::exception_ptr failure_;
 };

@@ -11,7 +11,7 @@ void CallThreads::start(std::function<void()> work) {
     try {
         running.thread = std::jthread([&running, work = std::move(work)]() mutable {
             work();
-            work = nullptr;  // what it holds goes before it counts as ended
+            work = nullptr;  // frees what `work` captured before the thread counts as ended
             running.ended = true;
         });
     } catch (...) {

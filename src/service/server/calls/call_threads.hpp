@@ -1,4 +1,4 @@
-// CallThreads: threads of calls that need one of their own.
+// CallThreads: starts a thread for each call that needs its own.
 #pragma once
 
 #include <atomic>
@@ -9,14 +9,14 @@
 
 namespace octopair::service {
 
-/// Thread-safe. Its end waits for all.
+/// The destructor waits for all threads. Thread safety: safe.
 class CallThreads {
 public:
     CallThreads() = default;
     CallThreads(const CallThreads&) = delete;
     CallThreads& operator=(const CallThreads&) = delete;
 
-    /// Runs `work`, which throws nothing, on a new thread. Throws std::system_error if the system has none.
+    /// Runs `work` on a new thread. Requires: `work` does not throw. Throws: std::system_error if no thread can be created.
     void start(std::function<void()> work);
 
 private:

@@ -18,13 +18,14 @@ namespace octopair::service {
 namespace {
 
 using Service = v1::Octopair;
-using Stated = Service::WithCallbackMethod_Describe<Service::Service>;
-using OfJobs = Service::WithCallbackMethod_Status<Service::WithCallbackMethod_Wait<
-    Service::WithCallbackMethod_Cancel<Service::WithCallbackMethod_Release<Service::WithCallbackMethod_List<Stated>>>>>;
-/// The calls whose messages have large fields take the messages as bytes, not parsed.
-using Detached = Service::WithRawCallbackMethod_Submit<Service::WithRawCallbackMethod_Result<OfJobs>>;
+using WithDescribe = Service::WithCallbackMethod_Describe<Service::Service>;
+using WithJobCalls =
+    Service::WithCallbackMethod_Status<Service::WithCallbackMethod_Wait<Service::WithCallbackMethod_Cancel<
+        Service::WithCallbackMethod_Release<Service::WithCallbackMethod_List<WithDescribe>>>>>;
+/// Calls whose messages have large fields receive raw bytes: protobuf would copy the large fields.
+using WithDetachedCalls = Service::WithRawCallbackMethod_Submit<Service::WithRawCallbackMethod_Result<WithJobCalls>>;
 using Methods = Service::WithRawCallbackMethod_Detect<
-    Service::WithRawCallbackMethod_DetectSmall<Service::WithRawCallbackMethod_Scene<Detached>>>;
+    Service::WithRawCallbackMethod_DetectSmall<Service::WithRawCallbackMethod_Scene<WithDetachedCalls>>>;
 
 class Calls final : public Methods {
 public:
@@ -71,7 +72,7 @@ public:
     grpc::ServerUnaryReactor* Describe(grpc::CallbackServerContext* context, const v1::DescribeRequest*,
                                        v1::ServerDescription* description) override {
         std::string owner;
-        const grpc::Status status = server_.let_in(*context, owner);
+        const grpc::Status status = server_.admit(*context, owner);
         if (status.ok()) describe(*description);
         grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
         reactor->Finish(status);
@@ -85,17 +86,17 @@ private:
         description.set_algorithm(algorithm_version);
         description.set_engine(server_.options.engine_name);
         description.set_detached(!server_.options.state_folder.empty());
-        v1::Limits& told = *description.mutable_limits();
-        told.set_objects(limits.objects);
-        told.set_input_bytes(limits.input_bytes);
-        told.set_pairs(limits.pairs);
-        told.set_jobs(limits.jobs);
-        told.set_jobs_per_client(limits.jobs_per_client);
-        told.set_connections(limits.connections);
-        told.set_job_seconds(limits.job_seconds);
-        told.set_memory_bytes(limits.memory_bytes);
-        told.set_state_bytes(limits.state_bytes);
-        told.set_message_bytes(most_message_bytes);
+        v1::Limits& described = *description.mutable_limits();
+        described.set_objects(limits.objects);
+        described.set_input_bytes(limits.input_bytes);
+        described.set_pairs(limits.pairs);
+        described.set_jobs(limits.jobs);
+        described.set_jobs_per_client(limits.jobs_per_client);
+        described.set_connections(limits.connections);
+        described.set_job_seconds(limits.job_seconds);
+        described.set_memory_bytes(limits.memory_bytes);
+        described.set_state_bytes(limits.state_bytes);
+        described.set_message_bytes(most_message_bytes);
     }
 
     ServerContext& server_;

@@ -1,4 +1,4 @@
-// The calls of octopair.proto as a service that gRPC can register: each of them goes to its own file.
+// The gRPC service of octopair.proto. The service forwards each call to the file that implements the call.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace octopair::service {
 
 class ServerContext;
 
-/// `server` outlives the service.
+/// Requires: `server` outlives the service.
 std::unique_ptr<grpc::Service> make_calls(ServerContext& server);
 
 }  // namespace octopair::service

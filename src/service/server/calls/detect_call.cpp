@@ -18,7 +18,7 @@ namespace octopair::service {
 
 namespace {
 
-/// Reads the upload, queues the job, and sends its pairs, all at once.
+/// The call Detect: reads the upload, queues the job, and sends its pairs while they are found.
 class DetectCall final : public DownloadCall<grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>>,
                          public std::enable_shared_from_this<DetectCall> {
 public:
@@ -49,7 +49,7 @@ private:
         server().server_log.received(in_.Length());
         upload_.take(in_);
         if (upload_.complete() && !queued_) queue();
-        if (upload_.moves()) moved();
+        if (upload_.take_progress()) note_progress();
         StartRead(&in_);
     }
 
@@ -58,7 +58,8 @@ private:
         attached_ = server().attached.take(1);
         const std::shared_ptr<ServerJob> job = this->job();
         job->queue();
-        // A client that comes back may find its own job of before, whose connection was not seen to break yet.
+        // A client may reconnect before the server notices that its old connection broke. Its old job is then still in the
+        // table.
         for (auto before = server().jobs.enter(job); before != job; before = server().jobs.enter(job)) {
             before->cancel();
             server().jobs.remove(*before);
@@ -78,7 +79,7 @@ private:
         }
     }
 
-    void waits(bool downloading) override {
+    void handle_stall(bool downloading) override {
         if (!downloading) refuse(server().refuse_stalled(owner()));
     }
 
@@ -87,17 +88,17 @@ private:
         return job_;
     }
 
-    // The reading side's.
+    // Used by the reading side only.
     grpc::ByteBuffer in_;
     Upload upload_;
     bool queued_ = false;
     Budget::Reservation attached_;
 
     mutable std::mutex job_mutex_;
-    std::shared_ptr<ServerJob> job_;  // none before the first message
+    std::shared_ptr<ServerJob> job_;  // null before the first message
 };
 
-/// Answers when the job has ended.
+/// The call DetectSmall: answers when the job has ended.
 class SmallCall final : public grpc::ServerUnaryReactor,
                         public JobWatcher,
                         public std::enable_shared_from_this<SmallCall> {
@@ -108,7 +109,7 @@ public:
     void start(grpc::ByteBuffer request) {
         self_ = shared_from_this();
         std::string owner;
-        const grpc::Status status = server_.let_in(context_, owner);
+        const grpc::Status status = server_.admit(context_, owner);
         if (!status.ok()) return answer({}, status);
         server_.server_log.received(request.Length());
         Upload upload([&](v1::JobSpec spec) -> InputTarget& {
@@ -153,7 +154,7 @@ private:
                                     "the result is too large for one message; ask for it in a stream"));
     }
 
-    /// Once.
+    /// Finishes the call. Has no effect after the first time.
     void answer(const grpc::ByteBuffer& message, const grpc::Status& status) {
         {
             const std::lock_guard lock(mutex_);
@@ -167,7 +168,7 @@ private:
     ServerContext& server_;
     grpc::CallbackServerContext& context_;
     grpc::ByteBuffer& response_;
-    std::shared_ptr<SmallCall> self_;  // until the call is done
+    std::shared_ptr<SmallCall> self_;  // keeps the object alive until OnDone
     std::shared_ptr<ServerJob> job_;
     Budget::Reservation attached_;
     std::mutex mutex_;

@@ -1,4 +1,4 @@
-// The calls that are a job each: Detect, in a stream, and DetectSmall, in one message each way.
+// The calls that run one attached job: Detect (streams in both directions) and DetectSmall (one message in each direction).
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -8,7 +8,7 @@ namespace octopair::service {
 
 class ServerContext;
 
-/// `server` outlives the call.
+/// Requires: `server` outlives the call.
 grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(ServerContext& server,
                                                                           grpc::CallbackServerContext& context);
 grpc::ServerUnaryReactor* start_detect_small(ServerContext& server, grpc::CallbackServerContext& context,

@@ -1,4 +1,4 @@
-// Download: the messages that bring a job's pairs to a client, from an offset on.
+// Download: makes the messages that send a job's pairs to a client, starting at a given pair.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -18,10 +18,10 @@ public:
 
     struct Next {
         enum class Kind : std::uint8_t { wait, message, last } kind = Kind::wait;
-        grpc::ByteBuffer message;  ///< of `message`, and of `last` if its status is OK
-        grpc::Status status;       ///< of `last`
+        grpc::ByteBuffer message;  ///< set for `message`, and for `last` if `status` is OK
+        grpc::Status status;       ///< status of the call; set for `last`
     };
-    /// What can be sent now: nothing yet, a message, or the last with the status that ends the call.
+    /// Returns what to send next: nothing yet, a message, or the last message and the status that ends the call.
     Next next();
 
 private:

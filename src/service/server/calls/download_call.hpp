@@ -1,7 +1,9 @@
-// DownloadCall: a call that brings a job's pairs to a client: the half of it that writes.
+// DownloadCall: base class of calls that send a job's pairs to a client. It implements the writing half of the call.
 //
-// Whatever may be written is written as soon as nothing else is. What gRPC is asked to do may call back on the spot, so it is
-// asked with no lock held; `writing_` and `finished_` say whose turn it is.
+// Invariants:
+//  - At most one write is in progress: `writing_` is true from StartWrite until OnWriteDone.
+//  - Nothing is written after `finished_` is true.
+//  - No lock is held while gRPC is called, because gRPC may call back before it returns.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -21,7 +23,8 @@
 
 namespace octopair::service {
 
-/// Reactor: gRPC's, of a call that streams bytes to the client. Owned by a shared pointer, and by itself while it runs.
+/// `Reactor`: gRPC's reactor of a call that streams bytes to the client. A shared pointer owns the object. While the call runs,
+/// the object also owns itself (`self_`).
 template <typename Reactor>
 class DownloadCall : public Reactor, public JobWatcher, public Watched {
 public:
@@ -46,25 +49,26 @@ public:
 
     void job_changed() final { pump(); }
 
-    void look(std::chrono::steady_clock::time_point now) final {
+    void check_deadline(std::chrono::steady_clock::time_point now) final {
         bool stuck = false, downloading = false;
         {
             const std::lock_guard lock(mutex_);
             if (finished_) return;
             downloading = download_.has_value();
-            const bool late = now - moved_ >= server_.options.stall;
+            const bool late = now - last_progress_ >= server_.options.stall;
             stuck = late && writing_;
             if (!late && !(downloading && server_.draining)) return;
         }
         if (stuck) return context_.TryCancel();
-        waits(downloading);
+        handle_stall(downloading);
     }
 
 protected:
-    /// From here to done() the call holds itself, which is what `self` points to. False: the caller is not let in.
+    /// Starts the call and admits the caller. Returns false if the caller is refused. The call keeps `self` until done().
+    /// Requires: `self` points to this object.
     bool begin(std::shared_ptr<DownloadCall> self) {
         self_ = std::move(self);
-        const grpc::Status status = server_.let_in(context_, owner_);
+        const grpc::Status status = server_.admit(context_, owner_);
         if (!status.ok()) refuse(status);
         if (status.ok()) server_.watchdog.watch(self_);
         return status.ok();
@@ -73,12 +77,13 @@ protected:
     const std::string& owner() const { return owner_; }
     ServerContext& server() { return server_; }
 
-    /// The client has sent enough.
-    void moved() {
+    /// Restarts the stall timeout: the client has sent enough data.
+    void note_progress() {
         const std::lock_guard lock(mutex_);
-        moved_ = std::chrono::steady_clock::now();
+        last_progress_ = std::chrono::steady_clock::now();
     }
 
+    /// Sends the pairs of `job`, starting at pair `offset`, as they are found.
     void send(const std::shared_ptr<ServerJob>& job, std::uint64_t offset) {
         {
             const std::lock_guard lock(mutex_);
@@ -88,7 +93,7 @@ protected:
         pump();
     }
 
-    /// Ends the call as soon as nothing is being written.
+    /// Ends the call with `status`, after the write in progress.
     void refuse(const grpc::Status& status) {
         {
             const std::lock_guard lock(mutex_);
@@ -99,13 +104,13 @@ protected:
     }
 
 private:
-    /// The call will end without the rest of the pairs.
+    /// Called when the call is going to end before all pairs were sent.
     virtual void refused() {}
     virtual void done() {}
-    /// Nothing was to be written for long; or pairs are, and the server is going down.
-    virtual void waits(bool downloading) = 0;
+    /// Called when nothing was written for the stall timeout, or when pairs are sent while the server shuts down.
+    virtual void handle_stall(bool downloading) = 0;
 
-    /// Writes what there is, unless something is being written.
+    /// Writes the next message if one is ready and no write is in progress.
     void pump() {
         Download::Next next;
         {
@@ -114,7 +119,7 @@ private:
             next = refusal_ ? Download::Next{Download::Next::Kind::last, {}, *refusal_} : download_->next();
             if (next.kind == Download::Next::Kind::wait) return;
             (next.kind == Download::Next::Kind::last ? finished_ : writing_) = true;
-            moved_ = std::chrono::steady_clock::now();
+            last_progress_ = std::chrono::steady_clock::now();
             out_ = next.message;
         }
         server_.server_log.sent(out_.Length());
@@ -125,14 +130,15 @@ private:
 
     ServerContext& server_;
     grpc::CallbackServerContext& context_;
-    std::shared_ptr<DownloadCall> self_;  // until the call is done
+    std::shared_ptr<DownloadCall> self_;  // keeps the object alive until OnDone
     std::string owner_;
 
     std::mutex mutex_;
     std::optional<Download> download_;
     std::optional<grpc::Status> refusal_;
     grpc::ByteBuffer out_;
-    std::chrono::steady_clock::time_point moved_ = std::chrono::steady_clock::now();  // enough read, or begun to write
+    /// Time of the last progress of the upload, or of the start of a write.
+    std::chrono::steady_clock::time_point last_progress_ = std::chrono::steady_clock::now();
     bool writing_ = false;
     bool finished_ = false;
 };

@@ -20,12 +20,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls `answer` with the caller's name, and ends the call with what it throws, if it does.
+/// Calls `answer` with the caller's name, and finishes the call. An exception of `answer` becomes the status of the call.
 template <typename Answer>
 grpc::ServerUnaryReactor* answer_at_once(ServerContext& server, grpc::CallbackServerContext& context, Answer&& answer) {
     grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
     std::string owner;
-    grpc::Status status = server.let_in(context, owner);
+    grpc::Status status = server.admit(context, owner);
     try {
         if (status.ok()) answer(owner);
     } catch (...) {
@@ -35,7 +35,7 @@ grpc::ServerUnaryReactor* answer_at_once(ServerContext& server, grpc::CallbackSe
     return reactor;
 }
 
-/// Answers when the job has ended, the time is over, or the server goes down.
+/// The calls Wait and Cancel: answer when the job has ended or the time is over. They fail when the server shuts down.
 class WaitCall final : public grpc::ServerUnaryReactor,
                        public JobWatcher,
                        public Watched,
@@ -52,7 +52,7 @@ public:
     void start(const grpc::CallbackServerContext& context, const Terms& terms) {
         self_ = shared_from_this();
         std::string owner;
-        const grpc::Status status = server_.let_in(context, owner);
+        const grpc::Status status = server_.admit(context, owner);
         if (!status.ok()) return end(status);
         try {
             job_ = server_.jobs.find(owner, terms.id);
@@ -73,7 +73,7 @@ public:
         if (job_->ended()) answer();
     }
 
-    void look(Clock::time_point now) override {
+    void check_deadline(Clock::time_point now) override {
         if (now >= until_) return answer();
         if (server_.draining) end({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
     }
@@ -99,7 +99,7 @@ private:
 
     ServerContext& server_;
     v1::JobReport& response_;
-    std::shared_ptr<WaitCall> self_;  // until the call is done
+    std::shared_ptr<WaitCall> self_;  // keeps the object alive until OnDone
     std::shared_ptr<ServerJob> job_;
     Clock::time_point until_{};
     std::mutex mutex_;
@@ -108,32 +108,33 @@ private:
 
 }  // namespace
 
-grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
-                                       v1::JobReport& response) {
-    return answer_at_once(
-        server, context, [&](const std::string& owner) { response = server.report(*server.jobs.find(owner, request.id())); });
+grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context,
+                                       const v1::JobName& request, v1::JobReport& response) {
+    return answer_at_once(server, context, [&](const std::string& owner) {
+        response = server.report(*server.jobs.find(owner, request.id()));
+    });
 }
 
-grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context, const v1::WaitRequest& request,
-                                     v1::JobReport& response) {
+grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context,
+                                     const v1::WaitRequest& request, v1::JobReport& response) {
     const auto call = std::make_shared<WaitCall>(server, response);
     call->start(context, {request.id(), request.seconds()});
     return call.get();
 }
 
-grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
-                                       v1::JobReport& response) {
+grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context,
+                                       const v1::JobName& request, v1::JobReport& response) {
     constexpr double seconds = 10;
     const auto call = std::make_shared<WaitCall>(server, response);
     call->start(context, {request.id(), seconds, true});
     return call.get();
 }
 
-grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context, const v1::JobName& request,
-                                        v1::JobReport& response) {
+grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context,
+                                        const v1::JobName& request, v1::JobReport& response) {
     grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
     std::string owner;
-    const grpc::Status status = server.let_in(context, owner);
+    const grpc::Status status = server.admit(context, owner);
     std::shared_ptr<ServerJob> job;
     try {
         if (status.ok()) job = server.jobs.find(owner, request.id());
@@ -155,9 +156,9 @@ grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackSer
     return reactor;
 }
 
-grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context, const v1::ListRequest& request,
-                                     v1::JobList& response) {
-    constexpr std::size_t most = 1000;  // they fit into a message
+grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context,
+                                     const v1::ListRequest& request, v1::JobList& response) {
+    constexpr std::size_t most = 1000;  // reports of so many jobs fit into one message
     return answer_at_once(server, context, [&](const std::string& owner) {
         auto jobs = server.jobs.of(owner, request.after(), most + 1);
         response.set_more(jobs.size() > most);

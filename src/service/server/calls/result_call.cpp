@@ -21,10 +21,11 @@ public:
         try {
             server().server_log.received(request.Length());
             v1::ResultRequest asked;
-            if (!unpack(request, asked)) throw Error(ErrorCode::bad_input, "a message that is none");
+            if (!unpack(request, asked)) throw Error(ErrorCode::bad_input, "the message cannot be parsed");
             job_ = server().jobs.find(owner(), asked.id());
             check(asked);
-            piece_ = server().memory.take(piece_bytes);  // what is on its way to a client, even one that does not read
+            // A piece stays in memory until the client has read it.
+            piece_ = server().memory.take(piece_bytes);
             send(job_, asked.offset());
         } catch (...) {
             refuse(status_of_exception());
@@ -35,14 +36,16 @@ private:
     void check(const v1::ResultRequest& asked) const {
         if (!job_->detached()) {
             throw Error(ErrorCode::bad_input,
-                        "job " + asked.id() + " is not detached: its result goes to its own call");
+                        "job " + asked.id() + " is not detached: only the call that submitted it receives its result");
         }
         if (!asked.hash().empty() && asked.hash() != job_->input_hash()) {
-            throw Error(ErrorCode::bad_input, "job " + asked.id() + " is another one than the pieces before came from");
+            throw Error(ErrorCode::bad_input,
+                        "job " + asked.id() +
+                            " has another hash than the job of the earlier pieces; read its result from the start");
         }
     }
 
-    void waits(bool) override {
+    void handle_stall(bool) override {
         if (!server().draining || !job_ || job_->ended()) return;
         refuse({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
     }

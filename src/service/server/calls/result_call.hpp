@@ -1,4 +1,4 @@
-// The call Result: the pairs of a detached job, from a place on, as they are found.
+// The call Result: streams the pairs of a detached job, starting at a given pair, as they are found.
 #pragma once
 
 #include <grpcpp/server_context.h>

@@ -25,7 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Bytes of `first`, then of `second`, from `offset` on.
+/// Returns the concatenation of `first` and `second` from `offset` on, at most `piece_bytes` bytes.
 grpc::Slice piece_of(Bytes first, Bytes second, std::size_t offset) {
     grpc::Slice piece = make_slice(std::min(first.size() + second.size() - offset, piece_bytes));
     std::span<std::byte> room = room_in(piece);
@@ -38,8 +38,9 @@ grpc::Slice piece_of(Bytes first, Bytes second, std::size_t offset) {
     return piece;
 }
 
-/// A thread of its own takes the messages, steps and answers; it alone asks gRPC for anything after the first read. gRPC's
-/// threads tell it what has come to pass, and the watchdog when it has waited too long.
+/// The call Scene, with a thread of its own. The thread reads the messages, steps the scene and writes the answers; it alone
+/// starts reads and writes. Threads of gRPC report finished reads and writes, and the watchdog ends the call when it takes too
+/// long.
 class SceneCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                         public Watched,
                         public std::enable_shared_from_this<SceneCall> {
@@ -48,10 +49,10 @@ public:
 
     void start() {
         self_ = shared_from_this();
-        const grpc::Status status = server_.let_in(context_, owner_);
+        const grpc::Status status = server_.admit(context_, owner_);
         if (!status.ok()) return Finish(status);
         try {
-            place_ = server_.places.enter(owner_);
+            slot_ = server_.job_quota.take_slot(owner_);
             server_.threads.start([call = self_] { call->work(); });
         } catch (const LimitError& error) {
             return Finish(refused(error));
@@ -73,7 +74,7 @@ public:
     void OnCancel() override { end_by({grpc::StatusCode::CANCELLED, "cancelled"}); }
     void OnDone() override { self_.reset(); }
 
-    void look(Clock::time_point now) override {
+    void check_deadline(Clock::time_point now) override {
         Doing late = Doing::working;
         {
             const std::lock_guard lock(mutex_);
@@ -95,7 +96,7 @@ public:
 
 private:
     enum class Read : std::uint8_t { none, came, ended };
-    /// idle: between frames; waiting: for what is missing of one.
+    /// idle: waits between frames. waiting: waits for the rest of a frame.
     enum class Doing : std::uint8_t { working, idle, waiting, stepping, writing };
 
     void work() {
@@ -110,7 +111,7 @@ private:
             status = status_of_exception();
         }
         scene_.reset();
-        place_ = {};
+        slot_ = {};
         {
             const std::lock_guard lock(mutex_);
             if (refusal_) status = *refusal_;
@@ -118,14 +119,14 @@ private:
         Finish(status);
     }
 
-    /// False at the end of the call.
+    /// Processes the next message. Returns false at the end of the call.
     bool take_message() {
         if (!wait_for_message()) return false;
-        StartRead(&in_);  // the next one comes while this one is worked on
+        StartRead(&in_);  // reads the next message while this one is processed
         server_.server_log.received(message_.Length());
         v1::SceneUpload small;
         if (!unpack(message_, small, [this](Bytes piece) { calls_.append(piece); })) {
-            throw Error(ErrorCode::bad_input, "a message that is none");
+            throw Error(ErrorCode::bad_input, "the message cannot be parsed");
         }
         message_.Clear();
         for (RecordedCall call; calls_.next(call);) {
@@ -133,7 +134,7 @@ private:
             call.kind == RecordKind::step ? step() : scene_->make(call);
             in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
         }
-        in_frame_ |= calls_.cut();
+        in_frame_ |= calls_.is_incomplete();
         return true;
     }
 
@@ -174,19 +175,19 @@ private:
             const grpc::Slice piece = piece_of(began, ended, sent);
             sent += piece.size();
             if (sent == all) {
-                v1::SceneStep& told = *small.mutable_result();
-                told.set_began(result.began.size());
-                told.set_ended(result.ended.size());
-                told.set_persisting(result.persisting);
-                told.set_full(result.full);
-                told.set_seconds(result.seconds);
+                v1::SceneStep& step_result = *small.mutable_result();
+                step_result.set_began(result.began.size());
+                step_result.set_ended(result.ended.size());
+                step_result.set_persisting(result.persisting);
+                step_result.set_full(result.full);
+                step_result.set_seconds(result.seconds);
             }
             write(pack(small, piece));
         }
     }
 
     void write(const grpc::ByteBuffer& message) {
-        out_ = message;  // its bytes are shared
+        out_ = message;  // shares the bytes
         {
             const std::lock_guard lock(mutex_);
             begin(Doing::writing);
@@ -198,7 +199,7 @@ private:
         if (broken_) throw Error(ErrorCode::cancelled, "the client does not read");
     }
 
-    /// With the lock held.
+    /// Requires: mutex_ is locked.
     void begin(Doing doing) {
         doing_ = doing;
         since_ = Clock::now();
@@ -218,7 +219,8 @@ private:
         stop_.request_stop();
     }
 
-    /// With the lock held: what is being done has taken too long, or must not go on.
+    /// Returns whether the current activity has taken too long, or must end because the server shuts down. Requires: mutex_ is
+    /// locked.
     bool is_late(Clock::time_point now) const {
         const auto took = now - since_;
         const double most_seconds = server_.options.limits.job_seconds;
@@ -243,25 +245,25 @@ private:
 
     grpc::Status stalled() {
         const auto seconds = std::uint64_t(server_.options.stall.count());
-        return refused(
-            LimitError("stall_seconds", seconds,
-                       "stall_seconds: nothing came for " + std::to_string(seconds) + " s in the middle of a frame"));
+        return refused(LimitError(
+            "stall_seconds", seconds,
+            "stall_seconds: nothing was received for " + std::to_string(seconds) + " s in the middle of a frame"));
     }
 
     grpc::Status stepped_too_long() { return refused(ran_too_long("the step", server_.options.limits.job_seconds)); }
 
     ServerContext& server_;
     grpc::CallbackServerContext& context_;
-    std::shared_ptr<SceneCall> self_;  // until the call is done
+    std::shared_ptr<SceneCall> self_;  // keeps the object alive until OnDone
     std::string owner_;
-    ClientCounts::Place place_;
+    JobQuota::Slot slot_;
     std::stop_source stop_;
-    // The thread's.
+    // Used by the call's thread; gRPC fills in_ during a read.
     grpc::ByteBuffer in_, message_, out_;
     UploadedCalls calls_;
     std::optional<ServerScene> scene_;
     std::uint64_t steps_ = 0;
-    bool in_frame_ = true;  // something has come of the next frame; a call begins like that
+    bool in_frame_ = true;  // a part of the next frame was received, or the scene's options are missing
 
     std::mutex mutex_;
     std::condition_variable changed_;

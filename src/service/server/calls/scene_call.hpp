@@ -1,4 +1,4 @@
-// The call Scene as a gRPC reactor, which lives until its call is done.
+// The call Scene as a gRPC reactor. The reactor deletes itself when the call is done.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>

@@ -10,9 +10,9 @@ namespace octopair::service {
 
 namespace {
 
-// As octopair/scene.hpp says.
+// Memory for each object, as octopair/scene.hpp documents.
 constexpr std::uint64_t object_bytes = 120;
-/// Of messages on their way, and what is read from them.
+/// Memory for messages in transit and the calls decoded from them.
 constexpr std::uint64_t own_bytes = std::uint64_t(4) << 20;
 
 }  // namespace
@@ -32,7 +32,7 @@ void ServerScene::make(const RecordedCall& call) {
     if (call.kind == RecordKind::remove) removed_ += call.ids.size();
 }
 
-/// What takes memory is an index, whether there is an object at it or not.
+/// Memory is needed for each index, even if no object has the index at the moment.
 void ServerScene::make_room(std::uint64_t objects) {
     const std::uint64_t free = scene_.indices() - scene_.size() - removed_;
     const std::uint64_t fresh = objects - std::min(objects, free), all = scene_.indices() + fresh;

@@ -1,4 +1,4 @@
-// ServerScene: a client's scene on the server, within the server's limits.
+// ServerScene: a client's scene on the server, checked against the server's limits.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace octopair::service {
 
-/// Throws Error as Scene does, and a LimitError where a limit would be passed: of memory before it is taken, of pairs once a
-/// step has found them.
+/// Throws: Error in the cases in which Scene throws; LimitError if a limit is exceeded. The memory limit is checked before
+/// memory is allocated, the limit of pairs after a step has found them.
 class ServerScene {
 public:
     ServerScene(ServerContext& server, const SceneOptions& options);
     ServerScene(const ServerScene&) = delete;
     ServerScene& operator=(const ServerScene&) = delete;
 
-    /// Any but a step.
+    /// Applies `call` to the scene. Steps and results are ignored: use step() for a step.
     void make(const RecordedCall& call);
     const StepResult& step(const std::stop_token& stop);
 
@@ -30,8 +30,8 @@ private:
     ServerContext& server_;
     Budget::Reservation memory_;
     Scene scene_;
-    std::uint64_t removed_ = 0;  // since the last step: their indices are not free yet
-    std::vector<ObjectId> ids_;  // of an addition
+    std::uint64_t removed_ = 0;  // objects removed since the last step; their indices are not free yet
+    std::vector<ObjectId> ids_;  // ids of the latest addition; a member to reuse its memory
 };
 
 }  // namespace octopair::service

@@ -19,7 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Reads the upload, then has it committed by an errand, which answers. Whatever ends the call first, ends it alone.
+/// The call Submit: reads the upload; then a task of the disk queue commits the job and answers. Only the first end() takes
+/// effect.
 class SubmitCall final : public grpc::ServerReadReactor<grpc::ByteBuffer>,
                          public Watched,
                          public std::enable_shared_from_this<SubmitCall> {
@@ -32,7 +33,7 @@ public:
 
     void start(const grpc::CallbackServerContext& context) {
         self_ = shared_from_this();
-        const grpc::Status status = server_.let_in(context, owner_);
+        const grpc::Status status = server_.admit(context, owner_);
         if (!status.ok()) return end(status);
         if (!server_.detached) {
             return end(status_of(Error(ErrorCode::usage, "the server has no state folder: it takes no detached jobs")));
@@ -52,9 +53,9 @@ public:
         } catch (...) {
             return end(status_of_exception());
         }
-        if (upload_.moves()) {
+        if (upload_.take_progress()) {
             const std::lock_guard lock(mutex_);
-            moved_ = Clock::now();
+            last_progress_ = Clock::now();
         }
         StartRead(&in_);
     }
@@ -62,10 +63,10 @@ public:
     void OnCancel() override { end_unless_committing({grpc::StatusCode::CANCELLED, "cancelled"}); }
     void OnDone() override { self_.reset(); }
 
-    void look(Clock::time_point now) override {
+    void check_deadline(Clock::time_point now) override {
         {
             const std::lock_guard lock(mutex_);
-            if (ended_ || committing_ || now - moved_ < server_.options.stall) return;
+            if (ended_ || committing_ || now - last_progress_ < server_.options.stall) return;
         }
         end_unless_committing(server_.refuse_stalled(owner_));
     }
@@ -83,8 +84,9 @@ private:
     void commit_now() {
         try {
             const auto job = server_.detached->commit(submission_);
-            // It was released while it was submitted again: the client does so once more.
-            if (!job) return end({grpc::StatusCode::UNAVAILABLE, "the job was released meanwhile"});
+            // The job existed at the start of this upload, and was released since. The client submits it again.
+            if (!job)
+                return end({grpc::StatusCode::UNAVAILABLE, "the job was released during its upload; submit it again"});
             response_ = pack(server_.report(*job));
             server_.server_log.sent(response_.Length());
             end(grpc::Status::OK);
@@ -111,15 +113,15 @@ private:
 
     ServerContext& server_;
     grpc::ByteBuffer& response_;
-    std::shared_ptr<SubmitCall> self_;  // until the call is done
+    std::shared_ptr<SubmitCall> self_;  // keeps the object alive until OnDone
     std::string owner_;
-    // The reading side's, then the errand's.
+    // Used by the reading side, then by the task of the disk queue.
     grpc::ByteBuffer in_;
     Submission submission_;
     Upload upload_;
 
     std::mutex mutex_;
-    Clock::time_point moved_ = Clock::now();  // when enough was last read
+    Clock::time_point last_progress_ = Clock::now();  // time of the last progress of the upload
     bool committing_ = false;
     bool ended_ = false;
 };

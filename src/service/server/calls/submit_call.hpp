@@ -1,4 +1,4 @@
-// The call Submit: a job whose input goes to the state folder.
+// The call Submit: stores a detached job in the state folder and queues it.
 #pragma once
 
 #include <grpcpp/server_context.h>

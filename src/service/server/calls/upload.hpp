@@ -1,4 +1,4 @@
-// Upload: the messages of a client that make a job: what it asks, then its data.
+// Upload: reads the messages with which a client submits a job: first the job spec, then the job's input.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +19,27 @@ namespace octopair::service {
 
 class Upload {
 public:
-    /// Makes the job, and says where its input goes; that must live until it is complete.
+    /// Creates the job and returns the target of its input. Requires: the target lives until the input is complete.
     using Begin = std::function<InputTarget&(v1::JobSpec)>;
 
     explicit Upload(Begin begin) : begin_(std::move(begin)) {}
 
-    /// Throws Error: what `begin` throws, and Error{bad_input} for a message that has no place here.
+    /// Reads the next message. Throws: what `begin` throws; Error{bad_input} for a message that is invalid or unexpected.
     void take(grpc::ByteBuffer& message);
     bool complete() const { return target_ != nullptr && missing_ == 0; }
-    /// Whether enough came since this was last true: messages with next to nothing do not keep an upload alive.
-    bool moves();
-    /// No more messages will come. Throws Error{bad_input} if some are missing.
+    /// Returns whether at least 64 KiB were received since the call that last returned true. A client that sends tiny messages
+    /// therefore still runs into the stall timeout.
+    bool take_progress();
+    /// Ends the upload. Throws: Error{bad_input} if a part of the job is missing.
     void finish() const;
 
 private:
     void append(std::span<const std::byte> data);
 
     Begin begin_;
-    InputTarget* target_ = nullptr;  // none before the first message
-    std::uint64_t missing_ = 0;      // bytes of the input
-    std::size_t came_ = 0;           // bytes since it moved
+    InputTarget* target_ = nullptr;  // null before the first message
+    std::uint64_t missing_ = 0;      // bytes of the input that were not received yet
+    std::size_t new_bytes_ = 0;      // bytes received since take_progress() returned true
 };
 
 }  // namespace octopair::service

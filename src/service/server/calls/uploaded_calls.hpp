@@ -1,4 +1,4 @@
-// UploadedCalls: the calls of a scene, read from the pieces in which they come (SceneUpload).
+// UploadedCalls: reads the calls of a scene from the pieces of a recording that SceneUpload messages carry.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace octopair::service {
 
-/// Keeps no more than a record that is not complete, and the piece before it was read.
+/// Memory: at most one incomplete record and the piece that was appended last.
 class UploadedCalls {
 public:
-    /// Of a record, with what stands around it.
+    /// Maximum size of a record, with its head and checksum.
     static constexpr std::uint64_t most_record_bytes = std::uint64_t(2) << 20;
 
     UploadedCalls() = default;
@@ -22,17 +22,18 @@ public:
     UploadedCalls& operator=(const UploadedCalls&) = delete;
 
     void append(std::span<const std::byte> piece);
-    /// The next call that is complete, if there is one. Its spans are valid until anything else here is called. Throws
-    /// Error{bad_input} "scene: byte OFFSET: ..." for what is none.
+    /// Reads the next complete call into `call` and returns true, or returns false if more bytes are needed. The spans of
+    /// `call` are valid until the next call of a member function. Throws: Error{bad_input} "scene: byte OFFSET: ..." for
+    /// invalid bytes.
     bool next(RecordedCall& call);
-    /// What came ends within a call, or before the scene's options.
-    bool cut() const { return !reader_ || end_ > reader_->position(); }
-    /// Of the scene; once next() was true.
+    /// Returns whether the received bytes end within a call, or before the end of the scene's options.
+    bool is_incomplete() const { return !reader_ || end_ > reader_->position(); }
+    /// Returns the options of the scene. Requires: next() has returned true.
     const SceneOptions& options() const { return reader_->options(); }
 
 private:
-    std::vector<std::byte> kept_;  // the last bytes before end_
-    std::uint64_t end_ = 0;        // of all that came
+    std::vector<std::byte> kept_;  // the last received bytes, up to offset end_
+    std::uint64_t end_ = 0;        // number of bytes received
     std::optional<RecordingReader> reader_;
 };
 

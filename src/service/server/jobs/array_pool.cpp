@@ -7,9 +7,9 @@ namespace octopair::service {
 
 namespace {
 
-/// Smaller arrays are the allocator's to keep.
+/// Minimum size of a pooled array. The allocator reuses smaller ones well enough.
 constexpr std::uint64_t least_spare_bytes = std::uint64_t(1) << 20;
-/// The bytes that all spare arrays may have together.
+/// Maximum size of all pooled arrays together.
 constexpr std::uint64_t most_spare_bytes = std::uint64_t(128) << 20;
 
 std::uint64_t size_of(const AnyBoxes& boxes) {
@@ -48,7 +48,7 @@ void ArrayPool::give(const Engine& engine, AnyBoxes boxes) noexcept {
     try {
         spares_.push_back({&engine, std::move(boxes)});
         bytes_ += bytes;
-    } catch (const std::bad_alloc&) {  // then they go
+    } catch (const std::bad_alloc&) {  // the array is freed
     }
 }
 

@@ -1,5 +1,5 @@
-// ArrayPool: the arrays of jobs that ended, for the next ones: memory that a job had before need not be cleared by the system,
-// which takes a third as long as a search of these boxes.
+// ArrayPool: keeps the box arrays of ended jobs for later jobs. The system need not clear memory that a job has used before;
+// clearing takes a third as long as a search of these boxes.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@ namespace octopair::service {
 
 using AnyBoxes = std::variant<BoxArray<Box3f>, BoxArray<Box3d>>;
 
-/// Thread-safe.
+/// Thread safety: safe.
 class ArrayPool {
 public:
-    /// At least `count` boxes, where `engine` reads them. Throws Error.
+    /// Returns a pooled or new array of at least `count` boxes in memory of `engine`. Throws: Error.
     template <typename Real>
     BoxArray<Box<Real>> take(Engine& engine, std::uint64_t count) {
         AnyBoxes spare = find(engine, AnyBoxes(BoxArray<Box<Real>>()).index(), count);
         auto& boxes = std::get<BoxArray<Box<Real>>>(spare);
         return boxes.size() >= count && count > 0 ? std::move(boxes) : engine.allocate_boxes<Box<Real>>(count);
     }
-    /// Keeps them, or not.
+    /// Returns `boxes` to the pool. The pool frees arrays that are too small or too large, and the oldest ones when it is full.
     void give(const Engine& engine, AnyBoxes boxes) noexcept;
-    /// Kept.
+    /// Returns the number of bytes in the pool.
     std::uint64_t bytes() const;
 
 private:
@@ -35,11 +35,12 @@ private:
         AnyBoxes boxes;
     };
 
-    /// One of the kind that is not much too large; or none, in that kind.
+    /// Takes out an array of type `kind` (index in AnyBoxes) with `count` to 9/8 `count` boxes. Returns an empty array of that
+    /// type if there is none.
     AnyBoxes find(const Engine& engine, std::size_t kind, std::uint64_t count);
 
     mutable std::mutex mutex_;
-    std::vector<Spare> spares_;  // from the oldest on
+    std::vector<Spare> spares_;  // oldest first
     std::uint64_t bytes_ = 0;
 };
 

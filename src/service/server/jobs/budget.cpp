@@ -14,7 +14,7 @@ Budget::Reservation Budget::take(std::uint64_t amount) {
     return {*this, amount};
 }
 
-Budget::Reservation Budget::take_anyway(std::uint64_t amount) {
+Budget::Reservation Budget::take_unchecked(std::uint64_t amount) {
     const std::lock_guard lock(mutex_);
     taken_ += amount;
     return {*this, amount};

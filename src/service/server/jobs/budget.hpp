@@ -1,4 +1,4 @@
-// Budget: an amount that many take from and give back to, and that refuses to be overdrawn.
+// Budget: a limited amount of a resource. Users reserve parts of the amount; a reservation beyond the limit is refused.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace octopair::service {
 
 class Budget {
 public:
-    /// Taken from a budget; given back when it goes.
+    /// An amount taken from a budget. The destructor gives it back.
     class Reservation {
     public:
         Reservation() = default;
@@ -24,7 +24,7 @@ public:
         ~Reservation() { give_back(); }
 
         std::uint64_t amount() const { return amount_; }
-        /// Throws as Budget::take.
+        /// Throws: as Budget::take.
         void grow(std::uint64_t amount);
         void shrink(std::uint64_t amount) noexcept;
         void give_back() noexcept { shrink(amount_); }
@@ -37,14 +37,15 @@ public:
         std::uint64_t amount_ = 0;
     };
 
-    /// `limit`: its name in messages (Limits); `unit`: as in "4 GiB bytes of memory". 0: there is no limit.
+    /// `limit`: name of the limit in messages, as in octopair.proto's Limits. `unit`: noun that follows the number in messages,
+    /// as in "bytes of memory". `total`: size of the budget; 0: unlimited.
     Budget(std::string limit, std::string unit, std::uint64_t total);
 
-    /// Throws a LimitError if more than there is would be taken. Thread-safe, as all here.
+    /// Reserves `amount`. Throws: LimitError if less is left. Thread safety: all members of Budget are safe.
     Reservation take(std::uint64_t amount);
-    /// Even if there is less: of what was taken before this budget was made.
-    Reservation take_anyway(std::uint64_t amount);
-    /// Throws a LimitError if take would always do, whoever gives back.
+    /// Reserves `amount` even beyond the limit. For resources that were in use before this budget existed.
+    Reservation take_unchecked(std::uint64_t amount);
+    /// Throws: LimitError if `amount` is more than the whole budget, so that take() can never succeed.
     void check(std::uint64_t amount) const;
     std::uint64_t taken() const;
     std::uint64_t total() const { return total_; }

@@ -1,4 +1,4 @@
-// InputTarget: where the input of a job goes, piece by piece.
+// InputTarget: receives the input of a job, piece by piece.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace octopair::service {
 class InputTarget {
 public:
     virtual ~InputTarget() = default;
-    /// Throws Error{bad_input} for more than the job has.
+    /// Throws: Error{bad_input} if `data` is longer than missing().
     virtual void append(std::span<const std::byte> data) = 0;
-    /// Bytes that have not come yet.
+    /// Returns the number of bytes that were not appended yet.
     virtual std::uint64_t missing() const = 0;
 };
 
-/// Throws Error{bad_input} if `data` is more than what is missing.
+/// Throws: Error{bad_input} if `data` has more than `missing` bytes.
 void check_fits(std::span<const std::byte> data, std::uint64_t missing);
 
 }  // namespace octopair::service

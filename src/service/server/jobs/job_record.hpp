@@ -1,4 +1,5 @@
-// JobRecord: what outlives the server of a job: its input until it is read, and how it ended.
+// JobRecord: the persistent part of a detached job, which outlives the server: the input until it is read, and how the job
+// ended.
 #pragma once
 
 #include <functional>
@@ -25,16 +26,17 @@ class JobRecord {
 public:
     virtual ~JobRecord() = default;
 
-    /// Of input and options.
+    /// Returns the hash of input and options.
     virtual std::string hash() const = 0;
-    /// What the job takes when it runs; none: there is not as much now.
+    /// Returns a reservation of the memory that the job needs to run, or nothing if not enough memory is free now.
     virtual std::optional<Budget::Reservation> ask_memory() = 0;
-    /// Throws Error{io_failed} for a file that is damaged, Error{cancelled} on a stop.
+    /// Reads the input into memory of `engine`. Throws: Error{io_failed} for a damaged file, Error{cancelled} after a stop
+    /// request.
     virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
-    /// When it returns, how the job ended lasts. Throws Error{io_failed}.
+    /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}.
     virtual void end(const v1::JobReport& ending) = 0;
-    /// Has this done soon where waiting for a disk holds nobody up.
-    virtual void later(std::function<void()> errand) = 0;
+    /// Runs `task` soon on the thread of the disk queue, where it may wait for disks.
+    virtual void run_on_disk_queue(std::function<void()> task) = 0;
 };
 
 }  // namespace octopair::service

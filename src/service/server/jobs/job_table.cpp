@@ -5,23 +5,23 @@
 
 namespace octopair::service {
 
-ClientCounts::ClientCounts(std::uint64_t most, std::uint64_t most_each)
-    : all_("jobs", "places for jobs", most), most_each_(most_each) {}
+JobQuota::JobQuota(std::uint64_t most, std::uint64_t most_each)
+    : all_("jobs", "job slots", most), most_each_(most_each) {}
 
-ClientCounts::Place ClientCounts::enter(const std::string& owner) {
-    auto share = std::make_shared<Budget::Reservation>(all_.take(1));
-    count_one_more(owner);
-    // If there is no memory for it, the deleter runs here: so not with the lock held.
-    Place place;
-    place.counted_ = std::shared_ptr<void>(share.get(), [this, share, owner](void*) {
+JobQuota::Slot JobQuota::take_slot(const std::string& owner) {
+    auto reservation = std::make_shared<Budget::Reservation>(all_.take(1));
+    add_client_slot(owner);
+    // The deleter locks mutex_. It also runs when this constructor throws std::bad_alloc, so the lock must not be held here.
+    Slot slot;
+    slot.counted_ = std::shared_ptr<void>(reservation.get(), [this, reservation, owner](void*) {
         const std::lock_guard lock(mutex_);
         const auto found = each_.find(owner);
         if (--found->second == 0) each_.erase(found);
     });
-    return place;
+    return slot;
 }
 
-void ClientCounts::count_one_more(const std::string& owner) {
+void JobQuota::add_client_slot(const std::string& owner) {
     const std::lock_guard lock(mutex_);
     std::uint64_t& count = each_[owner];
     if (most_each_ > 0 && count >= most_each_) {
@@ -38,7 +38,7 @@ std::shared_ptr<ServerJob> JobTable::enter(const std::shared_ptr<ServerJob>& job
     if (fresh) return job;
     const v1::JobReport known = entry->second->report();
     if (known.head().hash() != job->input_hash() || known.detached() != job->detached()) {
-        throw Error(ErrorCode::bad_input, "job " + known.id() + " is there already, with other input or options");
+        throw Error(ErrorCode::bad_input, "job " + known.id() + " already exists, with other input or options");
     }
     return entry->second;
 }

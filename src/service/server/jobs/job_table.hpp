@@ -1,4 +1,4 @@
-// JobTable: the jobs of a server, by their owner and id, and how many there may be.
+// JobTable: the jobs of a server, by owner and id. JobQuota: limits the number of jobs and scenes.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +15,31 @@ namespace octopair::service {
 
 class ServerJob;
 
-/// How many things clients have, in all and each.
-class ClientCounts {
+/// Limits the number of unfinished jobs and scenes, in total and for each client.
+class JobQuota {
 public:
-    /// One thing's; counted until it goes.
-    class Place {
+    /// A job or scene that counts against the quota until the slot is destroyed. Requires: the quota outlives the slot.
+    class Slot {
     public:
-        Place() = default;
-        Place(Place&& other) noexcept = default;
-        Place& operator=(Place&& other) noexcept = default;
+        Slot() = default;
+        Slot(Slot&& other) noexcept = default;
+        Slot& operator=(Slot&& other) noexcept = default;
 
     private:
-        friend class ClientCounts;
+        friend class JobQuota;
         std::shared_ptr<void> counted_;
     };
 
-    /// 0: no limit.
-    ClientCounts(std::uint64_t most, std::uint64_t most_each);
+    /// `most`: limit of all clients together. `most_each`: limit of each client. 0: no limit.
+    JobQuota(std::uint64_t most, std::uint64_t most_each);
 
-    /// Throws a LimitError. Thread-safe. Must not outlive this.
-    Place enter(const std::string& owner);
+    /// Throws: LimitError if no slot is free. Thread safety: safe.
+    Slot take_slot(const std::string& owner);
+    /// Returns the number of slots in use.
     std::uint64_t count() const { return all_.taken(); }
 
 private:
-    void count_one_more(const std::string& owner);
+    void add_client_slot(const std::string& owner);
 
     Budget all_;
     const std::uint64_t most_each_;
@@ -46,21 +47,21 @@ private:
     std::map<std::string, std::uint64_t> each_;
 };
 
-/// Thread-safe.
+/// Thread safety: safe.
 class JobTable {
 public:
-    /// Enters a job whose input is complete. If its owner has one with its id already and both ask the same, returns that;
-    /// throws Error{bad_input} if they do not.
+    /// Adds a job whose input is complete, and returns the job. If its owner already has a job with this id and the same hash,
+    /// returns the older job instead. Throws: Error{bad_input} if the older job has another hash.
     std::shared_ptr<ServerJob> enter(const std::shared_ptr<ServerJob>& job);
-    /// Throws Error{bad_input} if the owner has no such job.
+    /// Throws: Error{bad_input} if `owner` has no job `id`.
     std::shared_ptr<ServerJob> find(const std::string& owner, const std::string& id) const;
-    /// The same, or null.
+    /// Returns null if `owner` has no job `id`.
     std::shared_ptr<ServerJob> look_up(const std::string& owner, const std::string& id) const;
-    /// The owner's, ascending by id, those behind `after`, at most so many.
+    /// Returns the jobs of `owner` with ids greater than `after`, ascending by id, at most `most` of them.
     std::vector<std::shared_ptr<ServerJob>> of(const std::string& owner, const std::string& after,
                                                std::size_t most) const;
     std::vector<std::shared_ptr<ServerJob>> all() const;
-    /// Forgets this very job.
+    /// Removes `job`, but not another job with its owner and id.
     void remove(const ServerJob& job);
 
 private:

@@ -11,20 +11,20 @@ namespace octopair::service {
 namespace {
 
 constexpr std::size_t piece_pairs = piece_bytes / sizeof(Pair);
-constexpr std::size_t small_pairs = 2048;  // the first piece grows from here
+constexpr std::size_t small_pairs = 2048;  // initial size of the first piece, which grows
 
 }  // namespace
 
-void check_kept(std::uint64_t pairs, std::uint64_t most) {
+void check_pair_limit(std::uint64_t pairs, std::uint64_t most) {
     if (most == 0 || pairs <= most) return;
     throw LimitError("pairs", most,
-                     "the job has more than the " + std::to_string(most) +
-                         " pairs that the server keeps of one; count them, or ask for fewer with a limit");
+                     "pairs: the job has more than " + std::to_string(most) +
+                         " pairs, the limit of the server; count them, or set a limit");
 }
 
 void PairsInMemory::append(std::span<const Pair> pairs) {
     size_ += pairs.size();
-    check_kept(size_, most_);
+    check_pair_limit(size_, most_);
     while (!pairs.empty()) {
         if (room().empty()) open_piece();
         const std::span<Pair> free = room();
@@ -35,13 +35,14 @@ void PairsInMemory::append(std::span<const Pair> pairs) {
     }
 }
 
-/// Of the piece that is open.
+/// Returns the unfilled part of open_.
 std::span<Pair> PairsInMemory::room() const {
     const std::span<std::byte> bytes = room_in(open_);
     return std::span(reinterpret_cast<Pair*>(bytes.data()), bytes.size() / sizeof(Pair)).subspan(used_);
 }
 
-/// Makes the next piece, or more room in a first one: a job with few pairs takes little.
+/// Starts the next piece, or enlarges the first one. The first piece starts small, so that a job with few pairs takes little
+/// memory.
 void PairsInMemory::open_piece() {
     const std::size_t had = open_.size() / sizeof(Pair);
     const bool grow = full_.empty() && had < piece_pairs;

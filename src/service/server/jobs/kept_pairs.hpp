@@ -1,7 +1,8 @@
-// The pairs of a job, kept as pieces that go out as they are.
+// KeptPairs: the pairs of a job, kept as pieces that are sent without change. PairsInMemory keeps them in memory.
 //
-// One thread appends and finishes, others read meanwhile: what is in a full piece, or in any once the pairs are finished,
-// can be read, from any offset on. A piece is handed out without copying, and lives until the last who has it lets go.
+// Threads     One thread calls append() and finish(). Other threads may read at the same time.
+// Readable    Pairs in full pieces; after finish() all pairs. A reader may start at any pair.
+// Lifetime    PairsInMemory hands pieces out without a copy. A piece lives until its last user releases it.
 #pragma once
 
 #include <grpcpp/support/slice.h>
@@ -21,20 +22,20 @@ class KeptPairs {
 public:
     virtual ~KeptPairs() = default;
 
-    /// Throws a LimitError, or Error{io_failed}; then no more is appended.
+    /// Throws: LimitError, Error{io_failed}. Do not append after an exception.
     virtual void append(std::span<const Pair> pairs) = 0;
-    /// No more will come. Throws as append.
+    /// Makes all pairs readable. Requires: no append() follows. Throws: as append().
     virtual void finish() = 0;
-    /// The rest of the piece that the pair `offset` is in; none: it cannot be read yet, or there is no such pair.
+    /// Returns the pairs from number `offset` to the end of its piece, or nothing if this pair is not readable.
     virtual std::optional<grpc::Slice> piece(std::uint64_t offset) const = 0;
-    /// That can be read.
+    /// Returns the number of readable pairs.
     virtual std::uint64_t ready() const = 0;
 };
 
-/// In memory that counts against a budget.
+/// Keeps pairs in memory that is reserved from a budget.
 class PairsInMemory final : public KeptPairs {
 public:
-    /// Throws a LimitError "pairs" beyond `most`; 0: there is no such limit.
+    /// append() throws LimitError "pairs" for more than `most` pairs; 0: no limit.
     PairsInMemory(Budget& memory, std::uint64_t most) : most_(most), reservation_(memory.take(0)) {}
 
     void append(std::span<const Pair> pairs) override;
@@ -49,14 +50,14 @@ private:
     const std::uint64_t most_;
     mutable std::mutex mutex_;
     Budget::Reservation reservation_;
-    std::vector<grpc::Slice> full_;  // a piece each, but for the last when finished
-    grpc::Slice open_;               // the appending thread's
-    std::size_t used_ = 0;           // pairs in it
-    std::uint64_t size_ = 0;         // the appending thread's
+    std::vector<grpc::Slice> full_;  // full pieces; after finish() also the last, shorter one
+    grpc::Slice open_;               // piece being filled; used by the appending thread only
+    std::size_t used_ = 0;           // pairs in open_
+    std::uint64_t size_ = 0;         // pairs appended; used by the appending thread only
     std::uint64_t ready_ = 0;
 };
 
-/// Throws the LimitError of a job with more pairs than are kept.
-void check_kept(std::uint64_t pairs, std::uint64_t most);
+/// Throws: LimitError "pairs" if `pairs` is greater than `most`. 0: no limit.
+void check_pair_limit(std::uint64_t pairs, std::uint64_t most);
 
 }  // namespace octopair::service

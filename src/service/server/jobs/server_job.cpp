@@ -12,7 +12,7 @@ namespace octopair::service {
 
 namespace {
 
-/// The exception under way; there may be no memory for its words.
+/// Returns the failure for the current exception. Requires: called in a catch block.
 v1::Failure failure_of_exception() noexcept {
     v1::Failure failure;
     try {
@@ -38,7 +38,7 @@ void ServerJob::queue() {
         hash_ = detached() ? parts_.record->hash() : parts_.input->hash();
         state_ = v1::QUEUED;
     }
-    tell();
+    notify_watchers();
 }
 
 void ServerJob::set_ended(const v1::JobReport& ending) {
@@ -69,19 +69,19 @@ void ServerJob::run(Engine& engine) noexcept {
         state_ = v1::RUNNING;
         began_ = Clock::now();
     }
-    tell();
+    notify_watchers();
     try {
         if (detached()) parts_.input = parts_.record->load(engine, stop_.get_token());
         const Summary summary = find(engine, options());
         parts_.pairs->finish();
-        end_well(summary);
+        end_done(summary);
     } catch (...) {
-        end_by(failure_of_exception());
+        end_failed(failure_of_exception());
     }
-    tell();
+    notify_watchers();
 }
 
-void ServerJob::end_well(const Summary& summary) {
+void ServerJob::end_done(const Summary& summary) {
     if (detached()) {
         v1::JobReport last = ending(v1::DONE, {});
         last.set_progress(1);
@@ -93,7 +93,7 @@ void ServerJob::end_well(const Summary& summary) {
     set_ended(v1::DONE);
 }
 
-/// As it will be told after the server's end.
+/// Returns the report that later servers give about the ended job.
 v1::JobReport ServerJob::ending(v1::JobState state, const v1::Failure& failure) const {
     v1::JobReport last = report();
     last.set_state(state);
@@ -101,8 +101,8 @@ v1::JobReport ServerJob::ending(v1::JobState state, const v1::Failure& failure) 
     return last;
 }
 
-/// Where there is no room for it, it lasts as long as the server.
-void ServerJob::keep(const v1::JobReport& ending) noexcept {
+/// Stores `ending` in the record. If this fails, the ending is known only until the server ends.
+void ServerJob::store_ending(const v1::JobReport& ending) noexcept {
     try {
         if (detached()) parts_.record->end(ending);
     } catch (const std::exception&) {
@@ -110,17 +110,17 @@ void ServerJob::keep(const v1::JobReport& ending) noexcept {
     }
 }
 
-/// The running job stopped because of `failure`, which may be that it was asked to.
-void ServerJob::end_by(v1::Failure failure) noexcept {
+/// Ends the running job, which stopped with `failure`. The job becomes cancelled if a cancel request caused the failure.
+void ServerJob::end_failed(v1::Failure failure) noexcept {
     bool cancelled = false;
     {
         const std::lock_guard lock(mutex_);
-        if (abandoned_ && !early_) return set_waiting();
+        if (abandoned_ && !early_) return requeue();
         if (early_ && *early_) failure = **early_;
         cancelled = early_ ? !early_->has_value() : failure.code() == v1::CANCELLED_BY_CALLER;
     }
     const v1::JobState state = cancelled ? v1::CANCELLED : v1::FAILED;
-    if (detached()) keep(ending(state, failure));
+    if (detached()) store_ending(ending(state, failure));
     const std::lock_guard lock(mutex_);
     failure_ = std::move(failure);
     set_ended(state);
@@ -130,7 +130,7 @@ Summary ServerJob::find(Engine& engine, const Options& options) {
     const PairSink sink = parts_.spec.count_only() ? PairSink() : [this](std::span<const Pair> pairs) {
         const std::uint64_t before = parts_.pairs->ready();
         parts_.pairs->append(pairs);
-        if (parts_.pairs->ready() > before) tell();
+        if (parts_.pairs->ready() > before) notify_watchers();
     };
     return engine.stream_pairs(parts_.input->objects(), sink, options, stop_.get_token());
 }
@@ -138,66 +138,66 @@ Summary ServerJob::find(Engine& engine, const Options& options) {
 Options ServerJob::options() {
     Options options = options_of(parts_.spec);
     options.buffer_bytes = parts_.buffer_bytes;
-    options.progress = [this](double done) { tell_progress(done); };
+    options.progress = [this](double done) { report_progress(done); };
     return options;
 }
 
-/// Not oftener than people see.
-void ServerJob::tell_progress(double done) {
+/// Notifies the watchers at most ten times a second.
+void ServerJob::report_progress(double done) {
     constexpr std::chrono::milliseconds apart(100);
     progress_.store(done, std::memory_order_relaxed);
     const auto now = Clock::now();
-    if (now - told_ < apart) return;
-    told_ = now;
-    tell();
+    if (now - last_progress_report_ < apart) return;
+    last_progress_report_ = now;
+    notify_watchers();
 }
 
 void ServerJob::end_early(const Ending& why) {
     {
         const std::lock_guard lock(mutex_);
-        if (early_ || is_last()) return;
+        if (early_ || is_terminal()) return;
         early_ = why;
         if (state_ == v1::RUNNING) {
-            stop_.request_stop();  // the running thread ends it
+            stop_.request_stop();  // then run() ends the job
             return;
         }
     }
     if (!detached()) return end_in_queue();
-    parts_.record->later([self = shared_from_this()] { self->end_in_queue(); });
+    parts_.record->run_on_disk_queue([self = shared_from_this()] { self->end_in_queue(); });
 }
 
-/// As `early_` says, before it ran.
+/// Ends a job that has not run, as `early_` says.
 void ServerJob::end_in_queue() {
     const v1::JobState state = *early_ ? v1::FAILED : v1::CANCELLED;
-    if (detached()) keep(ending(state, early_->value_or(v1::Failure())));
+    if (detached()) store_ending(ending(state, early_->value_or(v1::Failure())));
     {
         const std::lock_guard lock(mutex_);
         if (*early_) failure_ = **early_;
         set_ended(state);
     }
-    tell();
+    notify_watchers();
 }
 
 void ServerJob::abandon() {
     const std::lock_guard lock(mutex_);
-    if (is_last()) return;
+    if (is_terminal()) return;
     abandoned_ = true;
     stop_.request_stop();
 }
 
-/// With the lock held: it has not ended, here.
-void ServerJob::set_waiting() noexcept {
+/// Puts an abandoned job back into the state queued; the next server runs it. Requires: mutex_ is locked.
+void ServerJob::requeue() noexcept {
     state_ = v1::QUEUED;
     parts_.input.reset();
     parts_.memory.give_back();
 }
 
-/// With the lock held.
+/// Requires: mutex_ is locked.
 void ServerJob::set_ended(v1::JobState state) noexcept {
-    const bool uploaded = state_ != v1::UPLOADING;  // else the uploading call may be writing to the input
+    const bool uploaded = state_ != v1::UPLOADING;  // otherwise the uploading call may be writing to the input
     state_ = state;
     ended_ = Clock::now();
-    parts_.place = {};
+    parts_.slot = {};
     if (!uploaded) return;
     parts_.input.reset();
     parts_.memory.give_back();
@@ -210,7 +210,7 @@ v1::JobState ServerJob::state() const {
 
 bool ServerJob::ended() const {
     const std::lock_guard lock(mutex_);
-    return is_last();
+    return is_terminal();
 }
 
 v1::JobReport ServerJob::report() const {
@@ -236,7 +236,7 @@ std::string ServerJob::input_hash() const {
     return hash_;
 }
 
-void ServerJob::look(Clock::time_point now) {
+void ServerJob::check_deadline(Clock::time_point now) {
     {
         const std::lock_guard lock(mutex_);
         const std::chrono::duration<double> ran = now - began_;
@@ -247,14 +247,14 @@ void ServerJob::look(Clock::time_point now) {
 
 std::optional<ServerJob::Clock::time_point> ServerJob::ended_at() const {
     const std::lock_guard lock(mutex_);
-    if (!is_last()) return {};
+    if (!is_terminal()) return {};
     return ended_;
 }
 
 double ServerJob::seconds() const {
     const std::lock_guard lock(mutex_);
     if (began_ == Clock::time_point()) return 0;
-    return std::chrono::duration<double>((is_last() ? ended_ : Clock::now()) - began_).count();
+    return std::chrono::duration<double>((is_terminal() ? ended_ : Clock::now()) - began_).count();
 }
 
 void ServerJob::watch(const std::shared_ptr<JobWatcher>& watcher) {
@@ -263,20 +263,20 @@ void ServerJob::watch(const std::shared_ptr<JobWatcher>& watcher) {
     watchers_.push_back(watcher);
 }
 
-void ServerJob::tell() noexcept {
+void ServerJob::notify_watchers() noexcept {
     std::vector<std::weak_ptr<JobWatcher>> watchers;
     v1::JobState from = v1::UPLOADING, to = v1::UPLOADING;
     {
         const std::lock_guard lock(mutex_);
         watchers = watchers_;
         to = state_;
-        from = std::exchange(moved_, to);
+        from = std::exchange(reported_state_, to);
     }
     for (const auto& weak : watchers) {
         if (const auto watcher = weak.lock()) watcher->job_changed();
     }
-    // The last: nobody waits for it.
-    if (from != to && parts_.moved) parts_.moved(*this, from, to);
+    // Called after the watchers, because nothing waits for this callback.
+    if (from != to && parts_.on_state_change) parts_.on_state_change(*this, from, to);
 }
 
 }  // namespace octopair::service

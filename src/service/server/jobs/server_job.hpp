@@ -1,12 +1,14 @@
-// ServerJob: one job on the server, from its first message until it is forgotten.
+// ServerJob: one job on the server, from its first message until it is removed.
 //
 //   uploading → queued → running → done | failed | cancelled
 //
-// Whoever waits for it watches it: a watcher is told of every change, and looks for itself. The input goes as soon as the
-// job has ended; the pairs stay as long as the job does.
-//
-// A detached job has a record: its input is read from there when its turn comes, and it has ended only when that is kept
-// there.
+// Invariants:
+//  - done, failed and cancelled are terminal states.
+//  - Every watcher is called after every change of state, and after new pairs or progress. A watcher reads the job's state
+//    itself.
+//  - The input is freed when the job ends. The pairs live as long as the job.
+//  - A detached job has a record. Its input is read from the record just before the job runs.
+//  - A detached job enters a terminal state only after the record was asked to store the ending.
 #pragma once
 
 #include <atomic>
@@ -25,12 +27,12 @@
 #include "service/server/jobs/job_record.hpp"
 #include "service/server/jobs/job_table.hpp"
 #include "service/server/jobs/kept_pairs.hpp"
-#include "service/server/jobs/watchdog.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
+#include "service/server/jobs/watchdog.hpp"
 
 namespace octopair::service {
 
-/// Told of changes, from any thread and with no lock held; must not block.
+/// Callback for changes of a job. Called on any thread, with no lock held. Requires: job_changed() does not block.
 class JobWatcher {
 public:
     virtual ~JobWatcher() = default;
@@ -42,17 +44,17 @@ public:
     using Clock = std::chrono::steady_clock;
 
     struct Parts {
-        std::string owner;                     ///< who submitted it: others do not see it
-        v1::JobSpec spec;                      ///< checked
-        std::unique_ptr<UploadedInput> input;  ///< of a detached job: while it runs
-        std::shared_ptr<JobRecord> record;     ///< of a detached job
+        std::string owner;                     ///< client that submitted the job; other clients cannot find the job
+        v1::JobSpec spec;                      ///< checked by check() of job_spec.hpp
+        std::unique_ptr<UploadedInput> input;  ///< detached job: null except while the job runs
+        std::shared_ptr<JobRecord> record;     ///< null for an attached job
         std::shared_ptr<KeptPairs> pairs;
-        Budget::Reservation memory;                                  ///< for the input and for finding the pairs
-        ClientCounts::Place place;                             ///< until it has ended
-        double most_seconds = 0;                               ///< that it may run; 0: no limit
-        std::uint64_t buffer_bytes = std::uint64_t(64) << 20;  ///< for pairs that are put in order
-        /// Told of each change of state, with no lock held; null: nobody.
-        std::function<void(const ServerJob&, v1::JobState from, v1::JobState to)> moved;
+        Budget::Reservation memory;                            ///< for the input and the search
+        JobQuota::Slot slot;                                   ///< held until the job ends
+        double most_seconds = 0;                               ///< maximum run time; 0: no limit
+        std::uint64_t buffer_bytes = std::uint64_t(64) << 20;  ///< Options::buffer_bytes of the search
+        /// Called after each change of state, with no lock held; may be null.
+        std::function<void(const ServerJob&, v1::JobState from, v1::JobState to)> on_state_change;
     };
 
     explicit ServerJob(Parts parts) : parts_(std::move(parts)) {}
@@ -63,65 +65,67 @@ public:
     const v1::JobSpec& spec() const { return parts_.spec; }
     bool detached() const { return parts_.record != nullptr; }
 
-    /// While uploading, for the one who uploads.
+    /// Requires: the job is uploading. For the uploading call only.
     UploadedInput& input() { return *parts_.input; }
-    /// The input is complete.
+    /// Changes the state from uploading to queued. Requires: the input is complete.
     void queue();
-    /// Instead of that: it has ended, before the server began.
+    /// Restores a job that ended under an earlier server, or that cannot run. Called instead of queue().
     void set_ended(const v1::JobReport& ending);
-    /// It can run now: what it needs is there. Asked by a lane, with the next job at hand if not.
+    /// Returns whether the job can run now, and reserves the memory of a detached job. False: the memory is not free yet.
     bool ask_memory();
-    /// On a lane's thread.
+    /// Runs the job on the calling thread and ends it.
     void run(Engine& engine) noexcept;
-    /// Stops it without an end, unless it was told to end before: it is for the next server.
+    /// Stops the job without an ending, so that the next server runs it. Has no effect on a job that was cancelled or failed
+    /// before.
     void abandon();
 
-    /// Ends the job as soon as it can be: cancelled, or failed for the given reason. Thread-safe, as all from here on.
+    /// Ends the job as soon as possible, cancelled or failed for the given reason. Thread safety: this and all members below
+    /// are safe.
     void cancel() { end_early({}); }
     void fail(v1::Failure why) { end_early(std::move(why)); }
 
     v1::JobState state() const;
     bool ended() const;
     v1::JobReport report() const;
-    /// Of a complete input and the options.
+    /// Returns the hash of input and options; empty while the job is uploading.
     std::string input_hash() const;
-    /// Ends the job if it has run too long.
-    void look(Clock::time_point now) override;
+    /// Fails the job if it has run longer than `most_seconds`.
+    void check_deadline(Clock::time_point now) override;
     bool is_over() const override { return ended(); }
     std::optional<Clock::time_point> ended_at() const;
-    /// That it has run, or ran.
+    /// Returns the run time so far, or of the whole run, in seconds.
     double seconds() const;
     const KeptPairs& pairs() const { return *parts_.pairs; }
-    /// None of an attached job.
+    /// Returns null for an attached job.
     const std::shared_ptr<JobRecord>& record() const { return parts_.record; }
 
     void watch(const std::shared_ptr<JobWatcher>& watcher);
 
 private:
-    using Ending = std::optional<v1::Failure>;  // none: cancelled
+    using Ending = std::optional<v1::Failure>;  // empty: cancelled
 
     void end_early(const Ending& why);
     Summary find(Engine& engine, const Options& options);
     Options options();
-    void tell_progress(double done);
-    void end_well(const Summary& summary);
-    void end_by(v1::Failure failure) noexcept;
+    void report_progress(double done);
+    void end_done(const Summary& summary);
+    void end_failed(v1::Failure failure) noexcept;
     v1::JobReport ending(v1::JobState state, const v1::Failure& failure) const;
-    void keep(const v1::JobReport& ending) noexcept;
+    void store_ending(const v1::JobReport& ending) noexcept;
     void end_in_queue();
     void set_ended(v1::JobState state) noexcept;
-    void set_waiting() noexcept;
-    bool is_last() const { return state_ != v1::UPLOADING && state_ != v1::QUEUED && state_ != v1::RUNNING; }
-    void tell() noexcept;
+    void requeue() noexcept;
+    bool is_terminal() const { return state_ != v1::UPLOADING && state_ != v1::QUEUED && state_ != v1::RUNNING; }
+    void notify_watchers() noexcept;
 
     Parts parts_;
     std::stop_source stop_;
     std::atomic<double> progress_ = 0;
-    Clock::time_point told_{};  // the running thread's
+    Clock::time_point last_progress_report_{};  // used by the running thread only
 
     mutable std::mutex mutex_;
     v1::JobState state_ = v1::UPLOADING;
-    v1::JobState moved_ = v1::UPLOADING;  // that others have been told of
+    v1::JobState reported_state_ = v1::UPLOADING;  // state that on_state_change was last called with
     std::optional<Ending> early_;
     bool abandoned_ = false;
     std::string hash_;

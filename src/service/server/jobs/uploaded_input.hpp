@@ -1,4 +1,4 @@
-// UploadedInput: the objects of a job, put together from the pieces in which they arrive.
+// UploadedInput: the objects of a job, assembled from the pieces in which they arrive.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 #include "octopair/engine.hpp"
 #include "service/protocol/job_hash.hpp"
-#include "service/server/jobs/input_target.hpp"
 #include "service/server/jobs/array_pool.hpp"
+#include "service/server/jobs/input_target.hpp"
 
 namespace octopair::v1 {
 class JobSpec;
@@ -21,8 +21,8 @@ namespace octopair::service {
 
 class UploadedInput final : public InputTarget {
 public:
-    /// Room for what `spec` says, which was checked; the boxes lie where `engine` reads them, in spare arrays if there are
-    /// such, and become spare ones. Throws Error.
+    /// Allocates the arrays that `spec` describes, in memory of `engine`. Box arrays come from `array_pool`, if given, and
+    /// return to it at the end. Requires: `spec` was checked. Throws: Error.
     UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool* array_pool = nullptr);
     UploadedInput(const UploadedInput&) = delete;
     UploadedInput& operator=(const UploadedInput&) = delete;
@@ -31,9 +31,9 @@ public:
     void append(std::span<const std::byte> data) override;
     std::uint64_t missing() const override { return missing_; }
 
-    /// Borrows the boxes and paddings.
+    /// The returned spans are valid as long as this object.
     Input objects() const { return {sets_[0].objects, joined_ ? std::optional(sets_[1].objects) : std::nullopt}; }
-    /// Of a complete input and its options.
+    /// Returns the hash of input and options. Requires: the input is complete.
     std::string hash() const { return hash_.digest(); }
 
 private:
@@ -48,13 +48,13 @@ private:
     std::span<std::byte> make_boxes(std::uint64_t count, Set& made);
 
     Engine& engine_;
-    ArrayPool* const spares_;
+    ArrayPool* const array_pool_;
     std::array<Set, 2> sets_;
     bool joined_;
     JobHash hash_;
-    std::array<std::span<std::byte>, 4> arrays_;
-    std::size_t array_ = 0;  // that is filled now, and what it lacks is what is left of it
-    std::uint64_t missing_ = 0;
+    std::array<std::span<std::byte>, 4> arrays_;  // unfilled parts of the arrays: boxes and paddings of both sets
+    std::size_t array_ = 0;      // index of the array being filled; arrays_[array_] is its unfilled part
+    std::uint64_t missing_ = 0;  // bytes
 };
 
 }  // namespace octopair::service

@@ -9,7 +9,7 @@
 
 namespace octopair::service {
 
-Watchdog::Watchdog() : thread_([this] { look_around(); }) {}
+Watchdog::Watchdog() : thread_([this] { poll_watched(); }) {}
 
 Watchdog::~Watchdog() {
     {
@@ -25,19 +25,19 @@ void Watchdog::watch(const std::shared_ptr<Watched>& watched) {
     watched_.push_back(watched);
 }
 
-void Watchdog::look_around() {
-    constexpr std::chrono::milliseconds apart(100);
+void Watchdog::poll_watched() {
+    constexpr std::chrono::milliseconds poll_interval(100);
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, apart, [&] { return ending_; })) {
+    while (!changed_.wait_for(lock, poll_interval, [&] { return ending_; })) {
         std::erase_if(watched_, [](const auto& known) {
             const auto one = known.lock();
             return !one || one->is_over();
         });
-        const auto looked_at = watched_;
+        const auto checked = watched_;
         lock.unlock();
         const auto now = std::chrono::steady_clock::now();
-        for (const auto& weak : looked_at) {
-            if (const auto one = weak.lock()) one->look(now);
+        for (const auto& weak : checked) {
+            if (const auto one = weak.lock()) one->check_deadline(now);
         }
         lock.lock();
     }
@@ -46,8 +46,9 @@ void Watchdog::look_around() {
 LimitError ran_too_long(const std::string& what, double most_seconds) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), most_seconds).ptr;
-    return {"job_seconds", std::uint64_t(std::ceil(most_seconds)),
-            "job_seconds: " + what + " ran longer than the " + std::string(text.data(), end) + " s that one may take"};
+    return {
+        "job_seconds", std::uint64_t(std::ceil(most_seconds)),
+        "job_seconds: " + what + " ran longer than " + std::string(text.data(), end) + " s, the limit of the server"};
 }
 
 }  // namespace octopair::service

@@ -1,4 +1,4 @@
-// Watchdog: looks at all that must not take for ever, ten times a second, by a clock that nobody can set.
+// Watchdog: a thread that checks the deadlines of jobs and calls ten times a second, by the monotonic clock.
 #pragma once
 
 #include <chrono>
@@ -16,13 +16,13 @@ class LimitError;
 class Watched {
 public:
     virtual ~Watched() = default;
-    /// From the watchdog's thread; must not block.
-    virtual void look(std::chrono::steady_clock::time_point now) = 0;
-    /// It need not be looked at any more.
+    /// Ends the object's work if it has taken too long. Called on the watchdog's thread. Requires: does not block.
+    virtual void check_deadline(std::chrono::steady_clock::time_point now) = 0;
+    /// Returns whether the watchdog may drop this object.
     virtual bool is_over() const { return false; }
 };
 
-/// Thread-safe.
+/// Thread safety: safe.
 class Watchdog {
 public:
     Watchdog();
@@ -30,11 +30,11 @@ public:
     Watchdog& operator=(const Watchdog&) = delete;
     ~Watchdog();
 
-    /// As long as it lives.
+    /// Checks `watched` until it is destroyed or is_over().
     void watch(const std::shared_ptr<Watched>& watched);
 
 private:
-    void look_around();
+    void poll_watched();
 
     std::mutex mutex_;
     std::condition_variable changed_;
@@ -43,7 +43,7 @@ private:
     std::thread thread_;
 };
 
-/// The limit that `what` ("the job") ran into.
+/// Returns the error for exceeding `job_seconds`. `what`: subject of the message, as in "the job".
 LimitError ran_too_long(const std::string& what, double most_seconds);
 
 }  // namespace octopair::service

@@ -16,10 +16,10 @@ namespace octopair::service {
 
 namespace {
 
-/// Between an event's words and its fields, which follow as a JSON object.
+/// Separates an event's message from its fields, a JSON object, in the payload of a log line.
 constexpr char border = '\x1f';
 
-/// Where events come from, by which they are known: what a line's text holds may come from outside.
+/// Source name that marks a log line as an event. The text cannot be used for this: clients may control parts of it.
 constexpr const char* origin = "event";
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
@@ -56,17 +56,17 @@ private:
     LogForm form_;
 };
 
-/// What gRPC has to say goes here; null: nowhere.
+/// Receives the messages of gRPC and protobuf; null: they are dropped.
 std::atomic<spdlog::logger*> grpc_log = nullptr;
 
-void tell_of_grpc(gpr_log_func_args* line) {
+void log_grpc_message(gpr_log_func_args* line) {
     spdlog::logger* const log = grpc_log;
     if (log == nullptr) return;
     const LogLevel level = line->severity == GPR_LOG_SEVERITY_ERROR ? LogLevel::warning : LogLevel::debug;
     if (is_logged(*log, level)) log_text(*log, level, std::string("gRPC: ") + line->message);
 }
 
-void tell_of_protobuf(google::protobuf::LogLevel, const char*, int, const std::string& words) {
+void log_protobuf_message(google::protobuf::LogLevel, const char*, int, const std::string& words) {
     if (spdlog::logger* const log = grpc_log) log_text(*log, LogLevel::debug, "protobuf: " + words);
 }
 
@@ -88,8 +88,8 @@ void take_grpc_log(const std::shared_ptr<spdlog::logger>& log) {
     static std::shared_ptr<spdlog::logger> kept;
     kept = log;
     grpc_log = kept.get();
-    gpr_set_log_function(&tell_of_grpc);
-    google::protobuf::SetLogHandler(&tell_of_protobuf);
+    gpr_set_log_function(&log_grpc_message);
+    google::protobuf::SetLogHandler(&log_protobuf_message);
 }
 
 std::shared_ptr<spdlog::logger> make_log(LogForm form, std::shared_ptr<spdlog::sinks::sink> sink) {

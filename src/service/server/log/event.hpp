@@ -1,10 +1,10 @@
-// Events: lines of the server's log that programs read as well as people.
+// Events: lines of the server's log with named fields, for programs and people.
 //
 //   text   2026-01-31T12:00:00.000Z info job ended id=... pairs=12
 //   JSON   {"time":"2026-01-31T12:00:00.000Z","level":"info","message":"job ended","id":"...","pairs":12}
 //
-// Any logger takes them; one of make_log writes what else is logged in the same form. spdlog itself is used in event.cpp
-// alone: its headers take a second to compile, and each of its formatted calls as much again.
+// Every spdlog logger accepts events. A logger of make_log writes other lines in the same form. Only event.cpp includes
+// spdlog's own headers: they take a second to compile, and each formatted call takes another second.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -29,15 +29,16 @@ struct Field {
 bool is_logged(const spdlog::logger& log, LogLevel level);
 
 void log_event(spdlog::logger& log, LogLevel level, std::string_view what, const std::vector<Field>& fields);
-/// Writes a line for people alone: without fields.
+/// Writes a line without fields.
 void log_text(spdlog::logger& log, LogLevel level, std::string_view text);
 
 enum class LogForm : std::uint8_t { text, json };
 
-/// What gRPC writes to standard error by itself goes to this log, of the whole process. Call it once, at its start.
+/// Redirects the messages of gRPC and protobuf from standard error to `log`, for the whole process. Call it once, at the start
+/// of the process.
 void take_grpc_log(const std::shared_ptr<spdlog::logger>& log);
 
-/// Writes to `sink`; without one, to standard error.
+/// Returns a logger that writes to `sink`, or to standard error if `sink` is null.
 std::shared_ptr<spdlog::logger> make_log(LogForm form, std::shared_ptr<spdlog::sinks::sink> sink = nullptr);
 
 }  // namespace octopair::service

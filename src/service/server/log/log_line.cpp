@@ -19,7 +19,7 @@ std::string clean(std::string text) {
 
 std::string json_text(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// In UTC, to the millisecond.
+/// Returns the time in UTC with milliseconds.
 std::string time_text(std::chrono::system_clock::time_point time) {
     using std::chrono::milliseconds;
     const std::time_t seconds = std::chrono::system_clock::to_time_t(std::chrono::floor<std::chrono::seconds>(time));
@@ -28,11 +28,11 @@ std::string time_text(std::chrono::system_clock::time_point time) {
     ::gmtime_r(&seconds, &parts);
     std::array<char, 32> text{};
     const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
-    // The last three digits of 1000 to 1999.
+    // The last three digits of 1000 to 1999: milliseconds with leading zeros.
     return std::string(text.data(), length) + "." + std::to_string(1000 + rest.count()).substr(1) + "Z";
 }
 
-/// Words that have spaces are quoted.
+/// Returns " NAME=VALUE". A string that is empty or has spaces, quotes or = is quoted.
 std::string text_field(const std::string& name, const Json& value) {
     if (!value.is_string()) return " " + name + "=" + json_text(value);
     const std::string words = value.get<std::string>();

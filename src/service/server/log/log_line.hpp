@@ -14,7 +14,7 @@ struct LogLine {
     std::chrono::system_clock::time_point time;
     std::string level;
     std::string_view message;
-    std::string_view fields;  ///< a JSON object of json_of, or empty
+    std::string_view fields;  ///< result of json_of, or empty
 };
 
 /// Returns `fields` as a JSON object. Control characters in strings become question marks.

@@ -29,7 +29,7 @@ constexpr std::array<const char*, 3> states = {"uploading", "queued", "running"}
 constexpr std::array<const char*, 3> outcomes = {"done", "failed", "cancelled"};
 constexpr std::array<const char*, 4> steps = {"encode", "count", "scatter", "scan"};
 
-/// As civetweb takes it, which knows no names.
+/// Returns the address with a numeric host, because civetweb does not resolve names.
 std::string numeric(const Address& address) {
     if (address.is_unix()) throw Error(ErrorCode::usage, address.text() + ": metrics need HOST:PORT");
     if (!is_this_machine(address)) {
@@ -60,18 +60,18 @@ struct Metrics::Store {
             .Add({}, std::vector<double>{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100, 300});
     std::array<Counter*, 4> step_seconds =
         all(counters("octopair_step_seconds_total", "Seconds that jobs took, by step"), "step", steps);
-    Counter& received = counters("octopair_received_bytes_total", "Bytes of jobs that came in").Add({});
-    Counter& sent = counters("octopair_sent_bytes_total", "Bytes of results that went out").Add({});
+    Counter& received = counters("octopair_received_bytes_total", "Bytes of jobs received").Add({});
+    Counter& sent = counters("octopair_sent_bytes_total", "Bytes of results sent").Add({});
     Family<Counter>& refusals = counters("octopair_refusals_total", "Refusals, by limit");
-    Family<Counter>& call_refusals = counters("octopair_calls_refused_total", "Calls that were not let in, by reason");
+    Family<Counter>& call_refusals = counters("octopair_calls_refused_total", "Calls refused, by reason");
 
     Gauge& queue = gauges("octopair_queue_length", "Jobs that wait for an engine").Add({});
     Gauge& connections = gauges("octopair_connections", "Open connections").Add({});
-    Gauge& memory = gauges("octopair_memory_bytes", "Memory that jobs take, of --max-memory").Add({});
+    Gauge& memory = gauges("octopair_memory_bytes", "Memory reserved for jobs, limited by --max-memory").Add({});
     Counter& connections_refused = refusals.Add({{"limit", "connections"}});
     Counter& worker_faults = counters("octopair_worker_faults_total", "Worker processes that were lost").Add({});
 
-    std::shared_ptr<prometheus::Collectable> look;
+    std::shared_ptr<prometheus::Collectable> collector;
     std::unique_ptr<prometheus::Exposer> exposer;
 
 private:
@@ -90,10 +90,10 @@ private:
     }
 };
 
-/// What an HTTP request gets.
-class Metrics::Look final : public prometheus::Collectable {
+/// Collects the metrics for an HTTP request.
+class Metrics::Collector final : public prometheus::Collectable {
 public:
-    Look(Store& store, std::function<Levels()> levels) : store_(store), levels_(std::move(levels)) {}
+    Collector(Store& store, std::function<Levels()> levels) : store_(store), levels_(std::move(levels)) {}
 
     std::vector<prometheus::MetricFamily> Collect() const override {
         const std::lock_guard lock(mutex_);
@@ -118,7 +118,7 @@ Metrics::Metrics() : store_(std::make_unique<Store>()) {}
 
 Metrics::~Metrics() { hide(); }
 
-void Metrics::job_moved(std::optional<v1::JobState> from, v1::JobState to) {
+void Metrics::job_state_changed(std::optional<v1::JobState> from, v1::JobState to) {
     if (from && *from < v1::DONE) store_->jobs.at(std::size_t(*from))->Decrement();
     if (to < v1::DONE)
         store_->jobs.at(std::size_t(to))->Increment();
@@ -144,17 +144,17 @@ int Metrics::show(const Address& address, std::function<Levels()> levels) {
     const std::string where = numeric(address);
     try {
         store_->exposer = std::make_unique<prometheus::Exposer>(where);
-    } catch (const std::exception&) {  // civetweb's own, without a reason
+    } catch (const std::exception&) {  // an exception of civetweb, which gives no reason
         throw Error(ErrorCode::io_failed, address.text() + ": cannot show metrics there; the address may be taken");
     }
-    store_->look = std::make_shared<Look>(*store_, std::move(levels));
-    store_->exposer->RegisterCollectable(store_->look);
+    store_->collector = std::make_shared<Collector>(*store_, std::move(levels));
+    store_->exposer->RegisterCollectable(store_->collector);
     return store_->exposer->GetListeningPorts().front();
 }
 
 void Metrics::hide() {
     store_->exposer.reset();
-    store_->look.reset();
+    store_->collector.reset();
 }
 
 }  // namespace octopair::service

@@ -1,4 +1,4 @@
-// Metrics: what a server counts, and what it shows to Prometheus over HTTP (docs/server.md lists them).
+// Metrics: counters and gauges of a server, served to Prometheus over HTTP (docs/server.md lists them).
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ enum JobState : int;
 
 namespace octopair::service {
 
-/// What is asked for when somebody looks.
+/// Values that are read at each HTTP request.
 struct Levels {
     std::uint64_t queue = 0, connections = 0, connections_refused = 0, memory_bytes = 0, worker_faults = 0;
 };
 
-/// Thread-safe.
+/// Thread safety: safe.
 class Metrics {
 public:
     Metrics();
@@ -29,25 +29,27 @@ public:
     Metrics& operator=(const Metrics&) = delete;
     ~Metrics();
 
-    /// A job went from one state to another; none: it is new.
-    void job_moved(std::optional<v1::JobState> from, v1::JobState to);
-    /// `seconds`: that it ran.
+    /// Counts a change of state of a job. `from`: empty for a new job.
+    void job_state_changed(std::optional<v1::JobState> from, v1::JobState to);
+    /// Counts an ended job. `seconds`: run time of the job; 0: it did not run.
     void job_ended(const v1::JobReport& report, double seconds);
-    /// By the limit of that name.
+    /// Counts a refusal. `limit`: name of the limit that was exceeded.
     void refused(const std::string& limit);
-    /// By reason: "unauthenticated", "going down".
+    /// Counts a refused call. `reason`: "unauthenticated" or "going down".
     void call_refused(const std::string& reason);
     void received(std::uint64_t bytes);
     void sent(std::uint64_t bytes);
 
-    /// `levels` is called from a thread of its own, until this goes or `hide` is called. Returns the port. Throws
-    /// Error{usage} for an address that is not loopback, Error{io_failed} if it cannot be had.
+    /// Starts to serve the metrics at `address` and returns the port. `levels` is called on a thread of the HTTP server, until
+    /// hide() or the destructor is called. Throws: Error{usage} for an address that is not loopback, Error{io_failed} if
+    /// listening fails.
     int show(const Address& address, std::function<Levels()> levels);
+    /// Stops the HTTP server.
     void hide();
 
 private:
     struct Store;
-    class Look;
+    class Collector;
     std::unique_ptr<Store> store_;
 };
 

@@ -19,13 +19,13 @@ const char* outcome_of(v1::JobState state) {
 
 }  // namespace
 
-void ServerLog::job_moved(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to) {
-    metrics_.job_moved(from, to);
+void ServerLog::job_state_changed(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to) {
+    metrics_.job_state_changed(from, to);
     if (to < v1::DONE) return;
     const v1::JobReport report = job.report();
     const double seconds = job.seconds();
     metrics_.job_ended(report, seconds);
-    // Jobs of one call come by the thousand a second.
+    // Jobs without an id (of DetectSmall) can end thousands of times a second, so they are logged at level debug.
     const bool small = report.id().empty();
     const auto level = to == v1::FAILED ? LogLevel::warning : small ? LogLevel::debug : LogLevel::info;
     if (!is_logged(*log_, level)) return;

@@ -1,4 +1,5 @@
-// ServerLog: what a server writes down about its work, in its log and its metrics. No secrets: clients appear by name.
+// ServerLog: records the events of a server in its log and its metrics. Clients appear by name; the log contains no tokens or
+// keys.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -18,18 +19,18 @@ namespace octopair::service {
 class LimitError;
 class ServerJob;
 
-/// Thread-safe.
+/// Thread safety: safe.
 class ServerLog {
 public:
     explicit ServerLog(std::shared_ptr<spdlog::logger> log) : log_(std::move(log)) {}
 
-    /// A job went from one state to another; none: it is new.
-    void job_moved(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to);
-    /// Somebody asked for more than a limit allows.
+    /// Records a change of state of a job. `from`: empty for a new job.
+    void job_state_changed(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to);
+    /// Records a request that exceeded a limit.
     void limit_refused(const std::string& owner, const LimitError& error);
-    /// There are more connections than are allowed; `refused` were, since the start.
+    /// Records refused connections. `allowed`: limit of connections. `refused`: number of connections refused since the start.
     void connections_refused(std::uint64_t allowed, std::uint64_t refused);
-    /// A call was not let in. `peer`: as gRPC names it.
+    /// Records a call that was not admitted. `peer`: the caller's address as gRPC writes it.
     void call_refused(const std::string& peer, const grpc::Status& why);
     void received(std::uint64_t bytes) { metrics_.received(bytes); }
     void sent(std::uint64_t bytes) { metrics_.sent(bytes); }

@@ -37,20 +37,20 @@ Access::Access(const std::string& token_file) {
         std::istringstream words(line);
         std::string name, token, rest;
         if (!(words >> name) || name.front() == '#') continue;
-        if (!(words >> token) || words >> rest) refuse(token_file, number, "a line is NAME TOKEN");
+        if (!(words >> token) || words >> rest) refuse(token_file, number, "a line must be NAME TOKEN");
         if (!std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; }))
-            refuse(token_file, number, "a token is of printable ASCII characters");
-        if (token.size() < shortest) refuse(token_file, number, "a token has at least 16 bytes");
+            refuse(token_file, number, "a token must consist of printable ASCII characters");
+        if (token.size() < shortest) refuse(token_file, number, "a token must have at least 16 bytes");
         const Digest digest = digest_of(token);
         const auto same = [&](const Token& known) { return known.name == name || known.digest == digest; };
         if (std::any_of(tokens_.begin(), tokens_.end(), same))
-            refuse(token_file, number, "the name or the token is there twice");
+            refuse(token_file, number, "an earlier line has the same name or token");
         tokens_.push_back({name, digest});
     }
-    if (tokens_.empty()) throw Error(ErrorCode::bad_input, token_file + ": holds no token");
+    if (tokens_.empty()) throw Error(ErrorCode::bad_input, token_file + ": the file contains no token");
 }
 
-/// All are compared, each in constant time: what it takes says nothing about a token.
+/// Compares with all tokens, each in constant time, so that the time reveals nothing about a token.
 const Access::Token* Access::find(std::string_view token) const {
     const Digest digest = digest_of(token);
     const Token* found = nullptr;
@@ -65,11 +65,11 @@ grpc::Status Access::identify(const grpc::ServerContextBase& context, std::strin
         constexpr std::string_view scheme = "Bearer ";
         const auto& metadata = context.client_metadata();
         const auto given = metadata.find("authorization");
-        if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server wants a token"};
+        if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server requires a token"};
         const std::string_view value(given->second.data(), given->second.size());
         const bool bearer = value.substr(0, scheme.size()) == scheme;
         const Token* const token = bearer ? find(value.substr(scheme.size())) : nullptr;
-        if (token == nullptr) return {grpc::StatusCode::UNAUTHENTICATED, "the token is none of the server's"};
+        if (token == nullptr) return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
         owner = "token:" + token->name;
         return grpc::Status::OK;
     }

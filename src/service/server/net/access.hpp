@@ -1,7 +1,9 @@
-// Access: who a caller is, and whether it may call.
+// Access: authenticates callers and names them.
 //
-// With tokens a caller is the name of its token; with client certificates the common name of its certificate; else all are
-// one, named "local": the address alone keeps others out (a Unix socket of its owner's, or loopback).
+// Name of a caller, which owns its jobs:
+//   with tokens                "token:" and the name of its token
+//   with client certificates   "certificate:" and the common name of its certificate
+//   else                       "local" for all callers; the address limits them (private Unix socket, or loopback)
 #pragma once
 
 #include <array>
@@ -18,12 +20,14 @@ namespace octopair::service {
 
 class Access {
 public:
-    /// `token_file`: empty, or of lines "NAME TOKEN"; a line that begins with # is passed over. Throws as read_private_file,
-    /// Error{bad_input} for a token of less than 16 bytes, a name or a token that is there twice, or no token at all.
+    /// `token_file`: path of a file with lines "NAME TOKEN", in which lines that begin with # are comments; empty: no tokens.
+    /// Throws: as read_private_file; Error{bad_input} for an invalid line, a token of less than 16 bytes, a duplicate name or
+    /// token, or a file without tokens.
     explicit Access(const std::string& token_file);
 
     bool has_tokens() const { return !tokens_.empty(); }
-    /// Sets `owner`, or says why not. Takes the same time for all tokens that are wrong. Thread-safe.
+    /// Sets `owner` to the caller's name, or returns why the caller is refused. Takes the same time for every wrong token.
+    /// Thread safety: safe.
     grpc::Status identify(const grpc::ServerContextBase& context, std::string& owner) const;
 
 private:

@@ -9,7 +9,7 @@
 
 namespace octopair::service {
 
-// gRPC would tell of none of this, but refuse every client.
+// The files are checked here because gRPC would not report any of these errors: it would refuse every client.
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ServerTls& tls, spdlog::logger& log) {
     if (tls.certificate.empty() != tls.key.empty()) {
         throw Error(ErrorCode::usage, "a certificate needs its key, and a key its certificate");

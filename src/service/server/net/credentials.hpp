@@ -1,4 +1,4 @@
-// What protects a server's connections: TLS, and what must be there before others than this machine may connect.
+// Credentials: TLS of a server's connections, and the check that a server which other machines can reach is protected.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -14,11 +14,12 @@ class ServerCredentials;
 
 namespace octopair::service {
 
-/// Without a certificate: none. Warns of a certificate that has ended. Throws Error{usage} for files that do not fit
-/// together, Error{bad_input} for one that holds no certificate or key, and what reading them throws.
+/// Returns the TLS credentials, or insecure ones without a certificate. Logs a warning if the certificate has expired.
+/// Throws: Error{usage} for files that do not fit together, Error{bad_input} for a file without a certificate or key; errors of
+/// reading.
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ServerTls& tls, spdlog::logger& log);
 
-/// What is missing before other machines may reach the server, in words; empty: nothing.
+/// Returns, in words, the protection that `options` lack for a server that other machines can reach. Empty: nothing is missing.
 std::string missing_protection(const ServerOptions& options);
 
 }  // namespace octopair::service

@@ -28,10 +28,10 @@ namespace octopair::service {
 namespace {
 
 constexpr int backlog = 1024;
-constexpr std::chrono::seconds check_interval(1);  // looks for what was closed, and words about refusals
-constexpr std::chrono::milliseconds leave(250);    // until a refused connection is told why, and until it is closed
-constexpr std::size_t most_leaving = 64;           // refused connections at once
-constexpr std::size_t most_spares = 8;             // descriptors kept to refuse with
+constexpr std::chrono::seconds check_interval(1);        // between checks for closed connections, and between log lines
+constexpr std::chrono::milliseconds refusal_delay(250);  // to sending the reason, and from there to closing
+constexpr std::size_t most_refused_open = 64;            // refused connections that are not closed yet
+constexpr std::size_t most_spares = 8;                   // descriptors reserved for refusing connections
 
 ino_t socket_of(int descriptor) {
     struct stat found {};
@@ -42,9 +42,9 @@ void send(const Descriptor& connection, std::string_view bytes) {
     (void)::send(connection.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
-// HTTP/2 (RFC 9113)
+// Frames of HTTP/2 (RFC 9113).
 constexpr std::string_view empty_settings("\0\0\0\4\0\0\0\0\0", 9);
-/// GOAWAY for no stream, with error 11, "enhance your calm", and words.
+/// Returns a GOAWAY frame with last stream 0, error 11 (ENHANCE_YOUR_CALM) and `words` as debug data.
 std::string goaway(const std::string& words) {
     const auto length = std::uint32_t(8 + words.size());
     std::string frame = {char(length >> 16), char(length >> 8), char(length), 7, 0, 0, 0, 0, 0};
@@ -52,11 +52,12 @@ std::string goaway(const std::string& words) {
     return frame + words;
 }
 
-/// Whether there is a socket. Throws Error{io_failed} for what is none.
-bool is_there(const Address& address) {
+/// Returns whether a socket exists at the path. Throws: Error{io_failed} if another kind of file exists there.
+bool socket_exists(const Address& address) {
     struct stat found {};
     if (::lstat(address.path.c_str(), &found) != 0) return false;
-    if (!S_ISSOCK(found.st_mode)) throw Error(ErrorCode::io_failed, address.text() + ": there is a file already");
+    if (!S_ISSOCK(found.st_mode))
+        throw Error(ErrorCode::io_failed, address.text() + ": the path exists and is not a socket");
     return true;
 }
 
@@ -74,9 +75,9 @@ Listener::~Listener() {
     if (address_.is_unix()) ::unlink(address_.path.c_str());
 }
 
-/// Whoever holds the lock may take away a socket at the path: its server is dead.
+/// Takes the lock, then replaces a socket at the path. While the lock was free, the server of that socket was dead.
 void Listener::bind_unix() {
-    (void)is_there(address_);
+    (void)socket_exists(address_);
     const std::string lock = address_.path + ".lock";
     lock_ = Descriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!lock_.open()) fail_io(lock, "cannot open", errno);
@@ -86,13 +87,14 @@ void Listener::bind_unix() {
         }
         fail_io(lock, "cannot lock", errno);
     }
-    if (is_there(address_) && ::unlink(address_.path.c_str()) != 0) fail_io(address_.text(), "cannot replace", errno);
+    if (socket_exists(address_) && ::unlink(address_.path.c_str()) != 0)
+        fail_io(address_.text(), "cannot replace", errno);
     socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!socket_.open()) fail_io(address_.text(), "cannot listen", errno);
     sockaddr_un name{};
     name.sun_family = AF_UNIX;
     std::memcpy(name.sun_path, address_.path.c_str(), address_.path.size() + 1);
-    // Nobody can connect before listen(), so there is no moment at which others may.
+    // Clients cannot connect before listen(), so other users cannot connect between bind() and chmod().
     if (::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 ||
         ::chmod(address_.path.c_str(), 0600) != 0) {
         fail_io(address_.text(), "cannot listen", errno);
@@ -129,7 +131,7 @@ void Listener::bind_tcp(const std::string& unprotected) {
 
 void Listener::start(Terms terms) {
     terms_ = std::move(terms);
-    thread_ = std::thread([this] { take_connections(); });
+    thread_ = std::thread([this] { accept_connections(); });
 }
 
 void Listener::stop() {
@@ -140,16 +142,16 @@ void Listener::stop() {
     socket_ = {};
 }
 
-void Listener::take_connections() {
-    const auto look = [&] {
-        if (!leaving_.empty()) return int(leave.count());
-        return known_.empty() ? -1 : int(std::chrono::milliseconds(check_interval).count());
+void Listener::accept_connections() {
+    const auto poll_timeout = [&] {
+        if (!refused_connections_.empty()) return int(refusal_delay.count());
+        return accepted_.empty() ? -1 : int(std::chrono::milliseconds(check_interval).count());
     };
     std::array<pollfd, 2> watched = {{{socket_.number(), POLLIN, 0}, {wake_.number(), POLLIN, 0}}};
     for (int ready = 0; ready >= 0 || errno == EINTR;) {
-        ready = ::poll(watched.data(), watched.size(), look());
+        ready = ::poll(watched.data(), watched.size(), poll_timeout());
         if (ready == 0) forget_closed();
-        see_out_refused();
+        close_refused();
         if (ready <= 0) continue;
         if (watched[1].revents != 0) return;
         Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -157,14 +159,14 @@ void Listener::take_connections() {
             take(std::move(connection));
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             refuse_one_more();
-            // Until others have closed theirs: it would be refused again at once.
+            // Wait 20 ms for descriptors to be freed. Otherwise the client would reconnect and be refused again at once.
             std::array<pollfd, 1> ended = {{{wake_.number(), POLLIN, 0}}};
             (void)::poll(ended.data(), ended.size(), 20);
         }
     }
 }
 
-/// There are no more descriptors for connections. While all spare ones are used for this, those who wish to connect wait.
+/// Refuses one connection when the process has no descriptors left. While no spare descriptor is free, new connections wait.
 void Listener::refuse_one_more() {
     if (spares_.empty()) return;
     spares_.pop_back();
@@ -173,11 +175,11 @@ void Listener::refuse_one_more() {
         refuse(std::move(connection), "no more descriptors for connections");
     } else {
         connection = {};
-        take_spares();
+        refill_spares();
     }
 }
 
-void Listener::take_spares() {
+void Listener::refill_spares() {
     while (spares_.size() < most_spares) {
         Descriptor spare(::open("/dev/null", O_RDONLY | O_CLOEXEC));
         if (!spare.open()) return;
@@ -188,22 +190,22 @@ void Listener::take_spares() {
 void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
     const std::uint64_t most = terms_.most_connections;
-    if (known_.size() >= forget_from_ || (most > 0 && known_.size() >= most)) forget_closed();
-    if (most > 0 && known_.size() >= most) {
+    if (accepted_.size() >= forget_from_ || (most > 0 && accepted_.size() >= most)) forget_closed();
+    if (most > 0 && accepted_.size() >= most) {
         refuse(std::move(connection), "at most " + std::to_string(most) + " connections");
         return;
     }
-    take_spares();
+    refill_spares();
     if (!address_.is_unix()) {
         const int on = 1;
         (void)::setsockopt(connection.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
     }
-    known_.push_back({connection.number(), socket_of(connection.number())});
-    connections_ = known_.size();
+    accepted_.push_back({connection.number(), socket_of(connection.number())});
+    connections_ = accepted_.size();
     terms_.accept(std::move(connection));
 }
 
-/// At a Unix socket, the user that runs the server, or the one who may all.
+/// Returns whether the peer may connect. On a Unix socket the peer must be the user that runs the server, or root.
 bool Listener::is_ours(const Descriptor& connection) const {
     if (!address_.is_unix()) return true;
     ucred peer{};
@@ -212,45 +214,45 @@ bool Listener::is_ours(const Descriptor& connection) const {
            (peer.uid == ::geteuid() || peer.uid == 0);
 }
 
-/// gRPC does not say when it closes a connection; the system knows.
+/// Removes closed connections from the list. gRPC does not report closing, so the inodes of the descriptors are compared.
 void Listener::forget_closed() {
-    std::erase_if(known_, [](const Known& known) { return socket_of(known.number) != known.socket; });
-    connections_ = known_.size();
-    forget_from_ = std::max<std::size_t>(64, 2 * known_.size());
+    std::erase_if(accepted_, [](const Accepted& known) { return socket_of(known.number) != known.socket; });
+    connections_ = accepted_.size();
+    forget_from_ = std::max<std::size_t>(64, 2 * accepted_.size());
 }
 
 void Listener::refuse(Descriptor connection, std::string why) {
     ++refused_;
     const auto now = std::chrono::steady_clock::now();
-    if (terms_.refused && now - told_ >= check_interval) {
-        told_ = now;
+    if (terms_.refused && now - last_report_ >= check_interval) {
+        last_report_ = now;
         terms_.refused();
     }
     if (!terms_.encrypted) send(connection, empty_settings);
-    leaving_.push_back({std::move(connection), std::move(why), now});
-    if (leaving_.size() > most_leaving) {
-        see_out(leaving_.front());
-        leaving_.pop_front();
+    refused_connections_.push_back({std::move(connection), std::move(why), now});
+    if (refused_connections_.size() > most_refused_open) {
+        send_refusal(refused_connections_.front());
+        refused_connections_.pop_front();
     }
 }
 
-void Listener::see_out(Refused& refused) const {
-    if (std::exchange(refused.told, true)) return;
-    // What is unread when it is closed would reset the connection, and the words with it. gRPC's greeting is short.
+void Listener::send_refusal(Refused& refused) const {
+    if (std::exchange(refused.reason_sent, true)) return;
+    // Read the client's greeting, which is short: closing with unread data would reset the connection and discard the reason.
     std::array<char, 1 << 16> said;
     (void)::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT);
     if (!terms_.encrypted) send(refused.connection, goaway("octopair: " + refused.why));
     (void)::shutdown(refused.connection.number(), SHUT_WR);
 }
 
-void Listener::see_out_refused() {
+void Listener::close_refused() {
     const auto now = std::chrono::steady_clock::now();
-    for (Refused& refused : leaving_) {
-        if (now - refused.since >= leave) see_out(refused);
+    for (Refused& refused : refused_connections_) {
+        if (now - refused.since >= refusal_delay) send_refusal(refused);
     }
-    while (!leaving_.empty() && now - leaving_.front().since >= 2 * leave) {
-        leaving_.pop_front();
-        take_spares();
+    while (!refused_connections_.empty() && now - refused_connections_.front().since >= 2 * refusal_delay) {
+        refused_connections_.pop_front();
+        refill_spares();
     }
 }
 

@@ -1,7 +1,7 @@
-// Listener: the socket of a server, and who may connect to it.
+// Listener: the listening socket of a server, with a limit on connections.
 //
-// We accept connections ourselves and hand them to gRPC: it would take the place of a live server's Unix socket, and
-// knows no bound on connections.
+// The listener accepts connections and hands them to gRPC. gRPC's own listener would replace the Unix socket of a running
+// server, and cannot limit the number of connections.
 #pragma once
 
 #include <sys/stat.h>
@@ -22,66 +22,69 @@ namespace octopair::service {
 
 class Listener {
 public:
-    /// Binds. A Unix socket is made for its owner alone; one that a dead server left is replaced, beside it lies a lock.
-    /// `unprotected`: what a server lacks that others than this machine may reach, in words; empty: nothing. Throws
-    /// Error{usage} with them for an address that is not loopback, Error{io_failed} if it is taken or cannot be had.
+    /// Binds to `address`. Only its owner may use a Unix socket; a lock file lies beside it, and the socket of a dead server is
+    /// replaced.
+    /// `unprotected`: result of missing_protection().
+    /// Throws: Error{usage} with `unprotected`, unless empty, for an address that is not loopback; Error{io_failed} if binding
+    /// fails.
     Listener(const Address& address, const std::string& unprotected);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
-    /// Takes a Unix socket away.
+    /// Stops, and removes the Unix socket.
     ~Listener();
 
-    /// With the port that the system chose, if 0 was asked for.
+    /// Returns the address, with the port that the system chose if port 0 was given.
     const Address& address() const { return address_; }
 
     struct Terms {
-        std::uint64_t most_connections = 0;  ///< 0: no limit
-        bool encrypted = false;              ///< then a refusal cannot say why
-        std::function<void(Descriptor)> accept;
-        std::function<void()> refused;  ///< not told of each one in a flood
+        std::uint64_t most_connections = 0;      ///< 0: no limit
+        bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
+        std::function<void(Descriptor)> accept;  ///< receives each accepted connection
+        std::function<void()> refused;           ///< called after refusals, at most once a second
     };
-    /// From now on connections are accepted, on a thread of its own; the functions of `terms` are called there.
+    /// Starts a thread that accepts connections. The functions of `terms` are called on this thread.
     void start(Terms terms);
-    /// No more.
+    /// Stops accepting connections.
     void stop();
     std::uint64_t connections() const { return connections_; }
     std::uint64_t refused() const { return refused_; }
 
 private:
-    /// A connection that was handed over: a descriptor's number may be another one's since.
-    struct Known {
+    /// A connection that was handed to gRPC. The inode is kept because the system reuses numbers of closed descriptors.
+    struct Accepted {
         int number;
         ino_t socket;
     };
 
-    /// One too many. It is told why a little later, or gRPC would connect again at once, thousands of times a
-    /// second; and closed later still, or its own words would find nobody, and it would not read ours.
+    /// A connection beyond the limit. The reason is sent after a delay: otherwise the client's gRPC would reconnect thousands
+    /// of times a second. The connection is closed after another delay: closing at once would reset it before the client reads
+    /// the reason.
     struct Refused {
         Descriptor connection;
         std::string why;
         std::chrono::steady_clock::time_point since;
-        bool told = false;
+        bool reason_sent = false;
     };
 
     void bind_unix();
     void bind_tcp(const std::string& unprotected);
-    void take_connections();
+    void accept_connections();
     void take(Descriptor connection);
     bool is_ours(const Descriptor& connection) const;
     void forget_closed();
     void refuse_one_more();
-    void take_spares();
+    void refill_spares();
     void refuse(Descriptor connection, std::string why);
-    void see_out(Refused& refused) const;
-    void see_out_refused();
+    void send_refusal(Refused& refused) const;
+    void close_refused();
 
     Address address_;
     Terms terms_;
     Descriptor lock_, socket_, wake_;
-    std::vector<Descriptor> spares_;  // given up, one at a time, to tell others that there are no more
-    std::vector<Known> known_;
-    std::deque<Refused> leaving_;
-    std::chrono::steady_clock::time_point told_;  // of a refusal
+    std::vector<Descriptor> spares_;  // reserved: freeing one allows to accept and refuse a connection
+    std::vector<Accepted> accepted_;
+    std::deque<Refused> refused_connections_;
+    std::chrono::steady_clock::time_point last_report_;  // last call of terms_.refused
     std::size_t forget_from_ = 64;
     std::atomic<std::uint64_t> connections_ = 0, refused_ = 0;
     std::thread thread_;

@@ -16,7 +16,7 @@ namespace octopair::service {
 
 namespace {
 
-/// What is known of a job that cannot run: its files are damaged, or it is beyond the limits of this server.
+/// Returns the report of a job that cannot run: its files are damaged, or it exceeds the limits of this server.
 v1::JobReport report_of(const StoredSpec& stored, const Error& damage) {
     v1::JobReport report;
     report.set_state(v1::FAILED);
@@ -26,18 +26,19 @@ v1::JobReport report_of(const StoredSpec& stored, const Error& damage) {
     return report;
 }
 
-/// Of a job that was released, and submitted anew before its files were gone, the last is the one that counts.
-void remove_outlived(std::vector<StateFolder::Found>& jobs) {
+/// Removes older jobs with the owner and id of a later one. They exist if a job was released and submitted again, and the
+/// server ended before the old files were deleted.
+void remove_superseded(std::vector<StateFolder::Found>& jobs) {
     std::set<std::pair<std::string, std::string>> names;
-    const auto is_outlived = [&](const StateFolder::Found& found) {
+    const auto is_superseded = [&](const StateFolder::Found& found) {
         return !names.emplace(found.stored.owner, found.stored.spec.id()).second;
     };
     std::reverse(jobs.begin(), jobs.end());
     const auto kept =
-        std::stable_partition(jobs.begin(), jobs.end(), [&](const auto& found) { return !is_outlived(found); });
-    for (auto outlived = kept; outlived != jobs.end(); ++outlived) {
-        remove_file(outlived->base + ".job");
-        remove_file(outlived->base + ".result");
+        std::stable_partition(jobs.begin(), jobs.end(), [&](const auto& found) { return !is_superseded(found); });
+    for (auto superseded = kept; superseded != jobs.end(); ++superseded) {
+        remove_file(superseded->base + ".job");
+        remove_file(superseded->base + ".result");
     }
     if (kept != jobs.end()) (void)sync_folder_of(kept->base);
     jobs.erase(kept, jobs.end());
@@ -46,16 +47,16 @@ void remove_outlived(std::vector<StateFolder::Found>& jobs) {
 
 }  // namespace
 
-PairsInFile::Place DetachedJobs::pairs_of(const std::string& base, const std::string& hash) const {
+PairsInFile::Target DetachedJobs::result_target(const std::string& base, const std::string& hash) const {
     return {base + ".result", hash, server_.state->disk(), server_.options.limits.pairs};
 }
 
-std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, ClientCounts::Place place) const {
+std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, JobQuota::Slot slot) const {
     ServerJob::Parts job;
     job.owner = parts.stored.owner;
     job.spec = parts.stored.spec;
     job.pairs = parts.pairs;
-    job.place = std::move(place);
+    job.slot = std::move(slot);
     job.record = std::make_shared<StoredJob>(std::move(parts));
     return server_.make_job(std::move(job));
 }
@@ -63,7 +64,7 @@ std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, Client
 void DetachedJobs::restore() {
     std::uint64_t queued = 0, ended = 0;
     std::vector<StateFolder::Found> jobs = server_.state->find_jobs();
-    remove_outlived(jobs);
+    remove_superseded(jobs);
     for (StateFolder::Found& found : jobs) {
         try {
             const bool is_ended = found.result || found.damage;
@@ -71,7 +72,7 @@ void DetachedJobs::restore() {
             ++(is_ended ? ended : queued);
         } catch (const Error& error) {
             log_text(*server_.log, LogLevel::error,
-                     std::string("a job of the state folder is left out: ") + error.what());
+                     std::string("a job of the state folder is skipped: ") + error.what());
         }
     }
     if (queued + ended == 0) return;
@@ -82,8 +83,9 @@ void DetachedJobs::restore() {
 void DetachedJobs::restore(StateFolder::Found found) {
     std::optional<Error> damage = std::move(found.damage);
     if (!found.result && !damage && found.stored.algorithm != algorithm_version) {
-        damage = Error(ErrorCode::engine_failed,
-                       found.base + ".job: submitted to another version of octopair, which did not come to it");
+        damage =
+            Error(ErrorCode::engine_failed,
+                  found.base + ".job: submitted to another version of octopair, which did not run it; submit it again");
     }
     const std::uint64_t memory_bytes = server_.memory_of(found.stored.spec);
     if (!found.result && !damage) {
@@ -91,20 +93,21 @@ void DetachedJobs::restore(StateFolder::Found found) {
             server_.check_limits(found.stored.spec);
             server_.memory.check(memory_bytes);
         } catch (const LimitError& limit) {
-            damage = limit;  // as long as this server's limits hold
+            damage = limit;  // not stored: a server with higher limits will run the job
         }
     }
     const std::string name = "job " + found.stored.spec.id();
     if (damage) log_text(*server_.log, LogLevel::error, name + ": " + damage->what());
-    auto pairs = found.result ? std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash), *found.result,
-                                                              std::move(found.result_disk))
-                              : std::make_shared<PairsInFile>(pairs_of(found.base, found.stored.hash));
-    ClientCounts::Place place;
+    auto pairs = found.result ? std::make_shared<PairsInFile>(result_target(found.base, found.stored.hash),
+                                                              *found.result, std::move(found.result_disk))
+                              : std::make_shared<PairsInFile>(result_target(found.base, found.stored.hash));
+    JobQuota::Slot slot;
     if (!found.result && !damage) {
         try {
-            place = server_.places.enter(found.stored.owner);
+            slot = server_.job_quota.take_slot(found.stored.owner);
         } catch (const LimitError&) {
-            log_text(*server_.log, LogLevel::warning, name + ": one more than the limits of today allow");
+            log_text(*server_.log, LogLevel::warning,
+                     name + ": accepted, although the server now has more jobs than its limits allow");
         }
     }
     const v1::JobReport ending =
@@ -112,7 +115,7 @@ void DetachedJobs::restore(StateFolder::Found found) {
     const bool ended = damage || found.result;
     const auto job = make_job({*server_.state, found.base, std::move(found.stored), std::move(found.disk),
                                std::move(pairs), server_.memory, memory_bytes},
-                              std::move(place));
+                              std::move(slot));
     ended ? job->set_ended(ending) : set_queued(*job);
     (void)server_.jobs.enter(job);
     if (!ended) server_.queue(job);
@@ -136,27 +139,27 @@ Submission DetachedJobs::begin_job(const std::string& owner, v1::JobSpec spec) {
         submission.upload = std::make_unique<StoredUpload>(std::move(stored));
         return submission;
     }
-    submission.place = server_.places.enter(owner);
+    submission.slot = server_.job_quota.take_slot(owner);
     submission.upload = std::make_unique<StoredUpload>(*server_.state, std::move(stored));
     return submission;
 }
 
-/// The job that was submitted before, if there is one.
+/// Returns the existing job with the owner, id and hash of `upload`, or null.
 std::shared_ptr<ServerJob> DetachedJobs::find_same(const StoredUpload& upload) const {
     const std::string &owner = upload.stored().owner, &id = upload.stored().spec.id();
     std::shared_ptr<ServerJob> known = server_.jobs.look_up(owner, id);
     if (known && (!known->detached() || known->input_hash() != upload.hash())) {
-        throw Error(ErrorCode::bad_input, "job " + id + " is there already, with other input or options");
+        throw Error(ErrorCode::bad_input, "job " + id + " already exists, with other input or options");
     }
     return known;
 }
 
 void DetachedJobs::set_queued(ServerJob& job) const {
-    server_.server_log.job_moved(job, {}, v1::UPLOADING);
+    server_.server_log.job_state_changed(job, {}, v1::UPLOADING);
     job.queue();
 }
 
-/// Only disk_queue enter detached jobs: none is entered between looking for it and entering.
+/// Detached jobs are entered only on the thread of the disk queue, so find_same() and enter() cannot race with each other.
 std::shared_ptr<ServerJob> DetachedJobs::commit(Submission& submission) {
     StoredUpload& upload = *submission.upload;
     if (auto known = find_same(upload)) return known;
@@ -164,15 +167,15 @@ std::shared_ptr<ServerJob> DetachedJobs::commit(Submission& submission) {
     const std::string base = upload.commit();
     StoredSpec stored = upload.stored();
     const std::uint64_t memory_bytes = server_.memory_of(stored.spec);
-    auto pairs = std::make_shared<PairsInFile>(pairs_of(base, stored.hash));
+    auto pairs = std::make_shared<PairsInFile>(result_target(base, stored.hash));
     auto job = make_job(
         {*server_.state, base, std::move(stored), upload.take_disk(), std::move(pairs), server_.memory, memory_bytes},
-        std::move(submission.place));
+        std::move(submission.slot));
     set_queued(*job);
     try {
         (void)server_.jobs.enter(job);
     } catch (...) {
-        server_.server_log.job_moved(*job, v1::QUEUED, v1::CANCELLED);
+        server_.server_log.job_state_changed(*job, v1::QUEUED, v1::CANCELLED);
         throw;
     }
     upload.hand_over();
@@ -185,10 +188,10 @@ void DetachedJobs::release(const ServerJob& job) {
     static_cast<StoredJob&>(*job.record()).remove();
 }
 
-void DetachedJobs::look(std::chrono::steady_clock::time_point now) {
-    constexpr std::chrono::milliseconds apart(500);
-    if (now - looked_ < apart) return;
-    looked_ = now;
+void DetachedJobs::check_deadline(std::chrono::steady_clock::time_point now) {
+    constexpr std::chrono::milliseconds expiry_interval(500);
+    if (now - last_check_ < expiry_interval) return;
+    last_check_ = now;
     for (const auto& job : server_.jobs.all()) {
         const auto ended = job->ended_at();
         if (!job->detached() || !ended || now - *ended < server_.options.keep) continue;

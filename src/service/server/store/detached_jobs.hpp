@@ -1,19 +1,19 @@
-// DetachedJobs: the jobs that outlive their calls and the server: submitted, found again at the server's start, released.
+// DetachedJobs: submits and releases detached jobs, which outlive their calls and the server, and restores them at a start.
 #pragma once
 
 #include <chrono>
 #include <memory>
 #include <string>
 
-#include "service/server/server_context.hpp"
 #include "service/server/jobs/watchdog.hpp"
+#include "service/server/server_context.hpp"
 #include "service/server/store/stored_job.hpp"
 
 namespace octopair::service {
 
-/// A job on its way to the disk.
+/// A detached job whose input is being uploaded.
 struct Submission {
-    ClientCounts::Place place;
+    JobQuota::Slot slot;
     std::unique_ptr<StoredUpload> upload;
 };
 
@@ -21,32 +21,34 @@ class DetachedJobs final : public Watched {
 public:
     explicit DetachedJobs(ServerContext& server) : server_(server) {}
 
-    /// Enters the jobs of the state folder: those without a result are queued again.
+    /// Adds the jobs of the state folder to the job table, and queues those without a result.
     void restore();
 
-    /// A job with room for its input, within all limits. Throws a LimitError, Error{bad_input}, Error{io_failed}.
+    /// Starts the upload of a job and reserves disk space for its input. Throws: LimitError, Error{bad_input},
+    /// Error{io_failed}.
     Submission begin(const std::string& owner, v1::JobSpec spec);
-    /// Its input is complete. When it returns, the job is on the disk, and queued; or it is the job that its owner had
-    /// submitted under this id before. Throws Error{bad_input} if that one is another. As an errand.
+    /// Writes the job to the disk, queues it and returns it. If its owner already has a job with this id and hash, returns that
+    /// job. Returns null if that job was released during the upload. Requires: the input is complete; runs on the disk queue.
+    /// Throws: Error{bad_input} if the existing job has another hash; Error{io_failed}.
     std::shared_ptr<ServerJob> commit(Submission& submission);
-    /// Forgets a job that has ended; as an errand.
+    /// Removes a job and its files. Requires: the job has ended; runs on the disk queue.
     void release(const ServerJob& job);
 
-    /// Forgets those that ended longer ago than they are kept.
-    void look(std::chrono::steady_clock::time_point now) override;
-    /// Stops what runs; it is for the next server.
+    /// Removes jobs that ended more than ServerOptions::keep ago.
+    void check_deadline(std::chrono::steady_clock::time_point now) override;
+    /// Stops running jobs without an ending, so that the next server runs them.
     void abandon();
 
 private:
     void restore(StateFolder::Found found);
     std::shared_ptr<ServerJob> find_same(const StoredUpload& upload) const;
     Submission begin_job(const std::string& owner, v1::JobSpec spec);
-    std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, ClientCounts::Place place) const;
+    std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, JobQuota::Slot slot) const;
     void set_queued(ServerJob& job) const;
-    PairsInFile::Place pairs_of(const std::string& base, const std::string& hash) const;
+    PairsInFile::Target result_target(const std::string& base, const std::string& hash) const;
 
     ServerContext& server_;
-    std::chrono::steady_clock::time_point looked_{};  // the watchdog's
+    std::chrono::steady_clock::time_point last_check_{};  // used by the watchdog's thread only
 };
 
 }  // namespace octopair::service

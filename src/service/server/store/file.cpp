@@ -32,7 +32,7 @@ void File::read(std::uint64_t offset, std::span<std::byte> bytes) const {
         const ssize_t count = ::pread(descriptor_.number(), bytes.data(), bytes.size(), off_t(offset));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail_io(path_, "cannot read", errno);
-        if (count == 0) throw Error(ErrorCode::io_failed, path_ + ": damaged: it is too short");
+        if (count == 0) throw Error(ErrorCode::io_failed, path_ + ": damaged: the file is too short");
         offset += std::uint64_t(count);
         bytes = bytes.subspan(std::size_t(count));
     }
@@ -59,7 +59,7 @@ void File::reserve(std::uint64_t bytes) const {
 void File::finish(const std::string& path) const {
     if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
     if (::rename(path_.c_str(), path.c_str()) != 0) fail_io(path, "cannot rename onto it", errno);
-    if (!sync_folder_of(path)) fail_io(path, "cannot be written for good", errno);
+    if (!sync_folder_of(path)) fail_io(path, "cannot sync its folder", errno);
 }
 
 bool remove_file(const std::string& path) noexcept { return ::unlink(path.c_str()) == 0; }
@@ -74,7 +74,8 @@ bool sync_folder_of(const std::string& path) noexcept {
     }
     const Descriptor descriptor(::open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!descriptor.open()) return false;
-    return ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP;  // not all file systems can
+    // Some file systems cannot sync folders.
+    return ::fsync(descriptor.number()) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
 
 }  // namespace octopair::service

@@ -1,4 +1,4 @@
-// A file of the state folder: what the system refuses is an Error that names it.
+// File: a file of the state folder. A failed system call becomes an Error that names the file.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace octopair::service {
 
-/// Reads and writes are at given places, and may come from several threads. All throw Error{io_failed}.
+/// Throws: Error{io_failed} from all members. Thread safety: read() and write() are safe, as each takes its offset.
 class File {
 public:
     enum class Mode : std::uint8_t { read, create };
 
     File() = default;
-    /// `create`: it must not be there; nobody else may read it.
+    /// `create`: the file must not exist yet; only its owner may access it.
     File(std::string path, Mode mode);
 
     bool open() const { return descriptor_.open(); }
@@ -24,9 +24,10 @@ public:
     std::uint64_t size() const;
     void read(std::uint64_t offset, std::span<std::byte> bytes) const;
     void write(std::uint64_t offset, std::span<const std::byte> bytes) const;
-    /// Room for `bytes` in all, where the file system can set it aside: so want of it is known before the work.
+    /// Allocates disk space for a file of `bytes` bytes, so that a full disk is reported early. Does nothing on file systems
+    /// without fallocate.
     void reserve(std::uint64_t bytes) const;
-    /// Syncs the file, renames it to `path` in its folder, and syncs that.
+    /// Syncs the file, renames it to `path` in the same folder, and syncs the folder.
     void finish(const std::string& path) const;
 
 private:
@@ -34,10 +35,10 @@ private:
     Descriptor descriptor_;
 };
 
-/// Whether it was there.
+/// Returns whether the file existed and was removed.
 bool remove_file(const std::string& path) noexcept;
-/// What was created, renamed or removed in it lasts. Some file systems cannot; that is passed over. False, with errno, if it
-/// fails.
+/// Syncs the folder that contains `path`, so that created, renamed and removed files persist. Returns false, with errno set, on
+/// failure. A file system that cannot sync folders is no failure.
 bool sync_folder_of(const std::string& path) noexcept;
 
 }  // namespace octopair::service

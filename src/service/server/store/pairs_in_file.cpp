@@ -8,14 +8,17 @@
 
 namespace octopair::service {
 
-PairsInFile::PairsInFile(Place place, StoredResult stored, Budget::Reservation share)
-    : place_(std::move(place)), reservation_(std::move(share)), sums_(std::move(stored.sums)), ready_(stored.pairs) {}
+PairsInFile::PairsInFile(Target target, StoredResult stored, Budget::Reservation reservation)
+    : target_(std::move(target)),
+      reservation_(std::move(reservation)),
+      sums_(std::move(stored.sums)),
+      ready_(stored.pairs) {}
 
 PairsInFile::~PairsInFile() { discard(); }
 
 void PairsInFile::append(std::span<const Pair> pairs) {
     size_ += pairs.size();
-    check_kept(size_, place_.most_pairs);
+    check_pair_limit(size_, target_.most_pairs);
     if (piece_.size() == 0) piece_.resize_discard(stored_piece_pairs);
     while (!pairs.empty()) {
         const std::size_t count = std::min(piece_.size() - used_, pairs.size());
@@ -31,7 +34,7 @@ void PairsInFile::finish() {
     piece_.clear();
 }
 
-/// Others may read it from then on.
+/// Appends the piece to the file. On return its pairs are readable.
 void PairsInFile::write_piece() {
     open();
     const auto bytes = std::as_bytes(std::as_const(piece_).span().first(used_));
@@ -49,8 +52,8 @@ void PairsInFile::write_piece() {
 
 void PairsInFile::open() {
     if (part_) return;
-    auto part = std::make_shared<File>(place_.path + ".part", File::Mode::create);
-    const std::string head = encode_result_head(place_.hash);
+    auto part = std::make_shared<File>(target_.path + ".part", File::Mode::create);
+    const std::string head = encode_result_head(target_.hash);
     try {
         part->write(0, std::as_bytes(std::span(head)));
     } catch (...) {
@@ -69,7 +72,7 @@ std::optional<grpc::Slice> PairsInFile::piece(std::uint64_t offset) const {
         const std::lock_guard lock(mutex_);
         if (removed_) throw Error(ErrorCode::bad_input, "the job was released while its result was read");
         if (offset >= ready_) return {};
-        file = part_ ? part_ : std::make_shared<File>(place_.path, File::Mode::read);
+        file = part_ ? part_ : std::make_shared<File>(target_.path, File::Mode::read);
         sum = sums_[std::size_t(number)];
         pairs = std::min(stored_piece_pairs, ready_ - first);
     }
@@ -77,7 +80,7 @@ std::optional<grpc::Slice> PairsInFile::piece(std::uint64_t offset) const {
     const std::span bytes = room_in(piece);
     file->read(result_head_bytes + first * sizeof(Pair), bytes);
     if (checksum_of(bytes) != sum) {
-        fail_damaged(place_.path, "a wrong checksum of the pairs from " + std::to_string(first) + " on");
+        fail_damaged(target_.path, "wrong checksum of the piece that begins with pair " + std::to_string(first));
     }
     const std::size_t begin = std::size_t(offset - first) * sizeof(Pair);
     return begin == 0 ? piece : piece.sub(begin, piece.size());
@@ -93,7 +96,7 @@ void PairsInFile::discard() noexcept {
     piece_.clear();
     used_ = 0;
     if (!part_) return;
-    remove_file(place_.path + ".part");
+    remove_file(target_.path + ".part");
     part_.reset();
     sums_.clear();
     ready_ = 0;
@@ -102,9 +105,9 @@ void PairsInFile::discard() noexcept {
 
 void PairsInFile::seal(const v1::JobReport& ending) {
     open();
-    const std::string end = encode_result_end({place_.hash, ready_, sums_, ending});
+    const std::string end = encode_result_end({target_.hash, ready_, sums_, ending});
     part_->write(result_head_bytes + ready_ * sizeof(Pair), std::as_bytes(std::span(end)));
-    part_->finish(place_.path);
+    part_->finish(target_.path);
     const std::lock_guard lock(mutex_);
     part_.reset();
 }
@@ -113,7 +116,7 @@ void PairsInFile::remove() noexcept {
     discard();
     const std::lock_guard lock(mutex_);
     removed_ = true;
-    remove_file(place_.path);
+    remove_file(target_.path);
     reservation_.give_back();
 }
 

@@ -1,7 +1,10 @@
-// The pairs of a detached job, in the file of its result: written as they are found, read from there as they are sent.
+// PairsInFile: keeps the pairs of a detached job in its result file. Pairs are written as they are found, and read to be sent.
 //
-// The file has its name, and how the job ended, only when that is final; until then it is a part that a server which starts
-// throws away. Memory: one piece while pairs are appended, and eight bytes a piece.
+// Invariants:
+//  - Until seal() the file has the ending .part. A server removes such files when it starts.
+//  - A file without .part is complete and contains how the job ended.
+//
+// Memory: one piece (1 MiB) while pairs are appended, and eight bytes for each piece.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +22,20 @@ namespace octopair::service {
 
 class PairsInFile final : public KeptPairs {
 public:
-    struct Place {
+    struct Target {
         std::string path;
-        std::string hash;  ///< of the job
+        std::string hash;  ///< hash of the job
         Budget& disk;
         std::uint64_t most_pairs = 0;  ///< 0: no limit
     };
 
-    /// Of a job that has not ended.
-    explicit PairsInFile(Place place) : place_(std::move(place)), reservation_(place_.disk.take(0)) {}
-    /// Of one that has; `share`: what its file takes.
-    PairsInFile(Place place, StoredResult stored, Budget::Reservation share);
+    /// For a job that has not ended.
+    explicit PairsInFile(Target target) : target_(std::move(target)), reservation_(target_.disk.take(0)) {}
+    /// For a job that has ended. `reservation`: disk space of the result file.
+    PairsInFile(Target target, StoredResult stored, Budget::Reservation reservation);
     PairsInFile(const PairsInFile&) = delete;
     PairsInFile& operator=(const PairsInFile&) = delete;
-    /// Takes away what has no end.
+    /// Removes the file if it was not sealed.
     ~PairsInFile() override;
 
     void append(std::span<const Pair> pairs) override;
@@ -40,26 +43,26 @@ public:
     std::optional<grpc::Slice> piece(std::uint64_t offset) const override;
     std::uint64_t ready() const override;
 
-    /// There are no pairs: the job was not done.
+    /// Deletes all pairs. Does nothing after seal().
     void discard() noexcept;
-    /// The result is final, as `ending` says. Throws Error{io_failed}.
+    /// Completes the file with `ending`. Throws: Error{io_failed}.
     void seal(const v1::JobReport& ending);
-    /// The file goes.
+    /// Deletes the pairs and the file.
     void remove() noexcept;
 
 private:
     void open();
     void write_piece();
 
-    const Place place_;
-    Buffer<Pair> piece_;    // the appending thread's
-    std::size_t used_ = 0;  // pairs in it
-    std::uint64_t size_ = 0;
+    const Target target_;
+    Buffer<Pair> piece_;      // piece being filled; used by the appending thread only
+    std::size_t used_ = 0;    // pairs in piece_
+    std::uint64_t size_ = 0;  // pairs appended
 
     mutable std::mutex mutex_;
     Budget::Reservation reservation_;
-    std::shared_ptr<File> part_;  // until it is final
-    std::vector<std::uint64_t> sums_;
+    std::shared_ptr<File> part_;       // file N.result.part; null once sealed
+    std::vector<std::uint64_t> sums_;  // checksum of each piece
     std::uint64_t ready_ = 0;
     bool removed_ = false;
 };

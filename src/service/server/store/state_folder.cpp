@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t digits = 16;
 
-/// The number of "N.job", if it is one.
+/// Returns the number N of a file name "N" + `ending`, or nothing for another name.
 std::optional<std::uint64_t> number_of(const std::string& name, std::string_view ending) {
     if (name.size() != digits + ending.size() || name.substr(digits) != ending) return {};
     if (name.find_first_not_of("0123456789abcdef") < digits) return {};
@@ -42,14 +42,13 @@ StateFolder::StateFolder(std::string path, std::uint64_t most_bytes, std::shared
     : path_(std::move(path)), log_(std::move(log)), disk_("state_bytes", "bytes of state on its disk", most_bytes) {
     const bool made = ::mkdir(path_.c_str(), 0700) == 0;
     if (!made && errno != EEXIST) fail_io(path_, "cannot create", errno);
-    if (made && !sync_folder_of(path_)) fail_io(path_, "cannot be written for good", errno);
+    if (made && !sync_folder_of(path_)) fail_io(path_, "cannot sync its folder", errno);
     const Descriptor folder(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!folder.open()) fail_io(path_, "cannot open", errno);
     struct stat status {};
     if (::fstat(folder.number(), &status) != 0) fail_io(path_, "cannot open", errno);
     if ((status.st_mode & 077) != 0) {
-        throw Error(ErrorCode::usage,
-                    path_ + ": others may use this folder; give the server one of its own (chmod 700)");
+        throw Error(ErrorCode::usage, path_ + ": other users may access the state folder; make it private (chmod 700)");
     }
     lock();
 }
@@ -59,7 +58,7 @@ void StateFolder::lock() {
     lock_ = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!lock_.open()) fail_io(path, "cannot open", errno);
     if (::flock(lock_.number(), LOCK_EX | LOCK_NB) == 0) return;
-    if (errno == EWOULDBLOCK) throw Error(ErrorCode::io_failed, path_ + ": another server has this state folder");
+    if (errno == EWOULDBLOCK) throw Error(ErrorCode::io_failed, path_ + ": another server uses this state folder");
     fail_io(path, "cannot lock", errno);
 }
 
@@ -71,7 +70,7 @@ std::string StateFolder::base_of(std::uint64_t number) const {
 
 std::string StateFolder::new_base() { return base_of(++last_); }
 
-/// Takes away what has no meaning, and gives the numbers of the jobs.
+/// Removes incomplete files, and results without a job. Returns the numbers of the jobs, ascending.
 std::vector<std::uint64_t> StateFolder::clean_up() {
     std::vector<std::uint64_t> jobs, results;
     std::error_code error;
@@ -80,7 +79,7 @@ std::vector<std::uint64_t> StateFolder::clean_up() {
         if (const auto job = number_of(name, ".job")) jobs.push_back(*job);
         if (const auto result = number_of(name, ".result")) results.push_back(*result);
         const bool part = number_of(name, ".job.part") || number_of(name, ".result.part");
-        if (part && remove_file(at->path().string())) log_text(*log_, LogLevel::info, name + ": half-written, removed");
+        if (part && remove_file(at->path().string())) log_text(*log_, LogLevel::info, name + ": incomplete; removed");
     }
     if (error) fail_io(path_, "cannot read", error.value());
     std::sort(jobs.begin(), jobs.end());
@@ -105,15 +104,15 @@ std::optional<StateFolder::Found> StateFolder::find_job(const std::string& base)
         const File file(base + ".job", File::Mode::read);
         Found found;
         found.base = base;
-        found.disk = disk_.take_anyway(file.size() + bytes_beside);
+        found.disk = disk_.take_unchecked(file.size() + overhead_bytes);
         found.stored = read_job(bytes_of(file));
         if (found.stored.hash.empty()) {
-            found.damage = Error(ErrorCode::io_failed, file.path() + ": damaged: its end is not that of its job");
+            found.damage = Error(ErrorCode::io_failed, file.path() + ": damaged: the end of the file is invalid");
         }
         find_result(found);
         return found;
     } catch (const Error& error) {
-        log_text(*log_, LogLevel::error, std::string(error.what()) + "; it is left there");
+        log_text(*log_, LogLevel::error, std::string(error.what()) + "; the file is skipped and kept");
         return {};
     }
 }
@@ -123,7 +122,7 @@ void StateFolder::find_result(Found& found) {
     if (!fs::exists(path)) return;
     try {
         const File file(path, File::Mode::read);
-        found.result_disk = disk_.take_anyway(file.size());
+        found.result_disk = disk_.take_unchecked(file.size());
         found.result = read_result(bytes_of(file));
         if (found.result->hash != found.stored.hash && !found.damage) {
             fail_damaged(path, "it is the result of another job");

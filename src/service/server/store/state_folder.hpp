@@ -1,7 +1,11 @@
-// StateFolder: where detached jobs outlive the server (docs/formats.md). One server has it at a time.
+// StateFolder: the folder with the files of detached jobs (docs/formats.md).
 //
-// A job is N.job from when its submission is acknowledged, and N.result from when it has ended, until both are removed; N
-// counts up, and jobs run in its order. What a crash left half-written has the ending .part, and goes at the next start.
+// Invariants:
+//  - One server uses a folder at a time.
+//  - N.job exists from the acknowledgement of a submission until the job is removed.
+//  - N.result exists from the end of the job until the job is removed.
+//  - N increases with every submission. Jobs run in the order of N.
+//  - Incomplete files have the ending .part. A server removes them when it starts.
 #pragma once
 
 #include <spdlog/fwd.h>
@@ -23,24 +27,26 @@ namespace octopair::service {
 
 class StateFolder {
 public:
-    /// What a job takes beside input and pairs: its end, the blocks of the file system.
-    static constexpr std::uint64_t bytes_beside = 16 << 10;
+    /// Disk space that is reserved for a job besides its input and pairs: for its ending, and for partly used file system
+    /// blocks.
+    static constexpr std::uint64_t overhead_bytes = 16 << 10;
 
-    /// Makes the folder if it is not there, for its owner alone. Throws Error{io_failed}, also if another server has it.
+    /// Creates the folder, private to its owner, if it does not exist, and locks it. Throws: Error{usage} if other users may
+    /// access it; Error{io_failed} on failure, or if another server uses it.
     StateFolder(std::string path, std::uint64_t most_bytes, std::shared_ptr<spdlog::logger> log);
 
-    /// A job that was there.
+    /// A job that was found in the folder.
     struct Found {
-        std::string base;  ///< of its paths
+        std::string base;  ///< path of its files without .job or .result
         StoredSpec stored;
         Budget::Reservation disk, result_disk;
         std::optional<StoredResult> result;
-        std::optional<Error> damage;  ///< of a file: it cannot run, or its result cannot be had
+        std::optional<Error> damage;  ///< a file is damaged: the job cannot run, or its result cannot be read
     };
-    /// In the order in which they were submitted. What cannot be told whose it is is left where it is, and said in the log.
+    /// Returns the jobs in the order of submission. Files whose owner cannot be read are logged and not touched.
     std::vector<Found> find_jobs();
 
-    /// Of paths of a new job. Thread-safe, as all from here on.
+    /// Returns the base path of a new job. Thread safety: this and all members below are safe.
     std::string new_base();
     Budget& disk() { return disk_; }
     DiskQueue& disk_queue() { return disk_queue_; }
@@ -57,8 +63,8 @@ private:
     const std::shared_ptr<spdlog::logger> log_;
     Descriptor lock_;
     Budget disk_;
-    std::atomic<std::uint64_t> last_ = 0;
-    DiskQueue disk_queue_;  // the last, so that it ends first
+    std::atomic<std::uint64_t> last_ = 0;  // greatest N in use
+    DiskQueue disk_queue_;                 // last member: destroyed first, as its tasks use the others
 };
 
 }  // namespace octopair::service

@@ -13,12 +13,12 @@
 
 namespace octopair::service {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are written in the byte order of memory");
 
 namespace {
 
 constexpr std::uint32_t newest_version = 1;
-constexpr std::uint64_t most_text = 1 << 16;  // of an owner, a spec or an ending
+constexpr std::uint64_t most_text = 1 << 16;  // maximum bytes of an owner, a spec or an ending
 constexpr std::size_t hash_bytes = 16;
 
 struct BlockHead {
@@ -36,7 +36,7 @@ static_assert(sizeof(BlockHead) == 32);
 struct JobTail {
     std::array<char, hash_bytes> hash{};
     std::uint64_t block_bytes = 0;
-    std::uint64_t checksum = 0;  // of what is before it here
+    std::uint64_t checksum = 0;  // checksum of the members above
 };
 static_assert(sizeof(JobTail) == 32);
 
@@ -53,7 +53,7 @@ static_assert(sizeof(ResultHead) == result_head_bytes);
 struct ResultTail {
     std::uint64_t pairs = 0;
     std::uint64_t ending_bytes = 0;
-    std::uint64_t checksum = 0;  // of head, sums, ending and what is before it here
+    std::uint64_t checksum = 0;  // checksum of the head, the sums, the ending and the members above
 };
 static_assert(sizeof(ResultTail) == 24);
 
@@ -65,7 +65,7 @@ std::string_view text_of(const Plain& plain) {
 std::uint64_t text_checksum(std::string_view text) { return checksum_of(std::as_bytes(std::span(text))); }
 
 std::string text_at(const FileBytes& file, std::uint64_t offset, std::uint64_t bytes) {
-    if (offset > file.size || bytes > file.size - offset) fail_damaged(file.name, "it is too short");
+    if (offset > file.size || bytes > file.size - offset) fail_damaged(file.name, "the file is too short");
     std::string text(std::size_t(bytes), '\0');
     file.read(offset, std::as_writable_bytes(std::span(text)));
     return text;
@@ -81,32 +81,33 @@ Plain plain_at(const FileBytes& file, std::uint64_t offset) {
 
 void check_version(const FileBytes& file, std::uint32_t version) {
     if (version == newest_version) return;
-    throw Error(ErrorCode::io_failed, file.name + ": it is of version " + std::to_string(version) +
-                                          " of its format; this program knows " + std::to_string(newest_version));
+    throw Error(ErrorCode::io_failed, file.name + ": format version " + std::to_string(version) +
+                                          "; this program reads version " + std::to_string(newest_version));
 }
 
 std::uint64_t bytes_of(const BlockHead& head) {
     return sizeof head + head.owner_bytes + head.spec_bytes + sizeof(std::uint64_t);
 }
 
-/// The block that begins at `offset`; its file must be as long as it says.
+/// Returns the block that begins at `offset`. Throws: Error{io_failed} if it is invalid or longer than the file.
 StoredSpec block_at(const FileBytes& file, std::uint64_t offset) {
     const auto head = plain_at<BlockHead>(file, offset);
-    if (head.magic != BlockHead::right_magic) fail_damaged(file.name, "it does not begin as a job does");
+    if (head.magic != BlockHead::right_magic)
+        fail_damaged(file.name, "the job's block does not begin with its magic bytes");
     check_version(file, head.version);
     if (head.owner_bytes > most_text || head.spec_bytes > most_text) fail_damaged(file.name, "wrong lengths");
     const std::string block = text_at(file, offset, bytes_of(head));
     std::uint64_t checksum = 0;
     const std::string_view covered = std::string_view(block).substr(0, block.size() - sizeof checksum);
     std::memcpy(&checksum, block.data() + covered.size(), sizeof checksum);
-    if (text_checksum(covered) != checksum) fail_damaged(file.name, "a wrong checksum of what the job is");
+    if (text_checksum(covered) != checksum) fail_damaged(file.name, "wrong checksum of the job spec");
 
     StoredSpec stored;
     stored.owner = covered.substr(sizeof head, head.owner_bytes);
     stored.algorithm = head.algorithm;
     stored.input_at = block.size();
     if (!stored.spec.ParseFromString(std::string(covered.substr(sizeof head + head.owner_bytes)))) {
-        fail_damaged(file.name, "what the job is cannot be read");
+        fail_damaged(file.name, "the job spec cannot be parsed");
     }
     try {
         check(stored.spec);
@@ -114,15 +115,16 @@ StoredSpec block_at(const FileBytes& file, std::uint64_t offset) {
     } catch (const Error& error) {
         fail_damaged(file.name, error.what());
     }
-    if (head.input_bytes != input_bytes(stored.spec)) fail_damaged(file.name, "the input is not that of its job");
+    if (head.input_bytes != input_bytes(stored.spec))
+        fail_damaged(file.name, "the size of the input does not match the job spec");
     return stored;
 }
 
 JobTail job_tail(const FileBytes& file) {
-    if (file.size < sizeof(JobTail)) fail_damaged(file.name, "it is too short");
+    if (file.size < sizeof(JobTail)) fail_damaged(file.name, "the file is too short");
     const auto tail = plain_at<JobTail>(file, file.size - sizeof(JobTail));
     if (text_checksum(text_of(tail).substr(0, sizeof tail - sizeof tail.checksum)) != tail.checksum) {
-        fail_damaged(file.name, "a wrong checksum of its end");
+        fail_damaged(file.name, "wrong checksum of the end of the file");
     }
     return tail;
 }
@@ -147,8 +149,9 @@ void fail_damaged(std::string_view file, std::string_view how) {
 
 std::string encode_block(const StoredSpec& stored) {
     const std::string spec = stored.spec.SerializeAsString();
-    if (stored.owner.size() > most_text) throw Error(ErrorCode::usage, "the client's name is too long to be kept");
-    if (spec.size() > most_text) throw Error(ErrorCode::bad_input, "what the job asks is too long to be kept");
+    if (stored.owner.size() > most_text)
+        throw Error(ErrorCode::usage, "the client's name is too long for a state file");
+    if (spec.size() > most_text) throw Error(ErrorCode::bad_input, "the job spec is too long for a state file");
     BlockHead head;
     head.algorithm = stored.algorithm;
     head.owner_bytes = std::uint32_t(stored.owner.size());
@@ -218,9 +221,10 @@ std::string encode_result_end(const StoredResult& result) {
 
 StoredResult read_result(const FileBytes& file) {
     const auto head = plain_at<ResultHead>(file, 0);
-    if (head.magic != ResultHead::right_magic) fail_damaged(file.name, "it does not begin as a result does");
+    if (head.magic != ResultHead::right_magic)
+        fail_damaged(file.name, "the file does not begin with the magic bytes of a result");
     check_version(file, head.version);
-    if (file.size < sizeof head + sizeof(ResultTail)) fail_damaged(file.name, "it is too short");
+    if (file.size < sizeof head + sizeof(ResultTail)) fail_damaged(file.name, "the file is too short");
     const std::uint64_t inner = file.size - sizeof head - sizeof(ResultTail);
     const auto tail = plain_at<ResultTail>(file, file.size - sizeof(ResultTail));
     const bool fits = tail.pairs <= inner / sizeof(Pair) && tail.ending_bytes <= most_text;
@@ -229,7 +233,8 @@ StoredResult read_result(const FileBytes& file) {
         fail_damaged(file.name, "wrong lengths");
     }
     const std::string text = text_at(file, sizeof head + tail.pairs * sizeof(Pair), sums_bytes + tail.ending_bytes);
-    if (result_checksum(text_of(head), text, tail) != tail.checksum) fail_damaged(file.name, "a wrong checksum");
+    if (result_checksum(text_of(head), text, tail) != tail.checksum)
+        fail_damaged(file.name, "wrong checksum of the end of the file");
 
     StoredResult result;
     result.hash.assign(head.hash.begin(), head.hash.end());
@@ -237,7 +242,7 @@ StoredResult read_result(const FileBytes& file) {
     result.sums.resize(std::size_t(pieces_of(tail.pairs)));
     if (sums_bytes > 0) std::memcpy(result.sums.data(), text.data(), std::size_t(sums_bytes));
     if (!result.ending.ParseFromString(text.substr(std::size_t(sums_bytes)))) {
-        fail_damaged(file.name, "how the job ended cannot be read");
+        fail_damaged(file.name, "the report of how the job ended cannot be parsed");
     }
     return result;
 }

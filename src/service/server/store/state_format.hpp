@@ -1,7 +1,8 @@
-// The files of the state folder, to the byte (docs/formats.md): what is in them, encoded and read back.
+// State format: encodes and decodes the files of the state folder (docs/formats.md has every byte).
 //
-// Whatever bytes a file has, reading it gives what was written or an Error{io_failed} "FILE: damaged: ..."; and takes no
-// more memory than a part of the file's size.
+// Invariants, for any bytes of a file:
+//  - Reading returns what was written, or throws Error{io_failed} "FILE: damaged: ...".
+//  - Reading allocates memory only for parts that the file really has.
 #pragma once
 
 #include <cstddef>
@@ -18,50 +19,51 @@
 
 namespace octopair::service {
 
-/// Pairs of a result are checked piece by piece.
+/// Number of pairs in a piece of a result. Each piece has its own checksum.
 inline constexpr std::uint64_t stored_piece_pairs = piece_bytes / sizeof(Pair);
 inline constexpr std::uint64_t result_head_bytes = 32;
 
-/// XXH3 in 64 bits.
+/// Returns the 64-bit XXH3 hash.
 std::uint64_t checksum_of(std::span<const std::byte> bytes);
 
-/// A file as it is read.
+/// Name, size and bytes of a file to decode.
 struct FileBytes {
     std::string name;
     std::uint64_t size = 0;
     std::function<void(std::uint64_t offset, std::span<std::byte> bytes)> read;
 };
 
+/// Throws: Error{io_failed} "FILE: damaged: HOW".
 [[noreturn]] void fail_damaged(std::string_view file, std::string_view how);
 
-/// What a job's file says beside its input. The block that says it stands before the input and behind it again, so that a
-/// job whose file is damaged still has its name.
+/// Contents of a job's file besides its input. The file has this block before the input and again after it, so that the job of
+/// a damaged file can still be identified.
 struct StoredSpec {
     std::string owner;
     v1::JobSpec spec;
     std::uint32_t algorithm = 0;
-    std::string hash;            ///< of the job; empty: the file's end is damaged
-    std::uint64_t input_at = 0;  ///< where the input begins
+    std::string hash;            ///< hash of the job; empty: the end of the file is damaged
+    std::uint64_t input_at = 0;  ///< offset of the input in the file
 };
 
 std::string encode_block(const StoredSpec& stored);
-/// What stands behind the input: the block again, and the hash.
+/// Returns the bytes after the input: the block again, and the tail with the hash.
 std::string encode_job_end(const std::string& block, const std::string& hash);
-/// Of a job's whole file.
+/// Returns the size of a job's whole file.
 std::uint64_t job_file_bytes(const std::string& block, std::uint64_t input_bytes);
-/// Throws if neither block is right.
+/// Throws: Error{io_failed} if neither block is valid.
 StoredSpec read_job(const FileBytes& file);
 
-/// What a result's file says beside its pairs.
+/// Contents of a result's file besides its pairs.
 struct StoredResult {
-    std::string hash;  ///< of the job
+    std::string hash;  ///< hash of the job
     std::uint64_t pairs = 0;
     std::vector<std::uint64_t> sums;  ///< checksum of each piece
     v1::JobReport ending;             ///< how the job ended
 };
 
 std::string encode_result_head(const std::string& hash);
-/// What stands behind the pairs.
+/// Returns the bytes after the pairs.
 std::string encode_result_end(const StoredResult& result);
 StoredResult read_result(const FileBytes& file);
 

@@ -33,7 +33,8 @@ std::unique_ptr<UploadedInput> StoredJob::load(Engine& engine, const std::stop_t
         input->append(bytes);
         at += bytes.size();
     }
-    if (input->hash() != parts_.stored.hash) fail_damaged(file.path(), "its input is not what was submitted");
+    if (input->hash() != parts_.stored.hash)
+        fail_damaged(file.path(), "the hash of the input does not match the submitted job");
     return input;
 }
 
@@ -43,12 +44,12 @@ void StoredJob::end(const v1::JobReport& ending) {
         parts_.pairs->seal(ending);
     } catch (const std::exception& error) {
         log_text(parts_.folder.log(), LogLevel::error,
-                 "job " + parts_.stored.spec.id() + ": how it ended cannot be kept: " + error.what());
+                 "job " + parts_.stored.spec.id() + ": cannot store how the job ended: " + error.what());
         throw;
     }
 }
 
-/// The job first: a result without one is nothing, a job without one would run.
+/// Deletes N.job first: after a crash a server removes a result without a job, but would run a job without a result.
 void StoredJob::remove() noexcept {
     remove_file(parts_.base + ".job");
     parts_.pairs->remove();
@@ -62,7 +63,7 @@ StoredUpload::StoredUpload(StoredSpec stored)
 StoredUpload::StoredUpload(StateFolder& folder, StoredSpec stored) : StoredUpload(std::move(stored)) {
     block_ = encode_block(stored_);
     const std::uint64_t bytes = job_file_bytes(block_, missing_);
-    disk_ = folder.disk().take(bytes + StateFolder::bytes_beside);
+    disk_ = folder.disk().take(bytes + StateFolder::overhead_bytes);
     base_ = folder.new_base();
     job_path_ = base_ + ".job";
     file_ = File(base_ + ".job.part", File::Mode::create);

@@ -1,4 +1,4 @@
-// StoredJob: the files of one detached job, N.job and N.result; StoredUpload: the first of them while its input arrives.
+// StoredJob: the files of one detached job, N.job and N.result. StoredUpload: writes N.job while the input arrives.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ class StoredJob final : public JobRecord {
 public:
     struct Parts {
         StateFolder& folder;
-        std::string base;  ///< of the paths: what is before .job and .result
+        std::string base;  ///< path of the files without .job or .result
         StoredSpec stored;
         Budget::Reservation disk;
         std::shared_ptr<PairsInFile> pairs;
         Budget& memory;
-        std::uint64_t memory_bytes = 0;  ///< that the job takes when it runs
+        std::uint64_t memory_bytes = 0;  ///< memory that the job needs to run
     };
 
     explicit StoredJob(Parts parts) : parts_(std::move(parts)) {}
@@ -36,25 +36,25 @@ public:
     std::optional<Budget::Reservation> ask_memory() override;
     std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
-    void later(std::function<void()> errand) override { parts_.folder.disk_queue().add(std::move(errand)); }
+    void run_on_disk_queue(std::function<void()> task) override { parts_.folder.disk_queue().add(std::move(task)); }
 
-    /// Its files go.
+    /// Deletes the files.
     void remove() noexcept;
 
 private:
     Parts parts_;
 };
 
-/// The input goes to a file as it comes, or nowhere: then its hash alone is wanted.
+/// Receives the input of a job and computes its hash. Writes the input to a file, or discards it.
 class StoredUpload final : public InputTarget {
 public:
-    /// Throws a LimitError if the folder has no room, Error{io_failed}.
+    /// Creates N.job.part in `folder`. Throws: LimitError if the folder is full; Error{io_failed}.
     StoredUpload(StateFolder& folder, StoredSpec stored);
-    /// To nowhere.
+    /// Discards the input; only its hash is computed.
     explicit StoredUpload(StoredSpec stored);
     StoredUpload(const StoredUpload&) = delete;
     StoredUpload& operator=(const StoredUpload&) = delete;
-    /// Takes away what was not handed over.
+    /// Deletes the file unless hand_over() was called.
     ~StoredUpload() override;
 
     void append(std::span<const std::byte> data) override;
@@ -62,22 +62,25 @@ public:
 
     const StoredSpec& stored() const { return stored_; }
     bool has_file() const { return file_.open(); }
-    /// Of a complete input.
+    /// Returns the hash of input and options. Requires: the input is complete.
     std::string hash() const { return hash_.digest(); }
-    /// When it returns, the job is on the disk. Gives the base of its paths, and what it takes. Throws Error{io_failed}.
+    /// Completes N.job, syncs it to the disk, and returns the base of the paths. Requires: has_file(), and the input is
+    /// complete.
+    /// Throws: Error{io_failed}.
     std::string commit();
+    /// Returns the reservation of the disk space of the job.
     Budget::Reservation take_disk() { return std::move(disk_); }
-    /// What was committed is another's to remove.
+    /// Keeps the committed file when this object is destroyed.
     void hand_over() { handed_over_ = true; }
 
 private:
     StoredSpec stored_;
     JobHash hash_;
-    std::uint64_t missing_ = 0;
+    std::uint64_t missing_ = 0;  // bytes
     std::string base_, job_path_, block_;
     Budget::Reservation disk_;
     File file_;
-    std::uint64_t at_ = 0;
+    std::uint64_t at_ = 0;  // offset of the next write
     bool handed_over_ = false;
 };
 

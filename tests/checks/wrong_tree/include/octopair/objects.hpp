@@ -1,4 +1,4 @@
-// A public header that uses private code, and one of a higher layer.
+// A public header that includes private code and a header of a higher layer.
 #pragma once
 
 #include <hwy/highway.h>

@@ -1,4 +1,4 @@
-// A check that uses what it checks.
+// A verifier that includes the code under verification.
 #pragma once
 
 #include "octree/scan.hpp"
