@@ -179,8 +179,8 @@ TEST_F(Engines, WhatGoesTogether) {
     for (const auto& [arguments, message] : std::map<std::string, std::string>{
              {"--engine processes --threads 2",
               "--threads: not with --engine processes; --workers sets the number of worker processes"},
-             {"--workers 2", "--workers: the local engine has threads; workers need --engine processes"},
-             {"--engine local --workers 2", "--workers: the local engine has threads; workers need --engine processes"},
+             {"--workers 2", "--workers: only with --engine processes; the local engine has --threads"},
+             {"--engine local --workers 2", "--workers: only with --engine processes; the local engine has --threads"},
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
              {"--engine mpi --workers 2", "--workers: not with --engine mpi; mpirun -n sets the number of ranks"},

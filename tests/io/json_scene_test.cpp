@@ -139,7 +139,7 @@ TEST(JsonScene, RefusesInClearWords) {
         {with_shape(R"({"type":"convex_hull","points":[]})"),
          "f.json: object 0: shape: points: the list is empty; a hull needs at least one point"},
         {with_shape(R"({"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,0],[0,0,1]]})"),
-         "f.json: object 0: shape: triangle 1: vertex 1 of 1"},
+         "f.json: object 0: shape: triangle 1: vertex 1 does not exist; the mesh has 1 vertices"},
         {with_shape(R"({"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0]]})"),
          "f.json: object 0: shape: triangle 0: 2 vertices, not 3"},
     };

@@ -119,7 +119,7 @@ TEST(Messages, KeepNothingThatIsUnknown) {
 }
 
 TEST_F(ServedMessages, UploadsThatEndEarly) {
-    expect_bad(send({}), "without a job");
+    expect_bad(send({}), "before it sent a job spec");
     expect_bad(send({upload_of(&spec_, {})}), "240 bytes before");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(9)), upload_of(nullptr, "12345")}), "19 bytes before");
     expect_bad(test::call_small(channel_, upload_of(&spec_, bytes_of_boxes(9))), "24 bytes before");
