@@ -1,4 +1,7 @@
-// Operations on vectors of three float64 numbers, and poses applied to vectors. Each operation is rounded once.
+// Operations on vectors of three float64 numbers, and poses applied to vectors.
+//
+// Every addition, subtraction and multiplication is rounded by itself, in the order written here: the compiler makes no fused
+// multiply-add of them (-ffp-contract=off).
 #pragma once
 
 #include <cmath>
@@ -27,7 +30,8 @@ inline Point3d turned(const Pose& pose, const Point3d& v) {
     return {r[0][0] * v[0] + r[0][1] * v[1] + r[0][2] * v[2], r[1][0] * v[0] + r[1][1] * v[1] + r[1][2] * v[2],
             r[2][0] * v[0] + r[2][1] * v[1] + r[2][2] * v[2]};
 }
-/// Returns `v` multiplied by the transpose of that matrix. For a rigid pose: a world direction in local coordinates.
+/// Returns `v` multiplied by the transpose of the pose's 3 x 3 matrix. A rigid pose so turns a world direction into local
+/// coordinates.
 inline Point3d turned_back(const Pose& pose, const Point3d& v) {
     return {dot(column(pose, 0), v), dot(column(pose, 1), v), dot(column(pose, 2), v)};
 }

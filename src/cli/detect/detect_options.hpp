@@ -1,4 +1,5 @@
-// Options that `octopair detect` and `octopair submit` share: the scene, and the order and number of pairs.
+// The options of `octopair detect`. Those of filters and exact stages are in stage.hpp. `octopair submit` shares the options
+// of the scene, and of the order and number of pairs.
 #pragma once
 
 #include "cli/detect/detection.hpp"
@@ -12,5 +13,11 @@ void add_scene_options(Command& command, DetectRequest& request);
 
 /// Adds --order and --limit. `limited` is the help text of --limit.
 void add_order_options(Command& command, DetectRequest& request, const std::string& limited);
+
+/// Adds all options of `octopair detect`.
+void add_detect_options(Command& command, DetectRequest& request);
+
+/// Throws: Error{usage} for options that cannot be used together.
+void check_detect_options(const DetectRequest& request);
 
 }  // namespace octopair::cli

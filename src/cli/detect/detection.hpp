@@ -37,7 +37,8 @@ struct DetectRequest {
     bool quiet = false;
 };
 
-/// Wall-clock seconds; `detect` and `filter` leave out the time that each other and writing took meanwhile.
+/// Wall-clock seconds. `detect` excludes the time in filters and in writing; `filter` excludes the time in the search and in
+/// writing.
 struct DetectSeconds {
     double total = 0, read = 0;
     double prepare = 0;  ///< of shapes and filters, before the first search

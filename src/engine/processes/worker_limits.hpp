@@ -1,4 +1,7 @@
 // Timeouts of the client and its workers, and limits on failures of workers.
+//
+// A worker that is stopped by a signal is killed at the next check. A worker that computes for long is never killed: no time
+// limits a share.
 #pragma once
 
 #include <chrono>

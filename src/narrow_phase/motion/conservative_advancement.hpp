@@ -2,7 +2,8 @@
 //
 // Convex    Two parallel planes separate two convex objects and move with them. The speed at which the planes approach bounds
 //           the time. So objects that pass each other take long steps.
-// Meshes    The result is the smallest time over all pairs of triangles.
+// Planes    The plane itself is the separating plane.
+// Meshes    The result is the smallest time over all pairs of triangles, or of a triangle and a solid.
 #pragma once
 
 #include <algorithm>

@@ -5,6 +5,8 @@
 //   would multiply entries (boxes as large as the octant), or
 //   would copy the boxes handed down from above into the children without thinning them.
 //
+// The thresholds are in base/tuning.hpp (Tuning::Split).
+//
 // Decisions depend only on sums over the sampled boxes, and on their least and greatest cells. So parts of a sample can be
 // counted separately, and the order of boxes does not matter.
 #pragma once

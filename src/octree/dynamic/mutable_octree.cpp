@@ -90,7 +90,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     for (std::size_t i = 0; i < count; ++i) {
         for_each_octant_below(tops[i], box, visit);
         if (!inner_used_) continue;
-        // The octants above, up to the first that was visited for an earlier top.
+        // The ancestors of this top. An ancestor of an earlier top has been visited, and so have all above it.
         for (OctantIndex octant = tops[i]; octant != 0;) {
             octant = octants[octant].parent;
             const auto above = [&](OctantIndex top) { return octant < top && top < octants[octant].next; };

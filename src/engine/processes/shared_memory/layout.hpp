@@ -4,8 +4,8 @@
 //             shares   a Share for each share of the work of a pass, in order: its status and its result
 //             runs     the runs of pairs that finished shares found
 //             commits  two for each slot, written alternately: how far its buckets are filled (ascending order)
-//             logs     for each slot: the pages of its buckets
-//             ring     for each slot: filled blocks of pairs that the client has not taken yet (streams)
+//             rings    for each slot: filled blocks of pairs that the client has not taken yet (streams)
+//             logs     for each slot: the pages that its buckets (bucket_sort.hpp) have taken (ascending order)
 //   arena   data that one step writes and later steps read, at the same offsets in all processes (arena.hpp)
 //   pairs   blocks of pairs
 //   inputs  boxes and paddings: copies by the client, or arrays that the application allocated with the engine
