@@ -62,7 +62,7 @@ struct Step {
     double RankCosts::*seconds;
 };
 inline constexpr Step computing_steps[] = {
-    {"join", &RankCosts::join}, {"plan", &RankCosts::plan}, {"route", &RankCosts::route},
+    {"join", &RankCosts::join}, {"plan", &RankCosts::plan},   {"route", &RankCosts::route},
     {"pack", &RankCosts::pack}, {"build", &RankCosts::build}, {"merge", &RankCosts::merge},
     {"scan", &RankCosts::scan}, {"order", &RankCosts::order},
 };
