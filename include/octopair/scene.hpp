@@ -125,7 +125,7 @@ public:
     void nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                  std::uint32_t groups = all_groups);
 
-    /// The same queries for a single box, sphere, ray or place. They return the answers.
+    /// Return the answers to a query with one box, sphere, ray or place.
     std::vector<std::uint32_t> overlaps(const Box3d& box, std::uint32_t groups = all_groups);
     std::vector<std::uint32_t> overlaps(const Sphere& sphere, std::uint32_t groups = all_groups);
     std::optional<RayHit> first_hit(const Ray& ray, std::uint32_t groups = all_groups);

@@ -52,8 +52,8 @@ public:
         run([](Items& waiting) { return waiting.begin(); }, never, work);
     }
 
-    /// The same for the items that choose(waiting) returns an iterator to, or waiting.end() where none can be worked on yet.
-    /// `choose` runs with the queue locked, and again after `retry` while items wait.
+    /// Calls work(item) for one chosen item after another. choose(waiting) returns an iterator to the next item, or
+    /// waiting.end() if no waiting item can be worked on yet. `choose` runs with the queue locked, and again after `retry`.
     template <typename Choose, typename Work>
     void run(const Choose& choose, std::chrono::nanoseconds retry, const Work& work) {
         std::unique_lock lock(mutex_);
