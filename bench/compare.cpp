@@ -3,9 +3,10 @@
 //     octopair_compare [--scene KIND...] [--input FILE...] [--objects N...] [--threads K] [--rounds R] [--seconds S]
 //                      [--least R] [--only NAME...] [--first] [--json FILE]
 //
-// Each row shows the median. All contenders take turns (peers/comparison.hpp); Google Benchmark is not used because it runs
-// them one after the other. Standard error shows the progress. A contender that finds other pairs than the first contender
-// is marked, and the exit status is 1. With `--first`, only the first run is timed: a fresh engine in a fresh process.
+// Each row shows the median. All contenders take turns (peers/comparison.hpp). Google Benchmark would run each
+// contender to its end before the next. Standard error shows the progress. A contender that finds other pairs than the
+// first contender is marked, and the exit status is 1. With `--first`, only the first run of each contender is timed.
+// Combine `--first` with `--only NAME` to time a fresh engine in a fresh process.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -100,7 +101,7 @@ int run(const Request& request) {
             fmt::print(stderr, "{}, {} objects: {}\n", scene.name, scene.boxes.size(), what);
         };
         const std::vector<Row> rows = compare(scene, request.plan, tell);
-        if (rows.empty()) throw std::runtime_error("no such contender");
+        if (rows.empty()) throw std::runtime_error("no contender matches --only and --threads");
         print(scene, rows, request.plan.threads);
         results.push_back(scene_json(scene, rows, request.plan.threads));
         agree = agree && std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.agrees; });
@@ -113,17 +114,21 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
     Request request;
-    CLI::App app("octopair against its peers, side by side");
-    app.add_option("--scene", request.scenes.kinds, "kinds of scenes, as in octopair generate");
+    CLI::App app("Compares octopair with its peers, its baselines and the limits of the hardware.");
+    app.add_option("--scene", request.scenes.kinds,
+                   "scene kinds of octopair generate (default without --input: six kinds)");
     app.add_option("--input", request.scenes.inputs,
-                   "files of boxes, spheres or triangles; several also side by side as one");
-    app.add_option("--objects", request.scenes.objects, "of each kind; several are compared one after the other");
-    app.add_option("--threads", request.plan.threads, "contenders that cannot use them are left out");
+                   "files of boxes, spheres or triangles; several files also form a joint scene");
+    app.add_option("--objects", request.scenes.objects,
+                   "numbers of objects of each kind, measured one after the other (default 1000000)");
+    app.add_option("--threads", request.plan.threads,
+                   "threads; above 1, contenders with one thread are left out (default 1)");
     app.add_option("--rounds", request.plan.rounds);
-    app.add_option("--seconds", request.plan.most_seconds, "after which a contender rests, on one scene");
-    app.add_option("--least", request.plan.least_rounds, "rounds of a contender that would rest else");
-    app.add_option("--only", request.plan.only, "contenders by name, also where they would be left out");
-    app.add_flag("--first", request.plan.first, "time the first run alone");
+    app.add_option("--seconds", request.plan.most_seconds, "time limit of a contender per scene (default 20)");
+    app.add_option("--least", request.plan.least_rounds,
+                   "minimum number of rounds, even beyond the time limit (default 3)");
+    app.add_option("--only", request.plan.only, "only these contenders, even above their limit of objects");
+    app.add_flag("--first", request.plan.first, "time only the first run of each contender");
     app.add_option("--json", request.json);
     CLI11_PARSE(app, count, words);
     if (request.scenes.kinds.empty() && request.scenes.inputs.empty()) {

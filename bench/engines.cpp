@@ -3,10 +3,10 @@
 //     octopair_engines [--workers K] [--rounds N] [--quick] [--json FILE]
 //
 // All engines take turns in one process, round by round, and keep their lists (engines/contest.hpp). Each row shows the
-// median, the first call and the start of the engine. Before, the program measures the memory of each engine over all its
-// processes (engines/memory.hpp). An engine that finds other pairs than the first engine is marked, and the exit status is 1.
-// A missed aim does not change the exit status, because times depend on the machine. `--quick` uses a tenth of the objects in
-// large scenes, and a third of the rounds.
+// median, the first call and the start of the engine. First, the program measures the memory of each engine over all
+// its processes (engines/memory.hpp). An engine that finds other pairs than the first engine is marked, and the exit
+// status is 1. A missed aim does not change the exit status, because times depend on the machine. `--quick` uses a
+// tenth of the objects in large scenes, and a third of the rounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,8 +29,8 @@ using namespace octopair::bench;
 using Json = nlohmann::ordered_json;
 
 struct Request {
-    unsigned workers = 2;  // or threads
-    unsigned rounds = 21;  // of the large scenes
+    unsigned workers = 2;  // worker processes, and threads of the local engine
+    unsigned rounds = 21;  // rounds for large scenes
     bool quick = false;
     std::string json;
 };
@@ -93,14 +93,14 @@ Json contest_json(const Contest& contest, const std::vector<Entrant>& entrants) 
 
 Json run_memory(const Request& request) {
     Json rows = Json::array();
-    fmt::print("bytes an object beyond boxes and pairs, in all processes together\n");
+    fmt::print("bytes per object beyond boxes and pairs, sum over all processes\n");
     fmt::print("  {:<28} {:<9} {:<10} {:>8} {:>8} {:>8} {:>8}\n", "", "scene", "order", "pairs/n", "idle MB", "kept",
                "highest");
     for (EngineMemoryCase which : engine_memory_cases()) {
         if (request.quick) shrink(which.objects);
         const EngineMemoryUse use = measure_memory(which, request.workers);
         if (!use.known()) {
-            fmt::print("  not to be seen here\n");
+            fmt::print("  not available: this system does not report shared pages\n");
             return rows;
         }
         const double n = double(which.objects);
@@ -128,7 +128,7 @@ int run(const Request& request) {
     Json all = machine_json();
     all["workers"] = request.workers;
     all["rounds"] = request.rounds;
-    // First, since it forks: nothing has made threads yet, or left memory behind.
+    // Memory comes first: the measurement forks while this process has one thread and no memory of other measurements.
     all["memory"] = run_memory(request);
     Json results = Json::array();
     bool agree = true;
@@ -151,11 +151,12 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
     Request request;
-    CLI::App app("octopair's engines, side by side");
-    app.add_option("--workers", request.workers, "workers, and threads of the local engine")->check(CLI::Range(1, 256));
-    const CLI::Option* const rounds =
-        app.add_option("--rounds", request.rounds, "of the large scenes; small ones have ten times as many");
-    app.add_flag("--quick", request.quick, "a tenth of the objects in large scenes, and a third of the rounds");
+    CLI::App app("Compares octopair's engines on equal scenes.");
+    app.add_option("--workers", request.workers, "worker processes, and threads of the local engine (default 2)")
+        ->check(CLI::Range(1, 256));
+    const CLI::Option* const rounds = app.add_option(
+        "--rounds", request.rounds, "rounds for large scenes; small scenes get ten times as many (default 21)");
+    app.add_flag("--quick", request.quick, "use a tenth of the objects in large scenes, and a third of the rounds");
     app.add_option("--json", request.json);
     CLI11_PARSE(app, count, words);
     if (request.quick && rounds->count() == 0) request.rounds /= 3;

@@ -2,9 +2,9 @@
 //
 //     octopair_exact_objects [--objects N] [--threads K] [--rounds R] [--json FILE]
 //
-// Both start with the mesh and the poses and end with the pairs of objects that collide. Time includes data built from the
-// mesh, the boxes and the tree of the broad phase. Both take turns, round by round. FCL tests only surfaces, so pairs that
-// octopair finds contained are not compared. If the other pairs differ, the exit status is 1.
+// Both start with the mesh and the poses and end with the pairs of objects that collide. Time includes data built from
+// the mesh, the boxes and the tree of the broad phase. Both take turns, round by round. FCL tests only surfaces, so
+// pairs that octopair finds contained are not compared. If the other pairs differ, the exit status is 1.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -161,12 +161,13 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Instances of a mesh that collide: octopair beside FCL");
+    CLI::App app("Compares octopair with FCL on colliding instances of a mesh.");
     Request request;
-    app.add_option("--objects", request.objects, "instances");
-    app.add_option("--threads", request.threads, "of octopair");
-    app.add_option("--rounds", request.rounds, "of both in turn")->check(CLI::PositiveNumber);
-    app.add_option("--json", request.json, "where the numbers go as JSON");
+    app.add_option("--objects", request.objects, "number of instances (default 10000)");
+    app.add_option("--threads", request.threads, "threads of octopair; FCL uses one thread (default 1)");
+    app.add_option("--rounds", request.rounds, "rounds; both run once in each round (default 5)")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--json", request.json, "write the results to this file as JSON");
     CLI11_PARSE(app, argc, argv);
     return run(request);
 }

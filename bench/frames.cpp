@@ -2,11 +2,12 @@
 //
 //     octopair_frames [--case NAME...] [--frames N] [--seconds S] [--quick] [--json FILE]
 //
-// Boxes of the kind uniform move (frames/motion.hpp). All trackers take turns, frame by frame (frames/tracking.hpp). Each row
-// shows the median, the 95th percentile and the slowest frame after the first, and the median of processor time. Processor
-// time is more reliable when other programs use the machine. The case `memory` measures the memory of a scene in separate
-// processes. A tracker that finds other pairs than full detection is marked, and the exit status is 1. A missed goal does not
-// change the exit status, because times depend on the machine. `--quick` uses a tenth of the objects and of the frames.
+// Boxes of the kind uniform move (frames/motion.hpp). All trackers take turns, frame by frame (frames/tracking.hpp).
+// Each row shows the median, the 95th percentile and the slowest frame after the first, and the median of processor
+// time. Processor time is more reliable when other programs use the machine. The case `memory` measures the memory of a
+// scene in separate processes. A tracker that finds other pairs than full detection is marked, and the exit status is
+// 1. A missed goal does not change the exit status, because times depend on the machine. `--quick` uses a tenth of the
+// objects and of the frames.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -119,7 +120,7 @@ void shrink(std::uint64_t& objects) { objects = std::max<std::uint64_t>(1000, ob
 
 Json run_memory(const Request& request) {
     Json rows = Json::array();
-    fmt::print("{}: bytes an object of a scene, 1 thread\n", memory_name);
+    fmt::print("{}: bytes per object of a scene, 1 thread\n", memory_name);
     fmt::print("  {:<10} {:>6} {:>8} {:>10} {:>10} {:>10} {:>10}\n", "scene", "moved", "pairs/n", "first peak", "peak",
                "steady", "at most");
     for (MemoryCase which : memory_cases()) {
@@ -136,7 +137,7 @@ Json run_memory(const Request& request) {
     return rows;
 }
 
-/// Returns false if a tracker found other pairs.
+/// Runs a case, prints the results and adds them to `results`. Returns false if a tracker found other pairs.
 bool run_case(const FrameCase& which, const FramePlan& plan, Json& results) {
     const auto tell = [&](std::string_view what) { fmt::print(stderr, "{}: {}\n", which.name, what); };
     const std::vector<Track> tracks = track(which, plan, tell);
@@ -149,7 +150,7 @@ int run(const Request& request) {
     std::optional<io::AtomicFile> file;
     if (!request.json.empty()) file.emplace(request.json);
     Json all = machine_json();
-    // First, since it forks: nothing has made threads yet, or left memory behind.
+    // Memory comes first: the measurement forks while this process has one thread and no memory of other measurements.
     if (request.asks(memory_name)) all["memory"] = run_memory(request);
     Json results = Json::array();
     bool agree = true;
@@ -176,12 +177,14 @@ std::vector<std::string> case_names() {
 
 int main(int count, char** words) {
     Request request;
-    CLI::App app("scenes that move, frame by frame, and their peers");
-    app.add_option("--case", request.cases, "default: all")->check(CLI::IsMember(case_names()));
+    CLI::App app("Compares octopair's scenes with full detection and with peers on moving boxes, frame by frame.");
+    app.add_option("--case", request.cases, "cases to run (default: all)")->check(CLI::IsMember(case_names()));
     const CLI::Option* const frames =
-        app.add_option("--frames", request.plan.frames, "after the first")->check(CLI::PositiveNumber);
-    app.add_option("--seconds", request.plan.most_seconds, "after which a tracker ends, in one case");
-    app.add_flag("--quick", request.quick, "a tenth of the objects, and of the frames");
+        app.add_option("--frames", request.plan.frames, "frames after the first frame (default 100)")
+            ->check(CLI::PositiveNumber);
+    app.add_option("--seconds", request.plan.most_seconds,
+                   "time limit of a tracker per case, after 10 frames at least (default 30)");
+    app.add_flag("--quick", request.quick, "use a tenth of the objects and of the frames");
     app.add_option("--json", request.json);
     CLI11_PARSE(app, count, words);
     if (request.quick && frames->count() == 0) request.plan.frames /= 10;

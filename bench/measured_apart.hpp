@@ -16,9 +16,9 @@ auto measured_apart(const Measure& measure) {
     using Use = decltype(measure());
     static_assert(std::is_trivially_copyable_v<Use>);
     int ends[2];
-    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    if (::pipe(ends) != 0) throw std::runtime_error("cannot create a pipe");
     const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("no process");
+    if (child < 0) throw std::runtime_error("cannot start a process");
     if (child == 0) {
         Use use;
         try {

@@ -110,7 +110,7 @@ def peers(results, name):
 
 
 def milliseconds(seconds):
-    """Formats milliseconds with the significant digits."""
+    """Formats milliseconds with about three significant digits."""
     value = seconds * 1e3
     return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
 
@@ -407,7 +407,7 @@ def fill(page, results):
         try:
             text = BLOCKS[name](results)
         except FileNotFoundError as missing:
-            print(f"page.py: {name} stays: no {missing.filename}", file=sys.stderr)
+            print(f"page.py: block {name} is unchanged: {missing.filename} does not exist", file=sys.stderr)
             return match[0]
         return f"<!-- begin {name} -->\n{text}\n<!-- end {name} -->"
 

@@ -3,10 +3,15 @@
 
     bench/plot.py FOLDER [--paper FILE] [--peers FILE...] [--scaling FILE...] [--cluster FILE]
 
-FILE: the JSON of `octopair-bench paper`, of octopair_compare, of `octopair-bench scaling` and of `octopair-bench cluster`.
-Written to FOLDER: figure-5.svg and components.svg from the first, peers-1m.svg from the comparisons of a million objects on
-one thread, scaling.svg, cluster-efficiency.svg and cluster-steps.svg. Equal files give equal bytes. Needs Matplotlib
-(scripts/setup bench), which Debian has for its own Python.
+Each FILE is the JSON of a program. The pictures are written to FOLDER:
+
+    --paper    octopair-bench paper      figure-5.svg, components.svg
+    --peers    octopair_compare          peers-1m.svg, for a million objects on one thread
+    --scaling  octopair-bench scaling    scaling.svg
+    --cluster  octopair-bench cluster    cluster-efficiency.svg, cluster-steps.svg
+
+Equal files give equal bytes. The first line names Debian's own Python, because scripts/setup bench installs Matplotlib
+for this Python.
 """
 import argparse
 import json
@@ -16,7 +21,7 @@ import pathlib
 import matplotlib
 
 matplotlib.use("svg")
-from matplotlib import pyplot, ticker  # noqa: E402 (the backend comes first)
+from matplotlib import pyplot, ticker  # noqa: E402 (use() must precede this import)
 
 # Palette of Okabe and Ito, distinguishable for colour-blind readers.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (

@@ -1,19 +1,21 @@
 #!/usr/bin/python3
 """A cost model of ranks, fitted to measurements of `octopair-bench cluster` (docs/scaling.md).
 
-    scaling_model.py RESULTS > RESULTS/model.json     the tables that bench/page.py puts there
+    scaling_model.py RESULTS > RESULTS/model.json     prints the tables that bench/page.py writes into docs/scaling.md
 
 Costs of n evenly spread objects on k ranks:
 
-    shared   s = sigma (k / n)^(1/3)                          the part of the objects that several ranks receive: surfaces
-    plan    c r + d n + e k   seconds                        r = (n / k) (1 + s) objects received; d: what every rank does for
-                                                              all octants of the tree; e: for every other rank
-    compute  r (a + b log2 r) + m k   seconds                 all other steps
-    bytes    28 r (k - 1) / k + f n + g k + h                 that a rank sends
-    messages p (k - 1) + q                                    that a rank sends
-    network  messages x latency + bytes / bandwidth           a model, not measured
+    shared    s = sigma (k / n)^(1/3)               fraction of the objects that several ranks receive: those at the
+                                                    surface of a rank's part of the space
+    received  r = (n / k) (1 + s)                   objects that a rank receives
+    plan      c r + d n + e k                       seconds; d: work of every rank for all octants of the tree; e: work
+                                                    for each other rank
+    compute   r (a + b log2 r) + m k                seconds of all other steps
+    bytes     28 r (k - 1) / k + f n + g k + h      sent by a rank
+    messages  p (k - 1) + q                         sent by a rank
+    network   messages x latency + bytes / bandwidth      seconds; a model, not measured
 
-Constants come from least squares of relative errors on some of the runs; the others check them.
+The constants are fitted to some of the runs by least squares of relative errors. The other runs check the constants.
 """
 import json
 import math
@@ -22,7 +24,7 @@ import sys
 
 import numpy
 
-CHECKED = {1_000_000, 2_000_000}  # objects of the runs that constants are not fitted to
+CHECKED = {1_000_000, 2_000_000}  # numbers of objects of the runs that check the constants
 NETWORKS = {"1 Gbit/s, 50 us": (50e-6, 125e6), "25 Gbit/s, 5 us": (5e-6, 3.125e9), "200 Gbit/s, 2 us": (2e-6, 25e9)}
 
 
@@ -52,7 +54,7 @@ def per_rank(run, name):
 
 
 def fit(rows, values):
-    """Least squares of relative errors, without negative constants: such a constant is left out."""
+    """Fits constants by least squares of relative errors. Sets the most negative constant to 0 until none is negative."""
     rows, values = numpy.array(rows, float), numpy.array(values, float)
     used = list(range(rows.shape[1]))
     while True:

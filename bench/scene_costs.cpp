@@ -1,10 +1,10 @@
-// Costs of each kind of scene: time, entries and memory per object, next to the kind uniform.
+// Costs of each kind of scene: time, entries and memory per object.
 //
-//     scene_costs [OBJECTS [THREADS]]           all kinds, each in a process of its own
+//     scene_costs [OBJECTS [THREADS]]           all kinds except two (left_out), each in its own process
 //     scene_costs OBJECTS THREADS KIND float32|float64
 //
-// Memory is the highest resident size during the first call, minus the size before the call and the size of the pairs. Times
-// are medians of 5 further calls in octal order into a reused list.
+// Memory is the highest resident size during the first call, minus the size before the call and the size of the pairs.
+// Times are medians of 5 further calls in octal order into a reused list.
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,9 @@
 //
 //     octopair_self_intersections [--triangles N] [--threads K] [--rounds N] [--seed S] [--json FILE]
 //
-// All contenders take turns, round by round; the first round is not counted. octopair starts from vertices and triangles, like
-// a user. Its time includes making triangles and boxes. If another contender finds other pairs, the exit status is 1.
+// All contenders take turns, round by round; the first round is not counted. octopair starts from vertices and
+// triangles, like a user. Its time includes making triangles and boxes. If another contender finds other pairs, the
+// exit status is 1.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -145,12 +146,12 @@ int compare(const Request& request) {
 
 int main(int argc, char** argv) {
     Request request;
-    CLI::App app("Self-intersections of a closed mesh, beside CGAL");
+    CLI::App app("Compares octopair with CGAL on self-intersections of a closed mesh.");
     app.add_option("--triangles", request.triangles)->check(CLI::Range(24, 100'000'000));
     app.add_option("--threads", request.threads)->check(CLI::Range(1, 1024));
     app.add_option("--rounds", request.rounds)->check(CLI::Range(1, 1000));
     app.add_option("--seed", request.seed);
-    app.add_option("--json", request.json, "where the numbers go as JSON");
+    app.add_option("--json", request.json, "write the results to this file as JSON");
     CLI11_PARSE(app, argc, argv);
     return compare(request);
 }

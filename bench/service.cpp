@@ -2,7 +2,8 @@
 //
 //     octopair_service [--rounds N] [--quick] [--json FILE]
 //
-// A server of this build listens on a Unix socket, with two threads. Its clients are in this process, on the same machine.
+// A server of this build listens on a Unix socket, with two threads. Its clients are in this process, on the same
+// machine.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -31,7 +32,7 @@ struct Request {
 /// Aims, with the values reached.
 class Aims {
 public:
-    /// Returns the text that states, on the line of a measurement, whether the aim was reached.
+    /// Returns a remark for the line of the measurement; empty if the aim was reached.
     const char* at_most(const std::string& what, double bound, double reached) {
         return keep(what, true, bound, reached, reached <= bound);
     }
@@ -62,7 +63,7 @@ Json against_local(const ServerProcess& served, const Request& request, Aims& ai
                     ? aims.at_most("1,000,000 boxes, " + order_name + ": remote / local", 1.8, remote / local)
                     : "";
             fmt::print(
-                "{:>9} objects, {:<9}  local {:8.3f} ms, remote {:8.3f} ms, {:.2f} times; submit {:.3f} ms{}{}\n",
+                "{:>9} objects, {:<9}  local {:8.3f} ms, remote {:8.3f} ms, ratio {:.2f}; submit {:.3f} ms{}{}\n",
                 objects, order_name, local * 1e3, remote * 1e3, remote / local, median(run.submit) * 1e3,
                 run.same ? "" : "  DIFFERS", verdict);
             std::fflush(stdout);
@@ -119,8 +120,8 @@ Json scene(const ServerProcess& served, const Request& request, Aims& aims) {
     const char* const verdict =
         aims.at_most("a scene of 100,000, 1,000 moved a frame: remote - local, ms", 3, above * 1e3);
     fmt::print(
-        "scene of {}, {} moved a frame, {:.0f} changes  local {:.3f} ms, remote {:.3f} ms, {:.3f} above; opening "
-        "{:.1f} ms{}{}\n",
+        "scene of {}, {} moved per frame, {:.0f} changes  local {:.3f} ms, remote {:.3f} ms, difference {:.3f} ms; "
+        "opening {:.1f} ms{}{}\n",
         run.objects, run.moved, run.changes, local * 1e3, remote * 1e3, above * 1e3, run.opening * 1e3,
         run.same ? "" : "  DIFFERS", verdict);
     return {{"objects", run.objects},         {"moved", run.moved},       {"changes", run.changes},
@@ -150,10 +151,10 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
     Request request;
-    CLI::App app("octopair's server and its clients");
-    const CLI::Option* const rounds =
-        app.add_option("--rounds", request.rounds, "of large jobs; small ones have ten times as many");
-    app.add_flag("--quick", request.quick, "a third of the rounds, a fifth of the jobs");
+    CLI::App app("Measures octopair's server: the overhead of remote calls, and many concurrent clients.");
+    const CLI::Option* const rounds = app.add_option(
+        "--rounds", request.rounds, "rounds for large jobs; small jobs get ten times as many (default 21)");
+    app.add_flag("--quick", request.quick, "use a third of the rounds and a fifth of the jobs");
     app.add_option("--json", request.json);
     CLI11_PARSE(app, count, words);
     if (request.quick && rounds->count() == 0) request.rounds /= 3;

@@ -14,7 +14,7 @@ function(octopair_target target)
                                              -Wold-style-cast -Wcast-align -Woverloaded-virtual -Wconversion
                                              -Wno-sign-conversion)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        # g++ 12 reports overlapping copies in "text" + std::string (GCC bug 105651).
+        # g++ 12 wrongly reports overlapping copies in "text" + std::string (GCC bug 105651).
         target_compile_options(${target} PRIVATE -Wno-restrict)
         if(CMAKE_UNITY_BUILD)
             # g++ treats the sources that a unity file includes as headers.

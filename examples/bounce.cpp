@@ -2,9 +2,9 @@
 //
 //     bounce [OBJECTS [FRAMES [THREADS]]]      default 10000 300 0; 0 threads: one per core
 //
-// Cubes move in a room. Two cubes of equal mass that begin to overlap exchange their velocities, like in an elastic collision,
-// on the axis with the least overlap. Walls reflect the cubes. The scene reports which pairs began, so a pair that overlaps for
-// several frames gets only one response.
+// Cubes of equal mass move in a room. Two cubes that begin to overlap exchange their velocities on the axis with the
+// least overlap, like in an elastic collision. Walls reflect the cubes. The scene reports which pairs began. So a pair
+// that overlaps for several frames gets only one response.
 #include <octopair/octopair.hpp>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Settings {
 
 struct Cube {
     float centre[3];
-    float velocity[3];  // a frame
+    float velocity[3];  // distance per frame
 };
 
 class Room {
@@ -70,7 +70,7 @@ public:
     void bounce(octopair::Pair pair) {
         Cube &a = cubes_[pair.a], &b = cubes_[pair.b];
         const auto distance = [&](int axis) { return b.centre[axis] - a.centre[axis]; };
-        int axis = 0;  // the farthest apart overlap least
+        int axis = 0;  // the overlap is least on the axis with the largest distance
         for (int other = 1; other < 3; ++other) {
             if (std::abs(distance(other)) > std::abs(distance(axis))) axis = other;
         }
@@ -80,12 +80,12 @@ public:
 
 private:
     std::vector<Cube> cubes_;
-    float half_;  // of a side
+    float half_;  // half of a cube's side
 };
 
 struct Totals {
     std::uint64_t began = 0, ended = 0;
-    std::vector<double> milliseconds;  // of each frame
+    std::vector<double> milliseconds;  // one time for each frame
 };
 
 Totals simulate(const Settings& settings) {
@@ -93,7 +93,7 @@ Totals simulate(const Settings& settings) {
     std::vector<octopair::Box3f> boxes;
     room.put_boxes(boxes);
     octopair::Scene scene({.threads = settings.threads});
-    std::vector<octopair::ObjectId> ids(boxes.size());  // a new scene numbers from 0 on: index i is cube i
+    std::vector<octopair::ObjectId> ids(boxes.size());  // a new scene numbers its objects from 0 on: index i is cube i
     scene.add({boxes}, ids);
     scene.step();
 

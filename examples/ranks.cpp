@@ -17,10 +17,10 @@ std::vector<octopair::Box3f> own_boxes(int rank) {
 
 void find_together(int rank) {
     const std::vector<octopair::Box3f> boxes = own_boxes(rank);
-    const auto engine = octopair::make_mpi_engine(MPI_COMM_WORLD);  // on all ranks; gone before MPI_Finalize
+    const auto engine = octopair::make_mpi_engine(MPI_COMM_WORLD);  // call on all ranks; destroy before MPI_Finalize
     octopair::PairList pairs;
     const octopair::Summary summary = engine->find_pairs({std::span(boxes)}, pairs);
-    // Until here each rank has a piece of the pairs. Most programs go on with that.
+    // Each rank has a part of the pairs. Most programs continue with the parts, without gather_pairs().
     octopair::gather_pairs(*engine, pairs);
     if (rank != 0) return;
     std::printf("%llu pairs:", static_cast<unsigned long long>(summary.pairs));
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     try {
         find_together(rank);
-    } catch (const octopair::Error& error) {  // the same on all ranks
+    } catch (const octopair::Error& error) {  // all ranks get the same error
         if (rank == 0) std::fprintf(stderr, "%s\n", error.what());
         status = 1;
     }

@@ -1,4 +1,5 @@
-// Loop at 60 Hz with pairs from a server: the loop never waits, and takes each result in the first frame after its arrival.
+// Loop at 60 Hz with pairs from a server. The loop never waits for the server, and takes each result in the first frame
+// after the result has arrived.
 //
 //     octopair serve --listen unix:/tmp/octopair &
 //     remote unix:/tmp/octopair [OBJECTS [FRAMES]]
@@ -39,11 +40,11 @@ int main(int count, char** words) {
         const std::vector<octopair::Box3f> boxes = row_of_cubes(objects);
         const auto scene = octopair::borrowed({std::span<const octopair::Box3f>(boxes)});
 
-        octopair::Job job = engine->submit(scene);  // the boxes go to the server on a thread of the engine's
+        octopair::Job job = engine->submit(scene);  // a thread of the engine sends the boxes to the server
         std::uint64_t results = 0, pairs = 0, missed = 0;
         auto next = Clock::now();
         for (std::uint64_t frame = 0; frame < frames || results == 0; ++frame) {
-            if (job.wait_for(std::chrono::seconds(0))) {  // ended?
+            if (job.wait_for(std::chrono::seconds(0))) {  // true if the job has ended
                 pairs = job.take_pairs().size();
                 ++results;
                 job = engine->submit(scene);

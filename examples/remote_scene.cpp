@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
         scene.add(octopair::Objects{octopair::Boxes(std::span(cubes))}, ids);
         (void)scene.step();
 
-        // The first cube flies through the second: only what it does goes over the network.
+        // The first cube flies through the second. Each step sends only the box of the moved cube to the server.
         for (int frame = 1; frame <= 8; ++frame) {
             const auto x = float(frame);
             const octopair::Box3f there = {{x, 0, 0}, {x + 0.5f, 1, 1}};

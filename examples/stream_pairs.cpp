@@ -7,7 +7,7 @@
 #include <vector>
 
 int main() {
-    const std::vector<octopair::Box3d> boxes(1000, {{0, 0, 0}, {1, 1, 1}});  // all at one place: every pair counts
+    const std::vector<octopair::Box3d> boxes(1000, {{0, 0, 0}, {1, 1, 1}});  // equal boxes: all of them are pairs
     octopair::Options options;
     options.buffer_bytes = 1 << 20;
     try {

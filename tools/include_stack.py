@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Checks that includes run one way: each layer uses only itself and the layers that the table below lists for it.
 
-    include_stack.py [--print] [ROOT]     ROOT: the project's directory, default the one this file lies in
+    include_stack.py [--print] [ROOT]     ROOT: the project's directory; default: the parent of tools/
 
-A layer is a folder of src/ with the public headers (include/octopair) that it implements. Including a public header is
-using its layer. The folders of bench/ that octopair-bench is made of are layers, too; nothing in src/ may use them. Public
-headers use only public headers and the standard library. Prints one line for each include that breaks a rule, and exits 1.
-With --print, prints the current stack for docs/design.md.
+A layer is a folder of src/ with the public headers (include/octopair) that it implements. A file that includes a public
+header uses the layer of this header. The folders of bench/ that octopair-bench is made of are layers, too; nothing in
+src/ may use these layers. Public headers use only public headers and the standard library. Prints one line for each
+include that breaks a rule, and exits 1. With --print, prints the current stack for docs/design.md.
 """
 import pathlib
 import re
@@ -42,7 +42,8 @@ LAYERS = {
     "bench/scaling": ("time by threads and ranks", []),
     "bench/program": ("the program octopair-bench", []),
 }
-# Headers that include a whole library: octopair.hpp includes all of octopair::octopair, version.hpp uses nothing.
+# Public headers without a layer, and the layer whose rules apply: octopair.hpp includes all of octopair::octopair,
+# version.hpp includes nothing.
 WHOLE = {"octopair": "scene", "version": "base"}
 
 # Layers that each layer may use, in addition to itself.
@@ -101,7 +102,7 @@ THIRD_PARTY = {
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},
 }
-# Third-party headers that the public header of a component needs: its users have them.
+# Third-party headers that a public header may include, because every user of its component has them.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}
 SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
@@ -133,7 +134,7 @@ def complaint_quoted(layer, is_public_header, name):
     """Returns the violation if a file of `layer` includes the project's `name`, or None."""
     used, from_public = layer_included(name)
     if used is None:
-        return "no layer holds it; includes are written from src/, bench/ or include/"
+        return "no layer has this header; write includes from src/, bench/ or include/"
     if is_public_header and not from_public:
         return "a public header uses only public headers and the standard library"
     if used == layer or used in USES[layer] or (from_public and used in PUBLIC.get(layer, ())):

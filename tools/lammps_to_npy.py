@@ -7,7 +7,7 @@ Output    float32, C order: spheres (n, 4) as centre and radius, or with --boxes
 Atoms     in the file's order, "Atoms # full" style (id, molecule, type, charge, x, y, z); coordinates as they stand
           (image flags are not applied). Repeated N x N x N by the periodic box's lengths, the last axis fastest.
 Rounding  centre + i * length in float64, then once to float32; a box is that centre -/+ R in float32 arithmetic, which
-          rounds to nearest. (octopair's own reading of spheres rounds boxes outward: a superset of these.)
+          rounds to nearest. (octopair itself rounds the boxes of spheres outward, so its boxes contain these boxes.)
 Only Python's standard library is used. The output file appears completely or not at all.
 """
 import argparse

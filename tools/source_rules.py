@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the rules of HACKING.md that neither compiler, clang-format nor clang-tidy checks.
 
-    source_rules.py [ROOT]     ROOT: the project's directory, default the one this file lies in
+    source_rules.py [ROOT]     ROOT: the project's directory; default: the parent of tools/
 
 Prints one line for each violation, and exits 1.
 """
@@ -55,7 +55,7 @@ def complaints_of(path, parts):
         if not SNAKE_CASE.match(path.stem):
             yield 0, "file names are snake_case"
         if not has_head(path, lines):
-            yield 0, "the head does not say what the file holds"
+            yield 0, "the file has no head comment"
         if path.suffix == ".hpp" and "#pragma once" not in lines and not path.name.endswith("-inl.hpp"):
             yield 0, "no #pragma once"
     rules = list(EVERYWHERE) if path.name != "source_rules.py" else []
@@ -79,7 +79,7 @@ def main():
             wrong += 1
             print(f"{path.relative_to(root)}:{line}: {what}")
     if not wrong:
-        print(f"{count} files keep the rules")
+        print(f"{count} files follow the rules")
     return 1 if wrong or count == 0 else 0
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Reads results of ctest, JUnit files such as build/results/STAGE.xml.
 
-    test_results.py --count FILE     prints "PASSED FAILED SKIPPED"; no readable results are one failure
+    test_results.py --count FILE     prints "PASSED FAILED SKIPPED"; a missing or unreadable file counts as one failure
     test_results.py --slowest BEGIN BUILDS FILE...
-                                     prints the tests that took longest, and what took longest to compile since BEGIN,
-                                     seconds since 1970, in the build folders in BUILDS
+                                     prints the slowest tests, and the files that took longest to compile since BEGIN
+                                     (seconds since 1970) in the build folders below BUILDS
     test_results.py FILE...          prints the failed tests and the end of their output, for the end of a long log;
                                      files that are missing or unreadable are skipped
 """
@@ -14,7 +14,7 @@ import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
 
-LAST_LINES = 40  # of the output of a test
+LAST_LINES = 40  # printed lines of the output of a failed test
 SLOWEST = 10
 
 

@@ -3,7 +3,7 @@
 // Result         Each pair once, a < b, in the order of the algorithm; `ascending` sorts the pairs.
 // Requires       Valid boxes (objects.hpp).
 // Thread safety  Functions may run concurrently. An ICollide must not be used by two threads at the same time.
-// Use            Tests compare the engines with `oracle_pairs`. Tests and benchmarks compare with the other baselines, too.
+// Use            Tests compare engines with `oracle_pairs`. Tests and benchmarks compare with the other baselines, too.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,7 @@ struct PaperSettings {
     PaperSort sort = PaperSort::standard;
 };
 
-/// Wall-clock seconds of the components: of the slowest slave or machine where several work in parallel.
+/// Wall-clock seconds of the components. If several slaves or machines work in parallel: seconds of the slowest.
 struct PaperSeconds {
     double octal_codes = 0, sort = 0, merge_machine = 0, merge_master = 0, scan = 0;
 };
@@ -70,8 +70,8 @@ struct PaperResult {
     PaperSeconds seconds;
 };
 
-/// The paper's algorithm as published (section 3.3). An object larger than an octant has many codes, which is an
-/// inherent cost of the algorithm.
+/// Finds all pairs by the paper's algorithm as published (section 3.3). An object larger than an octant has many codes,
+/// which is an inherent cost of the algorithm.
 PaperResult paper_pairs(std::span<const Box3f> boxes, const PaperSettings& settings = {});
 /// Returns the fixed depth at which the paper's algorithm is fastest with the other `settings`. The search starts at
 /// about one octant per object and goes up or down while the time falls, with one run per depth. After a stop request,
@@ -79,8 +79,8 @@ PaperResult paper_pairs(std::span<const Box3f> boxes, const PaperSettings& setti
 unsigned best_paper_level(std::span<const Box3f> boxes, const PaperSettings& settings = {},
                           const std::stop_token& stop = {});
 
-/// Half traversal of a binary bounding volume hierarchy over the Morton order: each leaf starts from its own escape
-/// link. Requires: at most 2^31 - 1 boxes; `threads` >= 1.
+/// Finds all pairs by a half traversal of a binary bounding volume hierarchy over the Morton order. Each leaf starts
+/// from its own escape link. Requires: at most 2^31 - 1 boxes; `threads` >= 1.
 std::vector<Pair> lbvh_pairs(std::span<const Box3f> boxes, unsigned threads = 1);
 
 }  // namespace octopair::baselines

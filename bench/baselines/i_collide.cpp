@@ -2,8 +2,10 @@
 //
 // Three lists hold the ends of all intervals in order. A lower end stands before an upper end of equal value, because
 // boxes are closed. Ends move little between frames, and insertion sort restores the order. Every swap of a lower end
-// with an upper end of another object begins or ends an interval overlap. I-COLLIDE keeps a bit per axis for all n^2 /
-// 2 pairs. Here, a swap that begins an overlap tests the other axes, so the state is only the set of pairs.
+// with an upper end of another object begins or ends an interval overlap.
+//
+// I-COLLIDE keeps a bit per axis for all n^2 / 2 pairs. Here, a swap that begins an overlap tests the other axes, so
+// the state is only the set of pairs.
 #include <algorithm>
 #include <array>
 #include <unordered_set>
@@ -29,7 +31,7 @@ Pair unpacked(std::uint64_t key) { return {std::uint32_t(key >> 32), std::uint32
 }  // namespace
 
 struct ICollide::State {
-    std::span<const Box3f> boxes;  // of the frame in work
+    std::span<const Box3f> boxes;  // boxes of the current frame
     std::array<std::vector<End>, 3> ends;
     std::unordered_set<std::uint64_t> pairs;
 

@@ -48,7 +48,7 @@ std::vector<Pair> find_all(std::span<const LbvhNode> nodes) {
 }  // namespace
 
 std::vector<Pair> lbvh_pairs(std::span<const Box3f> boxes, unsigned threads) {
-    // An arena larger than the machine needs leave to start so many workers.
+    // By default oneTBB limits the threads of an arena to the number of cores.
     const tbb::global_control leave(tbb::global_control::max_allowed_parallelism, threads);
     tbb::task_arena arena(int(threads), 1);
     return arena.execute([&] { return find_all(build_lbvh(boxes)); });

@@ -1,5 +1,8 @@
-// The paper's algorithm as published (section 3.3). Slaves compute octal codes and sort; each machine merges, then the
-// master; a scan with CommonPath finds pairs; a last step removes duplicates and tests the pairs.
+// The paper's algorithm as published (section 3.3):
+// - Slaves compute octal codes and sort them.
+// - Each machine merges the lists of its slaves. Then the master merges the lists of all machines.
+// - A scan with CommonPath finds candidate pairs.
+// - A last step removes duplicates and tests the pairs.
 //
 // Two errors of the pseudo code are corrected: the inner loop of step 7 starts after object1 and stops at the end of
 // the list.
@@ -104,13 +107,13 @@ struct SlaveResult {
 
 struct SlaveTask {
     std::span<const Box3f> boxes;
-    std::uint32_t first_index;  // of boxes[0] among all
+    std::uint32_t first_index;  // index of boxes[0] among all objects
     Cube root;
     unsigned level;
     PaperSort sort;
 };
 
-/// Runs steps 2 and 3.
+/// Runs steps 2 and 3 of the paper: octal codes and sort.
 void run_slave(const SlaveTask& task, SlaveResult& result) {
     auto start = Clock::now();
     OctreeSearch search(task.level, result.entries);
@@ -192,7 +195,8 @@ std::vector<EntryList> merge_on_machines(std::vector<EntryList> lists, unsigned 
     return merged;
 }
 
-/// Step 7. The list holds the entries inside the octant of an entry after that entry.
+/// Runs step 7: returns the candidate pairs. In the sorted list, the entries inside an octant follow the octant's own
+/// entries.
 std::vector<Pair> scan(const EntryList& entries) {
     std::vector<Pair> candidates;
     for (std::size_t i = 0; i < entries.size(); ++i) {

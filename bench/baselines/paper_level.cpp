@@ -1,4 +1,4 @@
-// Search for the fixed depth that suits a scene best.
+// Search for the fixed depth at which the paper's algorithm is fastest on a scene.
 #include <algorithm>
 #include <bit>
 #include <chrono>

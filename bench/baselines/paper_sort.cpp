@@ -11,8 +11,8 @@ namespace {
 constexpr unsigned bits_of_level = 4;
 constexpr unsigned most_level = (32 - bits_of_level) / 3;
 
-/// Sort key: path, then level, above the position of the entry. Radix sort keeps the order of equal codes, which is the
-/// order of objects.
+/// Sorts by path, then by level. These are the high 32 bits of a key, and the position of the entry is the low 32 bits.
+/// The radix sort is stable, so entries with equal codes stay in the order of objects.
 void radix_sort_entries(std::vector<PaperEntry>& entries, unsigned level) {
     Buffer<SortKey> keys(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {

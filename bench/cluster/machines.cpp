@@ -22,13 +22,14 @@ double slowest_of(const EachRank& ranks, double RankCosts::*step) {
     return most;
 }
 
-/// Returns the part of the data broadcast by a rank that leaves the machine of the rank.
+/// Returns the fraction of the other ranks that are on other machines. The same fraction of messages uses the network.
 double leaving(const Setup& setup) {
     if (setup.ranks <= setup.ranks_per_machine) return 0;
     return double(setup.ranks - setup.ranks_per_machine) / double(setup.ranks - 1);
 }
 
-/// Returns the bytes through the busiest port. Adds both directions where one must wait for the other.
+/// Returns the bytes through the busiest port. In the paper's arrangement both directions of the master's port add up,
+/// because ranks send lists only after they have received their objects.
 double port_bytes(const Measured& measured) {
     const EachRank& ranks = measured.together;
     const Setup& setup = measured.setup;
@@ -37,7 +38,7 @@ double port_bytes(const Measured& measured) {
     for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
         const double bytes = double(ranks[rank].bytes_sent);
         of_machines[rank / setup.ranks_per_machine] += bytes * leaving(setup);
-        if (rank > 0 && rank % setup.ranks_per_machine == 0) to_master += bytes;  // the list of its machine
+        if (rank > 0 && rank % setup.ranks_per_machine == 0) to_master += bytes;  // merged list of its machine
     }
     if (setup.arrangement == Arrangement::shared) return *std::ranges::max_element(of_machines);
     return double(ranks[0].bytes_sent) * leaving(setup) + to_master;
@@ -193,8 +194,8 @@ Modelled modelled(const Measured& measured, const Network& network) {
 std::string machines_text(const std::vector<Measured>& all, const Network& network) {
     std::string text = fmt::format(
         "Computing is measured here: processor time along the critical path. Network is a model, not measured: {} us a "
-        "message, {} Mbit/s\na machine. A run time here is their sum; eff. its efficiency, by one processor of the "
-        "same.\n",
+        "message, {} Mbit/s\non each machine. Run time is the sum of both. eff. is the efficiency relative to one "
+        "processor.\n",
         network.latency_seconds * 1e6, network.bytes_per_second * 8 / 1e6);
     std::map<std::pair<std::string, std::uint64_t>, Setup> scenes;
     for (const Measured& measured : all) {

@@ -32,16 +32,16 @@ struct Modelled {
 };
 Modelled modelled(const Measured& measured, const Network& network);
 
-/// Returns the seconds of computing from the begin to the end of a call. If ranks share every step: the seconds of the
-/// slowest rank. In the paper's arrangement, steps wait for each other: each step takes the time of its slowest rank,
-/// and the master merges after the machines.
+/// Returns the seconds of computing from the beginning to the end of a call. If ranks share every step: the seconds of
+/// the slowest rank. In the paper's arrangement, each step begins after the step before, and takes the time of its
+/// slowest rank. The master merges after the machines.
 double critical_path(const Measured& measured);
 /// Returns the seconds of merging in the paper's arrangement: at the master, or on the slowest of the other machines.
 double merged_at_master(const EachRank& ranks);
 double merged_on_machines(const EachRank& ranks);
 
-/// Tables for people, and one JSON object for programs, ended by a newline. Efficiency needs the scene on one rank in
-/// `all`.
+/// Returns tables for people, or one JSON object for programs, ended by a newline. Efficiency needs the scene on one
+/// rank in `all`.
 std::string machines_text(const std::vector<Measured>& all, const Network& network);
 std::string machines_json(const std::vector<Measured>& all, const Network& network);
 

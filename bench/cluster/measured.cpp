@@ -68,7 +68,8 @@ Arrangement arrangement_of(std::string_view name) {
     for (const Arrangement arrangement : {Arrangement::shared, Arrangement::paper}) {
         if (name == arrangement_name(arrangement)) return arrangement;
     }
-    throw Error(ErrorCode::usage, "'" + std::string(name) + "' is no arrangement of ranks; there are: shared, paper");
+    throw Error(ErrorCode::usage,
+                "'" + std::string(name) + "' is not an arrangement of ranks; there are: shared, paper");
 }
 
 double computing(const RankCosts& costs) {
@@ -128,7 +129,8 @@ std::vector<Measured> measured_of(const std::string& json) {
         }
         return all;
     } catch (const Json::exception& error) {
-        throw Error(ErrorCode::engine_failed, std::string("what the ranks measured cannot be read: ") + error.what());
+        throw Error(ErrorCode::engine_failed,
+                    std::string("cannot read the measurements of the ranks: ") + error.what());
     }
 }
 

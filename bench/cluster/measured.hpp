@@ -46,7 +46,7 @@ struct Measured {
     double shared() const;
 };
 
-/// Processor seconds of computing: of one rank, of the slowest rank, and on average.
+/// Returns the processor seconds of computing: of one rank, of the slowest rank, or on average.
 double computing(const RankCosts& costs);
 double slowest(const EachRank& ranks);
 double mean(const EachRank& ranks);
@@ -67,8 +67,7 @@ inline constexpr Step computing_steps[] = {
     {"scan", &RankCosts::scan}, {"order", &RankCosts::order},
 };
 
-/// Writes and reads a JSON array with one object per measurement. Throws: Error{engine_failed} for text of another
-/// form.
+/// Writes or reads a JSON array with one object per measurement. Throws: Error{engine_failed} for text of another form.
 std::string measured_json(const std::vector<Measured>& all);
 std::vector<Measured> measured_of(const std::string& json);
 

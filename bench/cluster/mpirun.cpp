@@ -70,7 +70,7 @@ void run_under_mpirun(const MpirunCommand& command, const std::stop_token& stop)
     throw_if_stopped(stop);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         throw Error(ErrorCode::engine_failed,
-                    command.mpirun + " -n " + std::to_string(command.ranks) + " failed; what it said stands above");
+                    command.mpirun + " -n " + std::to_string(command.ranks) + " failed; its messages are above");
     }
 }
 

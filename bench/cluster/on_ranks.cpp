@@ -95,7 +95,7 @@ private:
         use_tape(*engine_, &tape);
         tape.record();
         (void)call();
-        // What disturbs the machine for a moment would fall on one rank, if that had one turn.
+        // With a single turn per rank, a short disturbance of the machine would affect all calls of one rank.
         constexpr unsigned turns = 3;
         std::vector<RankCosts> costs;
         for (unsigned turn = 0; turn < turns * unsigned(ranks_); ++turn) {

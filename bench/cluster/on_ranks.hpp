@@ -9,9 +9,9 @@
 
 namespace octopair::cluster {
 
-/// Collective. Measures `rounds` calls of all ranks together, then as many of each rank alone, after one warm-up call.
-/// Each rank makes its slice of the scene. Rank 0 returns the costs of all ranks. Pairs are listed in octal order, by
-/// ranks with one thread.
+/// Collective. Measures `rounds` calls of all ranks together, then at least as many calls of each rank alone. Warm-up
+/// calls are not counted. Each rank makes its slice of the scene. Rank 0 returns the costs of all ranks. Pairs are
+/// listed in octal order, by ranks with one thread.
 Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

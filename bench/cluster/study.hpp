@@ -31,7 +31,7 @@ using Show = std::function<void(std::string_view activity, double done)>;
 /// Runs this program under mpirun to measure. Throws: Error.
 std::vector<Measured> measure(const StudyPlan& plan, const Show& show, const std::stop_token& stop);
 
-/// Tables for people, and one JSON object for programs, ended by a newline.
+/// Returns tables for people, or one JSON object for programs, ended by a newline.
 std::string study_text(const std::vector<Measured>& all);
 std::string study_json(const std::vector<Measured>& all);
 

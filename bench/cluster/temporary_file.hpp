@@ -1,4 +1,4 @@
-// Temporary file of this process, removed at its end: receives the results of a child program.
+// Temporary file that receives the results of a child program. The destructor removes the file.
 #pragma once
 
 #include <unistd.h>

@@ -11,8 +11,7 @@
 
 namespace octopair::bench {
 
-/// Boxes of a scene where the engine's calls read them, and the owner of that memory; no owner if the caller owns the
-/// memory.
+/// Boxes of a scene in the memory that calls read. `keeper` owns this memory; null if the caller owns the memory.
 struct PlacedBoxes {
     std::span<const Box3f> boxes;
     std::shared_ptr<const void> keeper = {};

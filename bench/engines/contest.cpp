@@ -109,7 +109,7 @@ std::vector<Entrant> hold(const Contest& contest, unsigned width) {
         runners.push_back(std::make_unique<Runner>(contender, boxes, width));
     for (const auto& runner : runners) runner->entrant.first_seconds = runner->call(contest.order);
     judge(runners);
-    // Another one begins each round, so that none always follows the same.
+    // Each round begins with the next engine, so that no engine has the first place in every round.
     for (std::size_t round = 0; round < contest.rounds; ++round) {
         for (std::size_t i = 0; i < runners.size(); ++i) {
             Runner& runner = *runners[(round + i) % runners.size()];

@@ -38,7 +38,7 @@ struct Entrant {
     double first_seconds = 0;  ///< first call
     std::vector<double> seconds;
     std::uint64_t pairs = 0;
-    bool agrees = true;  ///< equal to the first engine, pair by pair
+    bool agrees = true;  ///< true: pairs equal the first engine's pairs, pair by pair
 
     double median() const;
 };

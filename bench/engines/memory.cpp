@@ -28,7 +28,7 @@ double bytes_of(const std::string& process) {
     return 0;
 }
 
-/// Returns the sum over this process and its children.
+/// Returns the sum of the proportional set sizes of this process and its children.
 double bytes_of_all() {
     double bytes = bytes_of("self");
     for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -71,7 +71,7 @@ EngineMemoryUse measure_here(const EngineMemoryCase& which, unsigned width) {
     EngineMemoryUse use;
     const double before = bytes_of_all();
     const std::unique_ptr<Engine> engine = found->make(width);
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until its workers have begun
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // waits until the workers have started
     use.idle = bytes_of_all() - before;
     const PlacedBoxes placed = found->place(*engine, boxes);
     PairList list;
@@ -84,7 +84,7 @@ EngineMemoryUse measure_here(const EngineMemoryCase& which, unsigned width) {
     }
     use.kept = bytes_of_all() - before;
     use.pairs = list.size();
-    // Boxes that lie where the engine has its own memory are the input; an application would have no others.
+    // Boxes in the engine's memory are input, because an application would have no other copy of them.
     const double input = placed.keeper != nullptr ? double(placed.boxes.size_bytes()) : 0;
     const double beside = input + double(use.pairs) * sizeof(Pair);
     use.kept -= beside;

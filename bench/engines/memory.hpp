@@ -1,7 +1,7 @@
-// Memory of an engine: of the application and its worker processes together, beyond boxes and pairs.
+// Memory of an engine: application and worker processes together, beyond boxes and pairs.
 //
 // A separate application process measures each case. The measure is the sum of proportional set sizes of that process
-// and its children: each resident page counts once, however many processes map the page. Only the application's own
+// and its children. So each resident page counts once, however many processes map the page. Only the application's own
 // boxes are subtracted, so a copy of the boxes counts for the engine. Pairs are subtracted with 8 bytes each; the rest
 // of a list counts for the engine.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace octopair::bench {
 
-constexpr double most_engine_bytes = 80;  ///< per object, over all processes of the process engine
+constexpr double most_engine_bytes = 80;  ///< bytes per object, sum over all processes of the process engine
 
 struct EngineMemoryCase {
     std::string engine;  ///< name in contenders()
@@ -36,7 +36,8 @@ struct EngineMemoryUse {
 
 std::vector<EngineMemoryCase> engine_memory_cases();
 
-/// Forks. Requires: the process has one thread. Throws: std::runtime_error if the child process fails.
+/// Returns the memory of one case, measured in a forked process. Requires: the process has one thread. Throws:
+/// std::runtime_error if the child process fails.
 EngineMemoryUse measure_memory(const EngineMemoryCase& which, unsigned width);
 
 }  // namespace octopair::bench

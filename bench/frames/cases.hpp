@@ -9,7 +9,7 @@ namespace octopair::bench {
 
 enum class Statistic : std::uint8_t { median, slowest };
 
-/// Bound of a statistic of one tracker over the median of another tracker: the fastest of several.
+/// Upper bound of a ratio: a statistic of `tracker` over the median of the fastest tracker of `against`.
 struct Goal {
     std::string tracker;
     Statistic statistic;

@@ -1,6 +1,7 @@
 // Memory of a scene, measured in its own process without other scenes and engines.
 //
-// The measure is the resident size above the size of the caller's boxes and ids. Each frame calls for all pairs.
+// The measure is the resident size above the size of the caller's boxes and ids. Each frame requests the list of all
+// pairs.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct MemoryCase {
     unsigned frames;  ///< frames after the first frame
 };
 
-/// Bytes.
+/// Memory in bytes, and the number of pairs.
 struct MemoryUse {
     std::uint64_t pairs = 0;  ///< in the last frame
     double first_peak = 0;    ///< during insertion and the first search
@@ -31,8 +32,8 @@ constexpr double promised_bytes(double objects, double pairs) { return 120 * obj
 
 std::vector<MemoryCase> memory_cases();
 
-/// Forks, and uses one thread. Requires: the process has one thread. Throws: std::runtime_error if the child process
-/// fails.
+/// Returns the memory of one case, measured with one thread in a forked process. Requires: the process has one thread.
+/// Throws: std::runtime_error if the child process fails.
 MemoryUse measure_memory(const MemoryCase& which);
 
 }  // namespace octopair::bench

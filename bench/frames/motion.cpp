@@ -9,7 +9,7 @@ namespace octopair::bench {
 namespace {
 
 constexpr std::uint64_t seed = 2;
-constexpr double most_of_size = 0.1;  // a frame, on each axis
+constexpr double most_of_size = 0.1;  // largest step per frame on an axis, as a fraction of the object's size
 
 Box3f bounds_of(std::span<const Box3f> boxes) {
     Box3f all = boxes.front();

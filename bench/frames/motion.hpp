@@ -17,7 +17,7 @@ public:
     /// `share`: part of the objects that moves in a frame, 0 to 1.
     Motion(std::vector<Box3f> boxes, double share);
 
-    /// Returns the current boxes: of the first frame before the first call of next().
+    /// Returns the boxes of the last next(); before the first call of next(), the boxes of the first frame.
     std::span<const Box3f> boxes() const { return boxes_; }
     /// Returns the number of objects that move in a frame.
     std::size_t movers() const { return moved_.size(); }

@@ -12,13 +12,13 @@
 namespace octopair::bench {
 
 struct FramePlan {
-    unsigned frames = 100;  ///< after the first
+    unsigned frames = 100;  ///< frames after the first frame
     unsigned least_frames = 10;
-    double most_seconds = 30;  ///< a slower peer stops, after `least_frames` at least
+    double most_seconds = 30;  ///< time limit of a tracker, after `least_frames` at least
 };
 
-/// `processor`: processor time of all threads of this process. More reliable for long frames when other programs use
-/// the machine.
+/// `processor`: processor time of all threads of this process. This time is more reliable for long frames when other
+/// programs use the machine.
 enum class Clock : std::uint8_t { wall, processor };
 
 struct Track {

@@ -1,4 +1,4 @@
-// How time grows with the number of objects: least squares of t = a n and of t = a n log2 n.
+// Growth of time with the number of objects: least squares fits of t = a n and of t = a n log2 n.
 //
 // Residuals are relative to the measured time, so that small scenes count as much as large ones.
 #pragma once
@@ -33,7 +33,7 @@ struct Fits {
     Fit linear;
     Fit n_log_n;
     double spread = 0;                ///< root mean square of the samples' spreads
-    Growth growth = Growth::unclear;  ///< fit with smaller residual; unclear if both differ by less than the spread
+    Growth growth = Growth::unclear;  ///< fit with smaller residual; unclear if both differ by at most the spread
 };
 
 /// Fits both curves. With fewer than two samples the growth is unclear.

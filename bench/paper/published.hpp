@@ -34,8 +34,8 @@ constexpr std::span<const PublishedTime> published_times(std::uint64_t objects) 
     return {};
 }
 
-/// Times of the components, in microseconds. The paper does not give the number of objects; the sum is close to its
-/// time for 2,000,000 objects. The paper gives no time for the scan.
+/// Times of the components, in microseconds. The paper does not give the number of objects. The sum of the times is
+/// close to the paper's time for 2,000,000 objects. The paper gives no time for the scan.
 struct PublishedComponents {
     unsigned processors;
     std::uint64_t octal_codes;    ///< ResolveObject() on a slave

@@ -105,9 +105,9 @@ public:
 
     Study run() {
         for (const std::uint64_t objects : study_.plan.objects) {
-            say(fmt::format("{} objects: making them", objects));
+            say(fmt::format("{} objects: making the scene", objects));
             const std::vector<Box3f> boxes = make_boxes(objects);
-            say(fmt::format("{} objects: looking for the paper's best depth", objects));
+            say(fmt::format("{} objects: searching for the best depth of the paper's octree", objects));
             const PaperSettings most{0, 1, study_.plan.threads, PaperSort::radix};
             measure(boxes, baselines::best_paper_level(boxes, most, stop_));
         }
@@ -138,7 +138,7 @@ private:
 
     struct Turn {
         unsigned level;
-        unsigned round;  // the first is not counted
+        unsigned round;  // round 0 is not counted
     };
 
     void turn(std::size_t i, std::span<const Box3f> boxes, const Turn& turn) {
@@ -183,7 +183,7 @@ private:
     const StudyProgress& progress_;
     std::stop_token stop_;
     Study study_;
-    std::vector<std::unique_ptr<Runner>> runners_;  // of the series
+    std::vector<std::unique_ptr<Runner>> runners_;  // one for each series
     double done_ = 0, total_ = 0;                   // objects times rounds
 };
 

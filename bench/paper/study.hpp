@@ -1,5 +1,5 @@
-// Measurements of the paper's section 5 on this machine: time by number of objects and of processors, for the paper's
-// algorithm as published and for octopair.
+// Measurements of the paper's section 5 on this machine: time by number of objects and of processors. The contenders
+// are the paper's algorithm as published, and octopair.
 //
 // All setups with one number of objects take turns, round by round, so that other load on the machine affects all
 // equally. The first run of each setup is not counted. The paper's algorithm runs at its best fixed depth for the
@@ -33,7 +33,7 @@ enum class Finder : std::uint8_t { paper, paper_standard_sort, octopair };
 /// Algorithm and processors of a measurement.
 struct Setup {
     Finder finder = Finder::octopair;
-    unsigned machines = 1;                ///< machines of the paper's algorithm, which merges on each first
+    unsigned machines = 1;                ///< machines of the paper's algorithm; each merges before the master
     unsigned processors_per_machine = 1;  ///< threads
     unsigned processors() const { return machines * processors_per_machine; }
 };
@@ -43,10 +43,11 @@ std::string processors_text(const Setup& setup);
 /// Returns "paper", "paper, std::sort" or "octopair".
 std::string_view finder_text(Finder finder);
 
-/// Wall-clock seconds of the steps: of the slowest processor where several work in parallel.
+/// Wall-clock seconds of the steps. If several processors work in parallel: seconds of the slowest. For octopair, `sort`
+/// is the step scatter, and `merge` is the step count.
 struct Steps {
     double encode = 0, sort = 0;
-    double merge = 0;         ///< paper's algorithm only: on each machine
+    double merge = 0;         ///< paper's algorithm: on each machine
     double merge_master = 0;  ///< paper's algorithm only: at the master
     double scan = 0;
 };
@@ -83,16 +84,16 @@ struct Study {
     std::vector<Series> series;
 };
 
-/// Returns the setups on up to `threads` processors: 1 to 4, then doubled, and `threads`. For even numbers from 4 on, the
-/// paper's algorithm also runs as machines of two. Its variant with std::sort runs only with most objects.
+/// Returns the setups on up to `threads` processors: 1 to 4, then doubled, and `threads`. For even numbers from 4 on,
+/// the paper's algorithm also runs as machines of two. Its variant with std::sort runs only with most objects.
 std::vector<Setup> setups(unsigned threads);
 
 /// Receives the current activity and the completed part, 0 to 1.
 using StudyProgress = std::function<void(std::string_view activity, double done)>;
 
-/// Throws: Error{engine_failed} if two setups find different numbers of pairs; Error{cancelled} after a stop request. A
-/// run of octopair stops at once, a run of the paper's algorithm completes. Memory: the paper's algorithm holds all octants
-/// that each box meets.
+/// Runs all measurements of a plan. Throws: Error{engine_failed} if two setups find different numbers of pairs;
+/// Error{cancelled} after a stop request. Then a run of octopair stops at once, and a run of the paper's algorithm
+/// completes. Memory: the paper's algorithm holds all octants that each box meets.
 Study measure(const StudyPlan& plan, const StudyProgress& progress, const std::stop_token& stop);
 
 }  // namespace octopair::paper

@@ -32,7 +32,7 @@ std::string figure_text(const Study& study) {
     return text + '\n';
 }
 
-/// Formats a time, its speedup and its efficiency in 36 columns; blanks without a time.
+/// Formats a time, its speedup and its efficiency in 36 columns; a dash without a time.
 std::string speedup_cells(const std::optional<TimedRun>& run, double serial_seconds) {
     if (!run) return fmt::format("{:>36}", "-");
     if (run->processors == 1) return fmt::format("{:>14}{:>10}{:>12}", microseconds(run->seconds), "-", "-");
@@ -61,7 +61,8 @@ public:
     }
 
 private:
-    /// Returns every number of processors, with the paper's numbers; setups of several machines have their own rows.
+    /// Returns one row for each measured or published number of processors. Setups of several machines have their own
+    /// rows.
     std::vector<Setup> rows() const {
         std::vector<Setup> rows;
         rows.reserve(study_.series.size() + published_times(objects_).size());
@@ -120,7 +121,7 @@ private:
 /// One column of the components.
 struct Column {
     std::string head;
-    std::optional<Steps> steps;  // none: as published
+    std::optional<Steps> steps;  // none: the published times
 };
 
 std::vector<Column> component_columns(const Study& study) {

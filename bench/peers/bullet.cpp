@@ -29,7 +29,8 @@ public:
     BulletWorld(const BulletWorld&) = delete;
     BulletWorld& operator=(const BulletWorld&) = delete;
     ~BulletWorld() {
-        // Each proxy that goes has the cache looked through for its pairs: in all n times the pairs, of no use to anyone.
+        // destroyProxy() searches the whole pair cache for the pairs of its proxy. An empty cache saves these n
+        // searches.
         btNullPairCache empty;
         broadphase_.m_paircache = &empty;
         for (btBroadphaseProxy* proxy : proxies_) broadphase_.destroyProxy(proxy, nullptr);

@@ -1,6 +1,6 @@
 // One scene, all contenders: they take turns, round by round, so that other load on the machine affects all equally.
 //
-// The first run of each contender is not counted. Slow contenders run less often, because each has a limit of time.
+// The first run of each contender is not counted. Slow contenders run less often, because each has a time limit.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ struct ComparisonPlan {
 
 enum class RowState : std::uint8_t {
     measured,
-    out_of_memory,  ///< for algorithms that hold all candidates
+    out_of_memory,  ///< happens to algorithms that hold all candidates
     left_out        ///< too many objects (ContenderKind::most_objects)
 };
 

@@ -34,7 +34,7 @@ public:
 
     /// Selects the best settings for the boxes before the first run. Not timed.
     virtual void prepare(std::span<const Box3f>) {}
-    /// The timed part: from boxes in memory to pairs in memory.
+    /// Finds the pairs, from boxes in memory to pairs in memory. This call is timed.
     virtual void run(std::span<const Box3f> boxes) = 0;
     /// Returns the number and the hash of the pairs of the last run.
     virtual Found found() const = 0;
@@ -56,13 +56,13 @@ struct ContenderKind {
     bool threads;  ///< true: can use several threads
     bool limit;    ///< true: measures a hardware limit, finds no pairs
     std::unique_ptr<Contender> (*make)(unsigned threads);
-    std::uint64_t most_objects = any_number;  ///< more take minutes, and run only if selected by name
+    std::uint64_t most_objects = any_number;  ///< larger scenes take minutes, and run only if selected by name
 };
 
 /// Returns octopair, the baselines, and every peer in this build.
 std::vector<ContenderKind> contender_kinds();
 
-// A file each; empty where the library is not there.
+// Contenders of each library, one source file each.
 std::vector<ContenderKind> octopair_contenders();
 std::vector<ContenderKind> baseline_contenders();
 std::vector<ContenderKind> boost_contenders();

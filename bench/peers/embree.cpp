@@ -49,7 +49,7 @@ private:
         to.upper_z = box.max[2];
     }
 
-    /// Embree reports candidates in both directions, and a leaf with itself. Keeps those with a < b whose boxes
+    /// Embree reports candidates in both directions, and a leaf with itself. Keeps candidates with a < b whose boxes
     /// overlap.
     static void collide(void* self, RTCCollision* collisions, unsigned count) {
         Embree& embree = *static_cast<Embree*>(self);

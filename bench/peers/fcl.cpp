@@ -1,5 +1,5 @@
-// FCL's dynamic AABB trees (array in Morton order, and tree of nodes) and its sweep and prune: all pairs of one scene,
-// and frame by frame.
+// FCL's dynamic AABB trees (array in Morton order, and tree of nodes), and FCL's sweep and prune. Contenders for all
+// pairs of one scene, and trackers frame by frame.
 #include <fcl/broadphase/broadphase_SaP.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
@@ -13,7 +13,7 @@ namespace octopair::bench {
 
 namespace {
 
-/// Shape that consists only of its bounds. FCL's own box would be rounded to centre and sides.
+/// Shape that consists only of its bounds. FCL's own box stores centre and sides, which would round the bounds.
 class Bounds : public fcl::CollisionGeometryd {
 public:
     explicit Bounds(const Box3f& box) { set(box); }

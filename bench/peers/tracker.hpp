@@ -51,7 +51,7 @@ struct TrackerKind {
 /// Returns octopair's trackers, then every peer in this build.
 std::vector<TrackerKind> tracker_kinds();
 
-// A file each, that of the contenders.
+// Trackers of each library, in the source file of its contenders.
 std::vector<TrackerKind> octopair_trackers();
 std::vector<TrackerKind> bullet_trackers();
 std::vector<TrackerKind> fcl_trackers();

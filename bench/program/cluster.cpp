@@ -21,7 +21,7 @@ namespace {
 struct ClusterRequest {
     cluster::StudyPlan plan;
     OutputRequest output;
-    std::string on_ranks;  // a file: measure on the ranks of this program
+    std::string on_ranks;  // not empty: this process is a rank; rank 0 writes the results to this file
 };
 
 MakeText measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks, const std::stop_token& stop) {

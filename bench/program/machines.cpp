@@ -14,7 +14,7 @@ namespace octopair::bench {
 namespace {
 
 constexpr unsigned most_machines = 10'000;
-constexpr unsigned ranks_per_machine = 2;  // the paper's
+constexpr unsigned ranks_per_machine = 2;  // like in the paper
 
 std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
     std::vector<unsigned> machines;
@@ -51,7 +51,7 @@ void add_machines_options(cli::Command& command, MachinesRequest& request) {
             "--bandwidth",
             [&request](const std::string& text) {
                 request.bytes_per_second = cli::parse_length("--bandwidth", text) * 1e6 / 8;
-                if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: 0 is too little");
+                if (request.bytes_per_second == 0) throw Error(ErrorCode::usage, "--bandwidth: must be greater than 0");
             },
             "network model of --machines: bandwidth per machine in Mbit/s (default 800)")
         .needs(machines)

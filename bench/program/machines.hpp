@@ -27,7 +27,7 @@ struct MachinesScene {
     unsigned rounds;
     OutputRequest output;
 };
-/// Returns the exit status. Throws Error.
+/// Runs the study on ranks. Returns the exit status. Throws: Error.
 int run_machines(const MachinesRequest& request, const MachinesScene& scene);
 
 }  // namespace octopair::bench

@@ -9,7 +9,7 @@
 
 namespace octopair::bench {
 
-/// Makes the text of a file. Only rank 0 calls it.
+/// Makes the text of a file. Called only on rank 0.
 using MakeText = std::function<std::string()>;
 
 /// Collective. Runs `measure` on all ranks; rank 0 writes the text of the result to `path`. Returns the exit status.

@@ -1,4 +1,5 @@
-// octopair-bench paper: measures the figure and the tables of the paper's section 5 (bench/paper; on ranks: machines.cpp).
+// octopair-bench paper: measures the figure and the tables of the paper's section 5 (bench/paper; on ranks:
+// machines.cpp).
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -26,7 +27,7 @@ namespace octopair::bench {
 namespace {
 
 struct PaperRequest {
-    paper::StudyPlan plan = {"uniform", {}, 0, 7, 20};  // no objects: the paper's numbers
+    paper::StudyPlan plan = {"uniform", {}, 0, 7, 20};  // no objects: default numbers; 0 threads: all cores
     OutputRequest output;
 #ifdef OCTOPAIR_WITH_MPI
     MachinesRequest machines;

@@ -23,7 +23,7 @@ namespace {
 struct ScalingRequest {
     scaling::StudyPlan plan;
     OutputRequest output;
-    std::string on_ranks;  // a file: measure on the ranks of this program
+    std::string on_ranks;  // not empty: this process is a rank; rank 0 writes the results to this file
 };
 
 /// Measures the first scene of the plan.
@@ -35,7 +35,7 @@ MakeText measure_scaling(const scaling::StudyPlan& plan, cli::Cluster& ranks, co
     return [contest = std::move(contest)] { return scaling::contest_json(contest); };
 }
 
-/// Adds 1 to ascending numbers, and removes repeated ones.
+/// Adds 1 to ascending numbers, and removes duplicates.
 void complete(std::vector<unsigned>& numbers) {
     numbers.insert(numbers.begin(), 1);
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());

@@ -129,7 +129,8 @@ Contest contest_of(const std::string& text) {
         }
         return contest;
     } catch (const Json::exception& error) {
-        throw Error(ErrorCode::engine_failed, std::string("what the ranks measured cannot be read: ") + error.what());
+        throw Error(ErrorCode::engine_failed,
+                    std::string("cannot read the measurements of the ranks: ") + error.what());
     }
 }
 

@@ -61,8 +61,7 @@ struct Contest {
 /// each number of cores that this number divides. Requires: threads and cores ascend and contain 1.
 std::vector<Setup> setups(const std::vector<unsigned>& cores, const std::vector<unsigned>& threads_per_rank);
 
-/// Writes a table for people; writes and reads JSON for programs. Throws: Error{engine_failed} for text of another
-/// form.
+/// Writes a table for people; writes or reads JSON for programs. Throws: Error{engine_failed} for text of another form.
 std::string contest_text(const Contest& contest);
 std::string contest_json(const Contest& contest);
 Contest contest_of(const std::string& json);

@@ -23,8 +23,8 @@ int rank_of(MPI_Comm comm) {
     return rank;
 }
 
-/// Slices of scenes that this rank provides. A slice with equal begin and no greater length shares the memory of
-/// another slice.
+/// Slices of scenes that this rank provides. A slice shares the memory of an earlier slice of the same scene that has
+/// the same begin and is at least as long.
 class Slices {
 public:
     explicit Slices(std::string scene) : scene_(std::move(scene)) {}
@@ -59,7 +59,7 @@ private:
         std::uint64_t objects, begin;
         std::vector<Box3f> boxes;
     };
-    std::list<Made> made_;  // of which none moves
+    std::list<Made> made_;  // a list, because spans refer to its elements
 };
 
 /// Waits for all ranks without using a core. MPI's own waits poll continuously.
@@ -118,7 +118,7 @@ private:
     PairList pairs_;
 };
 
-/// Runs `part` on this rank. Ranks without a part, or that ended early, sleep until all ranks are there.
+/// Runs `part` on this rank. Ranks without a part, or that end early, sleep until all ranks have ended.
 void in_turn(MPI_Comm comm, const std::function<void()>& part) {
     std::exception_ptr failure;
     try {
@@ -152,7 +152,7 @@ void check_pairs(const std::vector<Entrant>& entrants) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): who, what, how often, how they agree, until when.
+// NOLINTNEXTLINE(readability-function-size): the five parameters are independent of each other.
 Contest hold_on_ranks(MPI_Comm comm, Contest contest, const Turns& turns, const Together& together,
                       const std::stop_token& stop) {
     together([&] { check_ranks(comm, turns.setups); });

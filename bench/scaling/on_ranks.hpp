@@ -14,7 +14,7 @@ namespace octopair::scaling {
 using Together = std::function<void(const std::function<void()>&)>;
 
 struct Turns {
-    std::vector<Setup> setups;  ///< the first one is the local engine with one thread
+    std::vector<Setup> setups;  ///< the first is the local engine with one thread
     unsigned rounds = 7;
 };
 

@@ -2,8 +2,7 @@
 // machine.
 //
 // Strong scaling uses equal objects for all setups; weak scaling uses a fixed number of objects per core. All setups of
-// a scene take turns in the processes of one mpirun, round by round, so that other load on the machine affects all
-// equally.
+// a scene take turns in the processes of one mpirun, round by round. So other load on the machine affects all equally.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +35,7 @@ using Show = std::function<void(std::string_view activity, double done)>;
 /// Runs this program under mpirun, once for each scene and number of objects, to measure. Throws: Error.
 std::vector<Contest> measure(const StudyPlan& plan, const Show& show, const std::stop_token& stop);
 
-/// Tables for people, and one JSON object for programs, ended by a newline.
+/// Returns tables for people, or one JSON object for programs, ended by a newline.
 std::string study_text(const std::vector<Contest>& all);
 std::string study_json(const std::vector<Contest>& all);
 

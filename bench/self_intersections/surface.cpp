@@ -40,7 +40,7 @@ public:
 
 private:
     static constexpr double arm_width = 0.4;   // radians
-    static constexpr double arm_length = 2.3;  // of the sphere's radius
+    static constexpr double arm_length = 2.3;  // radii of the sphere
 
     static double dot(const Point3d& a, const Point3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -84,7 +84,7 @@ private:
         const auto [known, is_new] = known_.try_emplace(place, std::uint32_t(mesh.vertices.size()));
         if (is_new) {
             Point3d at;
-            // Tangents keep the squares alike on the sphere.
+            // The tangent gives squares of similar size on the sphere.
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 at[axis] = std::tan((2.0 * place[axis] / side_ - 1) * std::atan(1.0));
             }

@@ -32,7 +32,7 @@ public:
 
     template <typename AnyScene>
     void enter(AnyScene& scene) {
-        scene.add(Objects{std::span<const Box3f>(boxes_), {}}, ids_);  // every new scene numbers them the same
+        scene.add(Objects{std::span<const Box3f>(boxes_), {}}, ids_);  // every new scene assigns the same ids
     }
 
     void go_on(std::uint64_t moved) {
@@ -81,7 +81,7 @@ AgainstLocal measure_against_local(const std::string& address, std::uint64_t obj
         Job job;
         const double c = seconds_of([&] { job = remote->submit(borrowed(scene), options); });
         job.wait();
-        if (round == 0) continue;  // memory is found
+        if (round == 0) continue;  // warm-up: the engines allocate memory
         result.local.push_back(a);
         result.remote.push_back(b);
         result.submit.push_back(c);

@@ -36,7 +36,7 @@ TEST(Buffer, ReservedMemoryIsCommittedInParts) {
     buffer.reserve_discard(1 << 20);
     buffer.commit(1000, 24);
     for (std::size_t i = 1000; i < 1024; ++i) buffer[i] = i;
-    buffer.commit(1000, 24);  // again: nothing is lost
+    buffer.commit(1000, 24);  // a repeated commit keeps the contents
     for (std::size_t i = 1000; i < 1024; ++i) EXPECT_EQ(buffer[i], i);
 }
 
@@ -64,7 +64,7 @@ TEST(GrowingArray, HoldsWhatWasAdded) {
 TEST(GrowingArray, AddsAnElementOfItsOwn) {
     GrowingArray<int> array;
     array.push_back(5);
-    for (int i = 0; i < 100; ++i) array.push_back(array[0]);  // also while it grows
+    for (int i = 0; i < 100; ++i) array.push_back(array[0]);  // also when the elements move to larger memory
     for (const int element : array.span()) EXPECT_EQ(element, 5);
 }
 

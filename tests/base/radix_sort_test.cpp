@@ -36,7 +36,7 @@ TYPED_TEST(RadixSortOf, SkipsBitsThatAreInOrder) {
     constexpr std::size_t size = 50'000;
     std::mt19937_64 random(4);
     std::vector<TypeParam> expected(size);
-    // In order of the low 8 bits, which sort() is told to leave out.
+    // The keys are in order of their low 8 bits, which sort() skips.
     for (std::size_t i = 0; i < size; ++i) expected[i] = TypeParam((random() & 0xFFFF) << 8 | i * 256 / size);
     RadixSort<TypeParam> radix;
     std::ranges::copy(expected, radix.take(size).begin());

@@ -75,7 +75,7 @@ TEST(WorkQueue, AnItemThatIsNotChosenWaitsUntilItIs) {
     while (queue.waiting() > 2) std::this_thread::yield();
     EXPECT_EQ(queue.waiting_before([](int item) { return item == 3; }), 1u);
     EXPECT_EQ(queue.waiting_before([](int item) { return item == 2; }), 0u);
-    odd_ones_too = true;  // nothing wakes the thread: it asks again
+    odd_ones_too = true;  // no notification: the thread calls `choose` again after `retry`
     queue.wait_until_idle();
     queue.finish();
     thread.join();

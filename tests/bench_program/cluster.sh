@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `octopair-bench cluster` measures ranks, and leaves nothing where it cannot.
+# Tests that `octopair-bench cluster` measures ranks, and leaves no file if it fails.
 #
 #     cluster.sh PROGRAM MPIRUN
 source "$(dirname "$(realpath "$0")")/../mpi/in_folder.sh"
@@ -14,7 +14,7 @@ assert [(run["ranks"], run["scene"]) for run in runs] == [(1, "uniform"), (1, "d
 for run in runs:
     costs = run["together"]
     assert len(costs) == run["ranks"] and sum(rank["objects"] for rank in costs) == 3000
-    # Each object is received by one rank, or by several that share it.
+    # One rank receives each object, or several ranks that share the object.
     received, shared = (sum(rank[name] for rank in costs) for name in ("objects_received", "shared_objects"))
     assert run["ranks"] == 1 or received >= 3000 + shared
     assert all(rank["cpu_seconds"]["scan"] > 0 for rank in costs)
@@ -40,7 +40,7 @@ paper = json.load(open("paper.json"))
 assert paper["network_model"] == {"latency_seconds": 5e-6, "bytes_per_second": 1e8}
 modelled = {(row["ranks"], row["arrangement"]): row["network_seconds"] for row in paper["runs"]}
 assert set(modelled) == {(ranks, arrangement) for ranks in (1, 2, 4) for arrangement in ("shared", "paper")}
-# One machine needs no network; the master's has all objects and entries to carry.
+# One machine needs no network. With two machines, the master's network carries at least half of objects and entries.
 assert all((seconds > 0) == (ranks == 4) for (ranks, _), seconds in modelled.items())
 assert modelled[4, "paper"] > (3000 / 2 * 24 + 3000 / 2 * 32) / 1e8
 END
@@ -48,9 +48,9 @@ END
 status=0
 "$program" cluster --ranks 2 --mpirun "no-such-mpirun" --json no.json > /dev/null 2> errors.txt || status=$?
 [ "$status" = 6 ] || fail "exit status $status without an mpirun"
-grep -q 'cannot run no-such-mpirun' errors.txt || fail "not said: $(cat errors.txt)"
+grep -q 'cannot run no-such-mpirun' errors.txt || fail "no message about mpirun: $(cat errors.txt)"
 status=0
 "$program" cluster --ranks 2 --mpirun "$mpirun --no-such-option" --json no.json > /dev/null 2>&1 || status=$?
 [ "$status" = 6 ] || fail "exit status $status where mpirun fails"
-[ ! -e no.json ] || fail "a file is left by what failed"
+[ ! -e no.json ] || fail "a failed call left a file"
 echo "ranks are measured"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The installed tree has octopair-bench with its manual page, and the program runs there.
+# Tests that the installed tree has octopair-bench with its manual page, and that the program runs there.
 #
 #     installed.sh BUILD
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `octopair-bench scaling` measures threads and ranks, and leaves nothing where it cannot.
+# Tests that `octopair-bench scaling` measures threads and ranks, and leaves no file if it fails.
 #
 #     scaling.sh PROGRAM MPIRUN
 source "$(dirname "$(realpath "$0")")/../mpi/in_folder.sh"
@@ -39,13 +39,13 @@ for result in results("strong.json") + results("weak.json"):
         (ranks, rows[ranks, 1]["against_threads"]) for ranks in (1, 2)]
 END
 
-# More ranks than there are to be had, and no ranks at all.
+# Calls that fail: without an mpirun, and with fewer ranks than cores.
 status=0
 "$program" scaling --cores 2 --mpirun no-such-mpirun --json no.json > /dev/null 2> errors.txt || status=$?
 [ "$status" = 6 ] || fail "exit status $status without an mpirun"
-grep -q 'cannot run no-such-mpirun' errors.txt || fail "not said: $(cat errors.txt)"
+grep -q 'cannot run no-such-mpirun' errors.txt || fail "no message about mpirun: $(cat errors.txt)"
 status=0
 "$mpirun" -n 1 "$program" scaling --cores 2 --on-ranks no.json 2> errors.txt || status=$?
 [ "$status" = 2 ] || fail "exit status $status with too few ranks: $(cat errors.txt)"
-[ ! -e no.json ] || fail "a file is left by what failed"
+[ ! -e no.json ] || fail "a failed call left a file"
 echo "threads and ranks are measured"

@@ -120,7 +120,7 @@ Depths depths(const RoundingSlack& slack, const Entry& a, const Entry& b) {
     return depths;
 }
 
-/// Pairs that count overlap as entries, and what is certain counts.
+/// Checks that the entries of every pair overlap, and that objects whose entries overlap deeply are pairs.
 void check_entries(std::span<const Box3d> boxes, double margin) {
     const Objects objects{boxes, {}};
     const BoxSource source(objects, nullptr, margin);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bench/guard's judgement, on times that are made up. (To build two commits takes longer than a test may.)"""
+"""Tests the judgement of bench/guard on invented times, because building two commits takes too long for a test."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -32,7 +32,7 @@ class Guard(unittest.TestCase):
         self.assertEqual(len(guard.judge(dict([SLOWER]), 1.19)), 1)
 
     def test_ratios_are_taken_round_by_round(self):
-        # A machine that slows down in the middle slows both: no single round is worse by more than 1%.
+        # A machine that slows down during the rounds slows both commits. In each round the second is 1% slower.
         self.assertAlmostEqual(guard.ratio([10, 20, 40], [10.1, 20.2, 40.4]), 1.01)
 
     def test_report_says_which(self):

@@ -1,6 +1,6 @@
-"""What the build compiles, for checks of the source: commands by file, and which files passed a check before.
+"""Helpers for checks of the source: the compile command of each file, and a cache of the files that passed a check.
 
-Several sources are compiled in one (CMAKE_UNITY_BUILD): a file that CMake wrote includes them by their absolute paths.
+CMake compiles several sources as one unity file (CMAKE_UNITY_BUILD), which includes them by their absolute paths.
 """
 import concurrent.futures
 import functools
@@ -17,7 +17,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
 
 def compiled(root, build):
-    """Of each file that is compiled for the library and the program, or that CMake wrote to compile several: its command."""
+    """Returns the compile command of each source and each unity file of the library and the program."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     commands = {pathlib.Path(entry["file"]): entry["command"] for entry in entries}
     found = {file: command for file, command in commands.items()
@@ -43,21 +43,22 @@ def flags_of(command):
 
 
 def included(file):
-    """The names in a file's #include lines."""
+    """Returns the names in a file's #include lines."""
     return INCLUDE.findall(file.read_text(encoding="utf-8"))
 
 
 def sources_in(file, root):
-    """A file itself, or the sources that CMake compiles through it."""
+    """Returns a source itself, or the sources of a unity file."""
     if file.is_relative_to(root / "src"):
         return [file]
     return [pathlib.Path(name) for name in included(file) if name.endswith(".cpp")]
 
 
 class Check:
-    """One that a file passes or not. A file that passed is not looked at again until it, a file of the project that it
-    includes, directly or not, its compiler's command or the rules change. What passed is noted in the cache of the user,
-    so that it holds for all checkouts."""
+    """A check that each file passes or fails.
+
+    A file that passed is checked again only after a change of the file, of a project file that it includes (directly
+    or not), of its compile command, or of the rules. The user's cache holds the passes, so all checkouts share them."""
 
     def __init__(self, name, root, build, rules):
         self.root, self.build, self.rules = root, build, rules
@@ -67,7 +68,7 @@ class Check:
 
     @functools.lru_cache(maxsize=None)
     def includes(self, path):
-        """The project's files that a file names; of a generated one, what it is generated from."""
+        """Returns the project's files that a file includes; for a generated header, its .proto file."""
         found = []
         for name in included(path):
             source = re.sub(r"(\.grpc)?\.pb\.h$", ".proto", name)
@@ -77,7 +78,7 @@ class Check:
 
     @functools.lru_cache(maxsize=None)
     def closure(self, path):
-        """A file and the project's files that it includes, directly or not."""
+        """Returns a file and the project's files that it includes, directly or not."""
         seen, to_see = set(), [path]
         while to_see:
             file = to_see.pop()
@@ -87,7 +88,7 @@ class Check:
         return seen
 
     def digest(self, path, command):
-        """Of all that the outcome depends on."""
+        """Returns a hash of everything that the outcome depends on: rules, command, and the contents of all files."""
         seen = self.closure(path)
         whole = hashlib.sha256((self.rules + command.replace(str(self.root), "")).encode())
         for file in sorted(seen):
@@ -96,7 +97,9 @@ class Check:
         return whole.hexdigest()[:32]
 
     def passes(self, path, command, arguments):
-        """Whether a program, run with the words that `arguments()` returns, ends well; prints what it says."""
+        """Returns whether the file passes: it has passed before, or the command that `arguments()` returns succeeds.
+
+        Prints the output of a command that fails."""
         mark = self.passed / self.digest(path, command)
         if mark.exists():
             return True
@@ -110,6 +113,6 @@ class Check:
 
 
 def all_pass(passes, jobs):
-    """Calls passes(*job) for all jobs, several at a time; how many passed."""
+    """Calls passes(*job) for all jobs, several at a time. Returns how many passed."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         return sum(pool.map(lambda job: passes(*job), jobs))

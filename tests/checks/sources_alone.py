@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Compiles each source and header of the library and the program alone: it includes what it needs, whatever was compiled
-before it in the same file.
+"""Compiles each source and header of the library and the program alone. So each file must include all that it needs.
 
     sources_alone.py ROOT BUILD
 
-A header that its source includes first is alone there.
+In the build, a unity file can hide a missing #include, because sources before this source may include the header. A
+header that its source includes first is checked with this source.
 
-Headers that many files include are precompiled, which takes 40% off the time. A file gets a precompiled header only if it includes
-the header, directly or not. So the only difference is that this header comes first. That hides no missing #include: the files that
-now come after the header are compiled alone as well.
+Headers that many files include are precompiled, which saves 40% of the time. A file gets a precompiled header only if
+the file includes this header, directly or not. So the only difference is that this header comes first. This hides no
+missing #include: the files that now come after the header are compiled alone as well.
 """
 import pathlib
 import subprocess
@@ -28,9 +28,9 @@ def flags_of_sources(root, build):
 
 
 def headers_alone(root):
-    """Headers that no source of their name includes first."""
+    """Yields the headers that no source of the same name includes first."""
     for header in sorted([*(root / "include").rglob("*.hpp"), *(root / "src").rglob("*.hpp")]):
-        # A kernel that Highway includes once for each instruction set is no header of its own.
+        # Kernels do not compile alone: Highway includes them once for each instruction set.
         if "#pragma once" not in header.read_text(encoding="utf-8"):
             continue
         source = header.with_suffix(".cpp")
@@ -43,7 +43,7 @@ class Precompiled:
 
     Thread safety: all functions may be called at any time."""
 
-    # Sorted by compile time, longest first: a file gets the first one that it includes.
+    # Sorted by compile time, longest first: a file gets the first header that the file includes.
     HEADERS = ("nlohmann/json.hpp", "octopair/pipeline.hpp", "octopair/engine.hpp", "octopair/objects.hpp")
 
     def __init__(self, check):
@@ -54,7 +54,7 @@ class Precompiled:
         self.lock = threading.Lock()
 
     def options_for(self, file, flags):
-        """Returns the compiler options that make a file use a precompiled header; none if it includes no such header."""
+        """Returns the compiler options with which a file uses a precompiled header, or none without such a header."""
         names = {name for part in self.check.closure(file) for name in included(part)}
         for header in self.HEADERS:
             if header in names:
@@ -63,9 +63,9 @@ class Precompiled:
 
     def make(self, header, flags):
         """Returns the precompiled header for these flags."""
-        # Macros may differ between a file and its precompiled header: these headers use none of the project's.
+        # Macros may differ between a file and its precompiled header: these headers use no macros of the project.
         flags = [flag for flag in flags if not flag.startswith("-D")]
-        # Include folders may differ, too: no header is in two of them.
+        # Include folders may differ, too: no header is in two folders.
         key = (header, *(flag for flag in flags if not flag.startswith(("-I", "-isystem", "/"))))
         with self.lock:
             if key not in self.made:

@@ -3,7 +3,7 @@
 
     tidy.py CLANG_TIDY ROOT BUILD
 
-Most of the time goes into the headers of libraries. So the sources that a target compiles several in one are checked as one file.
+Headers of libraries take most of the time. So all unity files of a target are checked as one file.
 """
 import pathlib
 import subprocess
@@ -13,7 +13,7 @@ from sources import Check, all_pass, compiled, flags_of
 
 
 def grouped_by_target(root, build):
-    """Yields files to check, each with its command. One file includes all those that CMake wrote for a target."""
+    """Yields the files to check, each with its command. If a target has several unity files, one file includes all."""
     groups = {}
     for file, command in sorted(compiled(root, build).items()):
         target = "" if file.is_relative_to(root / "src") else file.parent.parent.stem
@@ -34,7 +34,7 @@ def main(words):
     program, root, build = words[0], *(pathlib.Path(word).resolve() for word in words[1:])
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     tidy = Check("tidy", root, build, version + (root / ".clang-tidy").read_text(encoding="utf-8"))
-    # A name of one source may shadow a name of another: the compiler sees them together only here.
+    # A name of one source may shadow a name of another source, because only this check compiles them together.
     options = ["--quiet", f"--config-file={root}/.clang-tidy"]
     jobs = [(file, command, lambda file=file, command=command:
              [program, *options, str(file), "--", *flags_of(command), "-Wno-shadow"])

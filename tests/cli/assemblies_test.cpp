@@ -19,7 +19,7 @@ using Pairing = std::pair<std::string, std::string>;
 class Assemblies : public ProgramTest, public ::testing::WithParamInterface<std::string> {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(model())) GTEST_SKIP() << "scripts/setup data brings the models";
+        if (!std::filesystem::exists(model())) GTEST_SKIP() << "no models; scripts/data unpacks them";
     }
 
     std::string model() const { return std::string(OCTOPAIR_DATA "/assimp_models/") + GetParam(); }

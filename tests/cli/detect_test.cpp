@@ -23,7 +23,7 @@ TEST_F(Detect, WritesCsvToStandardOutput) {
     EXPECT_EQ(outcome.out, "a,b\n0,2\n0,4\n1,3\n2,4\n");
     EXPECT_NE(outcome.err.find("objects     5\n"), std::string::npos);
     EXPECT_NE(outcome.err.find("pairs       4\n"), std::string::npos);
-    EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << "no progress unless on a terminal";
+    EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << "progress is shown only on a terminal";
     const Outcome quiet = run("detect a.npy --quiet");
     EXPECT_EQ(quiet.out, outcome.out);
     EXPECT_EQ(quiet.err, "");
@@ -42,7 +42,7 @@ TEST_F(Detect, WritesEachFormat) {
 
 TEST_F(Detect, ReadsCsvAndSpheres) {
     write_file(file("a.csv"), "x,y,z,X,Y,Z\r\n0,0,0,1,1,1\r\n1,1,1,2,2,2\r\n1.0000000000000002,1,1,2,2,2\r\n");
-    EXPECT_EQ(run("detect a.csv").out, "a,b\n0,1\n1,2\n") << "float64 is judged as float64";
+    EXPECT_EQ(run("detect a.csv").out, "a,b\n0,1\n1,2\n") << "float64 boxes are compared in float64";
     write_file(file("s.npy"), npy_of<float>(io::NpyType::float32, {3, 4}, {0, 0, 0, 1, 2, 0, 0, 1, 4.001f, 0, 0, 1}));
     EXPECT_EQ(run("detect s.npy").out, "a,b\n0,1\n");
 }

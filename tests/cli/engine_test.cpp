@@ -50,7 +50,8 @@ protected:
         }
     }
 
-    /// For sh: waits for the workers of $child and sets $workers; and `gone` waits for their ends, or says that one lives.
+    /// Functions of sh. `find_workers` waits for the workers of $child and sets $workers. `gone` waits until the
+    /// workers end, or prints that a worker still runs.
     static constexpr const char* functions = R"(
         find_workers() {
             for i in $(seq 200); do
@@ -64,7 +65,7 @@ protected:
         gone() {
             for worker in $workers; do
                 for i in $(seq 30); do lives $worker || break; sleep 0.1; done
-                ! lives $worker || echo "a worker lives"
+                ! lives $worker || echo "a worker still runs"
             done
         }
         )";
@@ -150,7 +151,7 @@ TEST_F(Engines, StatsSayWhereItRan) {
     EXPECT_GE(stats["entries"].get<int>(), 3);
     EXPECT_NE(run("detect a.npy --engine processes --workers 1").err.find(" on 1 worker\n"), std::string::npos);
     ASSERT_EQ(run("detect a.npy --engine processes --workers 0 --stats s.json --quiet").status, 0);
-    EXPECT_GE(nlohmann::json::parse(content("s.json"))["workers"].get<int>(), 1) << "one a core";
+    EXPECT_GE(nlohmann::json::parse(content("s.json"))["workers"].get<int>(), 1) << "one worker per core";
     EXPECT_NE(run("info").out.find("engines          local, processes"), std::string::npos);
 }
 

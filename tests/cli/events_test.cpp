@@ -13,7 +13,7 @@
 namespace octopair::test {
 namespace {
 
-using Rows = std::vector<double>;  // six numbers a box, of any number of frames
+using Rows = std::vector<double>;  // six numbers per box, for any number of frames
 
 /// Returns the lines after the header, as numbers.
 std::vector<std::vector<std::uint32_t>> csv_rows(const std::string& text) {
@@ -59,10 +59,11 @@ protected:
         write_file(file(name), npy_of(type, shape, std::vector<Real>(rows.begin(), rows.end())));
     }
 
-    /// Six frames between two scenes of a kind: few objects move, none, half, back, and all.
+    /// Returns six frames of objects that move from one scene of a kind to another. Between the frames, few
+    /// objects move, then none, then half, then most of them back, then all.
     static Rows moving_rows(std::string_view kind, std::uint64_t objects, std::uint64_t seed) {
         const auto from = samples::make_scene(kind, objects, seed), to = samples::make_scene(kind, objects, seed + 1);
-        const std::uint64_t every[frames] = {0, 50, 50, 2, 40, 1};  // each how-manieth object is where it goes to
+        const std::uint64_t every[frames] = {0, 50, 50, 2, 40, 1};  // every n-th object has moved; 0: no object
         Rows rows;
         for (const std::uint64_t step : every) {
             for (std::size_t i = 0; i < objects; ++i) {
@@ -74,12 +75,12 @@ protected:
         return rows;
     }
 
-    /// Runs detect with and without --events, the latter also on two threads and to a file.
+    /// Compares detect --events with the expected events: on one and two threads, in a file, and from a server.
     void compare(const std::string& arguments) const {
         const Outcome plain = run("detect " + arguments + " --quiet");
         ASSERT_EQ(plain.status, 0) << plain.err;
         const std::string expected = expected_events(plain.out, frames);
-        EXPECT_GT(expected.size(), 100u) << arguments << ": hardly any events to compare";
+        EXPECT_GT(expected.size(), 100u) << arguments << ": too few events to compare";
         for (const std::string threads : {" --threads 1", " --threads 2"}) {
             const Outcome outcome = run("detect " + arguments + " --events --quiet" + threads);
             EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -97,7 +98,7 @@ protected:
 #endif
     }
 
-    /// Three unit boxes: 0 and 1 meet; then 1 goes on to 2; then all are apart.
+    /// Saves three frames of three unit boxes: first 0 and 1 overlap, then 1 and 2, then none.
     void save_three() const {
         std::vector<float> rows;
         for (const auto& places : {std::vector<float>{0, 0.5, 9}, {0, 8.5, 9}, {0, 3, 6}}) {
@@ -110,7 +111,7 @@ protected:
 TEST_F(Events, RowsOfEachFormat) {
     save_three();
     const std::string csv = "frame,event,a,b\n0,begin,0,1\n1,end,0,1\n1,begin,1,2\n2,end,1,2\n";
-    EXPECT_EQ(run("detect m.npy --events --quiet").out, csv) << "what ended before what began";
+    EXPECT_EQ(run("detect m.npy --events --quiet").out, csv) << "in each frame, end events precede begin events";
     EXPECT_EQ(run("detect m.npy --events --order ascending --stage pairs --engine local --quiet").out, csv);
     ASSERT_EQ(run("detect m.npy --events --output e.csv && \"$P\" detect m.npy --events --output e.jsonl").status, 0);
     EXPECT_EQ(content("e.csv"), csv);
@@ -135,7 +136,7 @@ TEST_F(Events, OfAGeneratedScene) {
 TEST_F(Events, MarginPaddingAndPrecision) {
     Rows rows = moving_rows("uniform", 1000, 7);
     save<float>("m.npy", {frames, 1000, 6}, rows);
-    for (double& number : rows) number += 1e-9;  // not a float32
+    for (double& number : rows) number += 1e-9;  // float32 does not hold such numbers
     save<double>("wide.npy", {frames, 1000, 6}, rows);
     Rows paddings(2000);
     for (std::size_t i = 0; i < paddings.size(); ++i) paddings[i] = double(i % 7) * 0.002;
@@ -273,7 +274,7 @@ TEST_F(Events, Interrupted) {
 
 TEST_F(Events, InterruptedWhileAPipeIsFull) {
     ASSERT_EQ(run("generate coincident --objects 1000 --output m.npy --quiet").status, 0);
-    // The reader waits until the program has ended, so only the stop request can end it.
+    // The reader reads nothing before the program ends, so only the stop request can end the program.
     const Outcome outcome = shell(
         "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
         "\"$P\" detect m.npy --events >pipe & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child; "

@@ -91,7 +91,7 @@ TEST_F(Failure, PlacesThatCannotBeWritten) {
 }
 
 TEST_F(Failure, AFullDiskLeavesTheOldFile) {
-    if (!can_mount()) GTEST_SKIP() << "no right to mount a disk";
+    if (!can_mount()) GTEST_SKIP() << "no permission to mount a disk";
     generate("coincident", 2000);
     for (const std::string name : {"p.npy", "p.csv", "p.jsonl"}) {
         const Outcome outcome = shell("mount -t tmpfs -o size=1m tmpfs disk && echo old >disk/" + name +
@@ -142,7 +142,7 @@ TEST_F(Failure, AnInterruptLeavesTheOldFile) {
 
 TEST_F(Failure, AnInterruptWhileAPipeIsFull) {
     generate("coincident", 2000);
-    // The reader waits until the program has ended, so only the stop request can end it.
+    // The reader reads nothing before the program ends, so only the stop request can end the program.
     const Outcome outcome = shell(
         "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
         "\"$P\" detect big.npy >pipe & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child; status=$?; "
@@ -151,7 +151,7 @@ TEST_F(Failure, AnInterruptWhileAPipeIsFull) {
 }
 
 TEST_F(Failure, ASecondInterruptKills) {
-    // A stopped process takes both signals when it goes on; so there is no time to end by itself in between.
+    // A stopped process receives both signals when it continues. So it has no time to end between the signals.
     generate("coincident", 60000);
     const Outcome outcome = shell(
         "\"$P\" detect big.npy --output p.npy & child=$!; hears $child; sleep 0.2; kill -STOP $child; "
@@ -161,7 +161,7 @@ TEST_F(Failure, ASecondInterruptKills) {
 }
 
 #ifndef OCTOPAIR_TEST_SANITIZED
-// Whether a little memory is enough may depend on how threads come and go; that it is all or nothing may not.
+// The timing of threads may decide whether little memory is enough. In any case the file must be complete or absent.
 TEST_F(Failure, TooLittleMemory) {
     generate("uniform", 1'000'000);
     ASSERT_EQ(shell("\"$P\" detect big.npy --output all.npy --quiet").status, 0);
@@ -170,7 +170,7 @@ TEST_F(Failure, TooLittleMemory) {
     for (int mebibytes = 200; mebibytes >= 40; mebibytes -= 20) {
         const Outcome outcome =
             shell("ulimit -v " + std::to_string(mebibytes * 1024) + "; \"$P\" detect big.npy --output p.npy --quiet");
-        if (outcome.status == 127) break;  // not even the program could be loaded
+        if (outcome.status == 127) break;  // too little memory to load the program
         if (outcome.status == 0) {
             EXPECT_TRUE(same_sequence(read_file(file("p.npy")), all)) << mebibytes << " MiB";
             std::filesystem::remove(file("p.npy"));

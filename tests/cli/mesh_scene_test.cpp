@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 class MeshScene : public ProgramTest {
 protected:
-    /// Returns the path of the unpacked file, or "" (and skips the test) if scripts/data has not been run.
+    /// Returns the path of a file that scripts/data unpacks, or "" if the file does not exist.
     std::string data(const std::string& name) const {
         const std::string path = std::string(OCTOPAIR_DATA) + "/" + name;
         return fs::exists(path) ? path : "";
@@ -41,7 +41,7 @@ TEST_F(MeshScene, NoFileCrashesTheProgram) {
     if (models.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";
     std::size_t files = 0, refused = 0;
 #ifdef OCTOPAIR_TEST_SANITIZED
-    constexpr bool sanitized = true;  // memory cannot be bounded then, and one file takes all there is
+    constexpr bool sanitized = true;  // no memory limit is possible, and one file needs all memory
 #else
     constexpr bool sanitized = false;
 #endif

@@ -12,14 +12,15 @@
 namespace octopair::test {
 
 struct Outcome {
-    int status = 0;  ///< as a shell gives it: 128 + signal for one that was killed
+    int status = 0;  ///< exit status as in a shell: 128 + signal if a signal killed the program
     std::string out;
     std::string err;
 };
 
 class ProgramTest : public ::testing::Test {
 protected:
-    /// Runs a line of sh in the directory; $P is the program, and `hears PID` waits until it takes SIGINT as a request.
+    /// Runs a line of sh in the directory. $P is the program. `hears PID` waits until process PID has blocked SIGINT,
+    /// so that SIGINT is a stop request.
     Outcome shell(const std::string& line) const {
         const std::string hears =
             "hears() { for i in $(seq 1000); do grep -q '^SigBlk:.*[2367abef]$' /proc/$1/status && break; sleep 0.01; "

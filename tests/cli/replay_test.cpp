@@ -111,7 +111,7 @@ TEST_F(Replay, AnInterrupt) {
         std::vector<ObjectId> ids(boxes.size());
         scene.add(Objects{std::span(boxes)}, ids);
     }
-    // A step's beginning, of which nothing is known: it is made.
+    // Appends the record of a step without its result, as if the program had died. The replay makes this step.
     { (void)Scene({1, Precision::float32, 0, file("step.rec")}).step(); }
     write_file(file("long.rec"), content("long.rec") + content("step.rec").substr(32, 24));
     const Outcome outcome =

@@ -75,7 +75,7 @@ TEST(SceneTransfer, AllThatASceneHoldsArrives) {
 
 TEST(SceneTransfer, BytesOfNoSceneAreAnError) {
     std::vector<std::byte> bytes = bytes_of({});
-    bytes[0] = std::byte(2);  // the kind of boxes
+    bytes[0] = std::byte(2);  // kind of boxes; only 0 and 1 exist
     EXPECT_THROW((void)scene_of(bytes), Error);
     EXPECT_THROW((void)scene_of(std::span(bytes).first(3)), std::out_of_range);
 }

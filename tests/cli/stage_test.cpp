@@ -10,7 +10,8 @@ namespace {
 
 #if defined(OCTOPAIR_WITH_MESHES) && defined(OCTOPAIR_WITH_PIPELINE)
 
-/// Three triangles whose boxes overlap but for those of 1 and 2. 0 and 2 meet; 0 and 1 are 0.424 apart, 1 and 2 0.813.
+/// Three triangles. All boxes overlap, except those of 1 and 2. Triangles 0 and 2 intersect. The distance of 0 and 1 is
+/// 0.424, the distance of 1 and 2 is 0.813.
 class Stages : public ProgramTest {
 protected:
     void SetUp() override {
@@ -20,7 +21,7 @@ protected:
                    "o through\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\nf 7 8 9\n");
     }
 
-    /// Returns the rows without their findings.
+    /// Returns the columns a and b of the output.
     std::string rows(const std::string& arguments) const {
         const Outcome outcome =
             shell("\"$P\" detect " + arguments + " --quiet > out; s=$?; cut -d, -f1,2 out; exit $s");
@@ -47,7 +48,7 @@ TEST_F(Stages, ObjectsOfMeshesMeet) {
     EXPECT_EQ(rows("t.obj --order octal"), "a,b\n0,2\n");
     EXPECT_EQ(rows("t.obj --count-only"), "1\n");
     EXPECT_EQ(rows("t.obj t.obj --count-only"),
-              "7\n");  // each of the first with itself in the second, and 0 with 2 twice
+              "7\n");  // three triangles with their copies; 0 and 2 intersect in four combinations
     EXPECT_EQ(rows("t.obj --against t.obj"), "a,b\n0,0\n0,2\n1,1\n2,0\n2,2\n");
 }
 
@@ -71,7 +72,7 @@ TEST_F(Stages, RulesLeavePairsOut) {
     EXPECT_EQ(rows(with), "a,b\n1,4\n2,5\n");
     EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n1,1\n2,2\n");
     rules(R"({"same_parent": true})");
-    EXPECT_EQ(rows(with), "a,b\n0,3\n0,5\n1,4\n2,3\n2,5\n");  // parents are those of one file
+    EXPECT_EQ(rows(with), "a,b\n0,3\n0,5\n1,4\n2,3\n2,5\n");  // each file has its own parent
     EXPECT_EQ(rows(with + " --same-parent include"), rows("t.obj t.obj"));
     EXPECT_EQ(rows("t.obj t.obj --same-parent exclude"), rows(with));
     EXPECT_EQ(rows("t.obj --same-parent exclude --stage pairs"), "a,b\n");
@@ -121,12 +122,12 @@ TEST_F(Stages, CollisionsAreWrittenWithWhatIsKnown) {
     EXPECT_NEAR(met["contacts"][0]["point"][2].get<double>(), 0, 1e-9);
     ASSERT_EQ(run("detect t.obj --stage features --max-contacts 0 --output p.jsonl --quiet").status, 0);
     EXPECT_TRUE(nlohmann::json::parse(content("p.jsonl")).value("contacts", nlohmann::json::array()).empty());
-    ASSERT_EQ(run("detect t.obj --output p.npy --quiet").status, 0);  // pairs alone
+    ASSERT_EQ(run("detect t.obj --output p.npy --quiet").status, 0);  // .npy holds only pairs
     EXPECT_EQ(content("p.npy").size(), 128u + 8u);
 }
 
 TEST_F(Stages, TrianglesMeetBeyondWhatTheyShare) {
-    // A strip of two that share an edge, one that shares a corner with the first, and one through it.
+    // Triangles 0 and 1 share an edge. Triangle 2 shares a corner with 0, and triangle 3 intersects 0.
     write_file(file("s.obj"),
                "o s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv -1 0 1\nv 0 -1 1\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 0.3 0.2 1\n"
                "f 1 2 3\nf 2 4 3\nf 1 5 6\nf 7 8 9\n");
@@ -173,7 +174,7 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     EXPECT_NE(fewer.err.find("\nchanges     0 new, 1 same, 2 gone\n"), std::string::npos) << fewer.err;
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
     EXPECT_NE(content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,same\n0,1,"), std::string::npos);
-    // What was found is the next baseline, without what was gone.
+    // The result is the next baseline. Rows that are marked as gone are not part of that baseline.
     ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
     ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["new"], 1);
@@ -191,7 +192,7 @@ TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
     ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 1").status, 0);
     const std::string page = content("r.html");
     EXPECT_NE(page.find("t.obj/through"), std::string::npos);
-    EXPECT_EQ(page.find("http"), page.find("http-equiv"));  // nothing is fetched
+    EXPECT_EQ(page.find("http"), page.find("http-equiv"));  // the page fetches nothing
     ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 3").status, 0);
     EXPECT_EQ(content("r.html"), page);
     EXPECT_EQ(run("detect t.obj --report none/r.html").status, 4);
@@ -222,7 +223,7 @@ TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
     EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not a valid value"),
               std::string::npos);
     EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not a valid value"), std::string::npos);
-    // Sets of both: their boxes.
+    // In a set of shapes and boxes, only boxes are compared.
     EXPECT_EQ(rows("t.obj a.npy --count-only"), rows("t.obj a.npy --count-only --stage pairs"));
 }
 

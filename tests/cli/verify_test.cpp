@@ -1,4 +1,4 @@
-// Tests `octopair detect --verify`: its output for correct results, and the options that exclude it.
+// Tests `octopair detect --verify`: output for correct results, and the options that exclude --verify.
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"

@@ -20,7 +20,7 @@ RankCosts costs_of(double build, double merge, double scan, const Sent& sent) {
     return costs;
 }
 
-/// Three machines of two ranks. A rank alone takes half as long as two ranks together.
+/// Returns measurements of machines with two ranks each. A rank alone takes half as long as all ranks together.
 Measured made(Arrangement arrangement, const EachRank& alone) {
     Measured measured;
     measured.setup = {"uniform", 1'000'000, unsigned(alone.size()), arrangement, 2};
@@ -30,7 +30,7 @@ Measured made(Arrangement arrangement, const EachRank& alone) {
         costs.merge *= 2;
         costs.scan *= 2;
     }
-    for (RankCosts& costs : measured.alone) costs.bytes_sent = costs.messages_sent = 0;  // not counted again
+    for (RankCosts& costs : measured.alone) costs.bytes_sent = costs.messages_sent = 0;  // counted in `together`
     return measured;
 }
 
@@ -49,7 +49,7 @@ Measured shared_on_six() {
 }
 
 TEST(Machines, ThePapersStepsWaitForEachOther) {
-    // The slowest list, the slowest machine's merge, the master's, its scan.
+    // The slowest build of a list, the slowest merge of a machine, the master's merge, and the master's scan.
     EXPECT_DOUBLE_EQ(critical_path(paper_on_six()), 0.012 + 0.004 + 0.100 + 0.200);
     EXPECT_DOUBLE_EQ(merged_on_machines(paper_on_six().alone), 0.004);
     EXPECT_DOUBLE_EQ(merged_at_master(paper_on_six().alone), 0.100);
@@ -58,12 +58,12 @@ TEST(Machines, ThePapersStepsWaitForEachOther) {
 
 TEST(Machines, TheNetworkIsThatBetweenThem) {
     const Network network{1e-3, 1e6};
-    // Four of the five other ranks are on other machines; two machines send their lists, one rank to the other of a machine
-    // what needs no network.
+    // The master broadcasts to five ranks, four of them on other machines. Two machines send their lists to the master.
+    // Lists within a machine need no network.
     const Modelled paper = modelled(paper_on_six(), network);
     EXPECT_DOUBLE_EQ(paper.network, 50 * 4.0 / 5 + 10 + 12 + 20 * 4.0 / 5 * 1e-3);
     EXPECT_DOUBLE_EQ(paper.all(), paper.computing + paper.network);
-    // The busiest of the machines.
+    // The bytes of the busiest machine, and the messages of the busiest rank.
     EXPECT_DOUBLE_EQ(modelled(shared_on_six(), network).network, 6 * 4.0 / 5 + 50 * 4.0 / 5 * 1e-3);
     Measured one_machine = shared_on_six();
     one_machine.setup.ranks = 2;
@@ -83,7 +83,7 @@ TEST(Machines, TextHoldsOursAndThePapers) {
               "38,622             4,000"}) {
             EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
         }
-        // Of that nobody measured one rank.
+        // No efficiency without a measurement on one rank.
         EXPECT_EQ(text.find("50,000       -      4,800      54,800       -") != std::string::npos, whole) << text;
     }
 }

@@ -13,7 +13,7 @@
 namespace octopair::test {
 namespace {
 
-/// Distinct pairs of objects below `objects`, shuffled; `crowd` of them share one `a`.
+/// Returns distinct pairs of objects below `objects` in random order. `crowd` of the pairs have the same `a`.
 std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::size_t crowd) {
     std::mt19937_64 random(count + objects);
     std::vector<Pair> pairs;
@@ -28,7 +28,7 @@ std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::si
     return pairs;
 }
 
-/// Writes `pairs` as 100 shares and returns what the list then holds.
+/// Writes `pairs` in 100 shares and returns the sorted list.
 std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingBounds& bounds) {
     Team team(threads);
     PairList list;

@@ -179,7 +179,7 @@ TEST(EngineCalls, ASinkMayUseAnotherEngine) {
     EXPECT_EQ(pairs, inner->count_pairs(objects_of(boxes)));
 }
 
-/// Progress never falls, stays within [0, 1] and ends at 1.
+/// Checks that progress never falls, stays within [0, 1] and ends at 1.
 class ProgressRecord {
 public:
     ProgressSink sink() {

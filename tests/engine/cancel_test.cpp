@@ -20,8 +20,8 @@ constexpr milliseconds patience(test::sanitized ? 3000 : 200);
 class Cancel : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
 
-/// Runs `call(stop_token)` and requests a stop after `delay`. Returns the time until Error{cancelled}, or nothing if the
-/// call ended before the request.
+/// Runs `call(stop_token)` and requests a stop after `delay`. Returns the time until Error{cancelled}, or nothing if
+/// the call ended before the request.
 template <typename Call>
 std::optional<Clock::duration> time_to_cancel(const Call& call, milliseconds delay) {
     std::stop_source source;
@@ -54,13 +54,13 @@ void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
         if (!took || *took <= patience) break;
     }
     if (!took) {
-        EXPECT_TRUE(may_finish) << "finished, though asked to stop";
+        EXPECT_TRUE(may_finish) << "finished despite the stop request";
     } else {
         EXPECT_LE(*took, patience) << std::chrono::duration<double>(*took).count() << " s";
     }
 }
 
-/// Cancels every kind of call for the pairs of `boxes`. Expects an engine that works after each call.
+/// Cancels a count and a stream of the pairs of `boxes` in each order. Expects that the engine works afterwards.
 void expect_all_cancelled(const std::vector<Box3f>& boxes, unsigned threads, milliseconds delay, bool may_finish) {
     const Objects objects{std::span<const Box3f>(boxes)};
     const auto engine = make_local_engine(threads);

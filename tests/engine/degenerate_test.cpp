@@ -18,7 +18,8 @@ namespace {
 using test::same_pairs;
 using Pairs = std::vector<Pair>;
 
-/// Returns the pairs found with all numbers of threads and both orders. Fails if they or the oracle disagree.
+/// Finds the pairs with 1, 2 and 8 threads in both orders. Fails if a result differs from the oracle's pairs. Returns
+/// the oracle's pairs.
 Pairs found_in(const Objects& objects, double margin = 0) {
     const Pairs expected = baselines::oracle_pairs(objects, margin);
     Options options;
@@ -115,7 +116,8 @@ TYPED_TEST(Degenerate, GridOfTouchingCubes) {
     for (int i = 0; i < 1000; ++i) {
         boxes.push_back(this->box(TypeParam(i % 10), TypeParam(i / 10 % 10), TypeParam(i / 100)));
     }
-    // 13 of a cube's 26 neighbours come after it; over the grid that is (28^3 - 1000) / 2.
+    // On each axis, 28 ordered pairs of 10 places are equal or adjacent. Without the 1,000 pairs of a cube with itself,
+    // each pair is counted twice.
     EXPECT_EQ(this->found(boxes).size(), (28u * 28 * 28 - 1000) / 2);
 }
 
@@ -216,7 +218,7 @@ TYPED_TEST(Degenerate, TwoWorlds) {
 }
 
 TYPED_TEST(Degenerate, Staircase) {
-    // Each box touches the next at a corner; sorted against the order of the input.
+    // Each box touches the next at a corner. The input is in descending order.
     std::vector<Box<TypeParam>> boxes;
     for (int i = 2000; i > 0; --i) boxes.push_back(this->cube(TypeParam(i), TypeParam(i + 1)));
     EXPECT_EQ(this->found(boxes).size(), 1999u);
@@ -236,7 +238,7 @@ TYPED_TEST(Degenerate, MarginReachesToTheLastBit) {
 }
 
 TYPED_TEST(Degenerate, MarginBelowTheBoxesOwnSteps) {
-    // 1e7 away the gap is a whole step of float32; only the subtraction in float64 tells the margins apart.
+    // At 1e7, the gap is a whole step of float32. Only a subtraction in float64 distinguishes the margins.
     const TypeParam far = 10'000'000;
     const auto left = this->box(far, far, far), right = this->box(far + 2, far, far);
     EXPECT_EQ(this->found({left, right}, 1).size(), 1u);
@@ -259,7 +261,7 @@ TYPED_TEST(Degenerate, OnePaddedObjectReachesAll) {
 }
 
 TEST(DegenerateMixed, PrecisionsMeetInAJoin) {
-    // 0.1 in float32 lies above 0.1 in float64: they touch only as they are, not as rounded.
+    // 0.1 in float32 is greater than 0.1 in float64. Rounding to one precision would change the pairs.
     const std::vector<Box3f> floats = {{{0, 0, 0}, {0.1f, 1, 1}}, {{0.1f, 0, 0}, {1, 1, 1}}};
     const std::vector<Box3d> doubles = {{{0.1, 0, 0}, {0.2, 1, 1}}, {{0, 0, 0}, {0.1, 1, 1}}};
     const Objects first{std::span<const Box3f>(floats)}, second{std::span<const Box3d>(doubles)};

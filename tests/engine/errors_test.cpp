@@ -35,7 +35,7 @@ protected:
     /// Expects that every call refuses `objects` and leaves the list empty.
     void expect_all_refuse(const Objects& objects, const Options& options, const std::vector<std::string>& words) {
         const Objects good{std::span<const Box3f>(good_)};
-        const PairSink sink = [](std::span<const Pair>) { ADD_FAILURE() << "pairs of a bad input"; };
+        const PairSink sink = [](std::span<const Pair>) { ADD_FAILURE() << "pairs of an invalid input"; };
         for (const Order order : {Order::ascending, Order::octal}) {
             Options used = options;
             used.order = order;

@@ -20,7 +20,7 @@ using test::CallerState;
 struct Asked {
     std::string name;
     std::vector<Box3f> narrow;
-    std::vector<Box3d> wide;  ///< none: float32
+    std::vector<Box3d> wide;  ///< empty: the boxes are float32
     std::vector<double> padding;
     double margin;
 

@@ -28,7 +28,7 @@ bool has_ended(JobState state) {
     return state == JobState::done || state == JobState::failed || state == JobState::cancelled;
 }
 
-/// Waits for a time shorter than the shortest sleep.
+/// Busy-waits for `time`, which can be shorter than the shortest sleep.
 void spin(std::chrono::microseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
     while (std::chrono::steady_clock::now() < end) std::this_thread::yield();
@@ -67,7 +67,7 @@ TEST(JobEnds, AQueuedJobIsCancelledAtOnceAndLetsGo) {
     const auto engine = make_local_engine(1);
     HeldJob first(*engine);
     const auto token = std::make_shared<int>();
-    Job second = engine->submit_stream(touching_boxes, [token](auto) { ADD_FAILURE() << "was cancelled"; },
+    Job second = engine->submit_stream(touching_boxes, [token](auto) { ADD_FAILURE() << "called after cancellation"; },
                                        {.progress = [token](double) {}});
     EXPECT_GT(token.use_count(), 1);
     second.cancel();
@@ -157,7 +157,7 @@ TEST(JobEnds, SeveralCancelAtOnceWhileOthersWait) {
 
 TEST(JobEnds, ManyCancelledJobsDoNotStayInTheQueue) {
     const auto engine = make_local_engine(1);
-    HeldJob held(*engine);  // keeps the first of the following from its turn
+    HeldJob held(*engine);  // the following jobs wait for the end of this job
     detail::JobQueue queue(*engine);
     std::vector<Job> kept;
     std::vector<std::weak_ptr<detail::JobTask>> cancelled;
@@ -224,7 +224,7 @@ void expect_let_go(const std::function<void(Job)>& drop) {
                                         [sum = received.get()](std::span<const Pair> batch) { *sum += batch.size(); });
         std::this_thread::sleep_for(milliseconds(delay));
         drop(std::move(job));
-        for (Box3f& box : *boxes) box.min[0] = box.max[0] + 1;  // bad, if anyone still read it
+        for (Box3f& box : *boxes) box.min[0] = box.max[0] + 1;  // invalid: a late read would be an error
         boxes.reset();
         received.reset();
     }

@@ -211,7 +211,7 @@ void expect_failed(Engine& engine, Job job, ErrorCode code, const std::string& w
     for (int i = 0; i < 2; ++i) {
         try {
             (void)job.summary();
-            ADD_FAILURE() << "no error, but " << words;
+            ADD_FAILURE() << "no error; expected: " << words;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), code) << error.what();
             EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
@@ -278,7 +278,7 @@ TEST(Jobs, ASinkMayNotWaitForItsEngine) {
         EXPECT_FALSE(sinks.wait_for(std::chrono::milliseconds(1)));
         Job later = engine->submit(touching_boxes);
         next = code_of([&] { (void)later.take_pairs(); });
-        queued.wait();  // has ended
+        queued.wait();  // already ended, so the sink may wait
     });
     held.let_go_on();
     EXPECT_EQ(sinks.summary().pairs, 1u);

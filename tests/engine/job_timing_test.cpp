@@ -39,7 +39,7 @@ Clock::duration time_of(const Call& call) {
 
 class JobTiming : public ::testing::TestWithParam<unsigned> {
 protected:
-    /// Of which no test sees the end.
+    /// Boxes whose detection takes longer than any test.
     std::vector<Box3f> crowd_ = samples::make_scene("coincident", 300'000, 1);
     std::unique_ptr<Engine> engine_ = make_local_engine(GetParam());
 };
@@ -155,7 +155,7 @@ bool comes_before_the_next_job(Engine& engine) {
         (void)engine.count_pairs(objects_of(touching_boxes));
         answered.release();
     });
-    std::this_thread::sleep_for(milliseconds(50));  // until the caller waits
+    std::this_thread::sleep_for(milliseconds(50));  // time for the caller to start waiting
     held.let_go_on();
     next.wait();
     return in_time;
@@ -165,7 +165,7 @@ TEST(JobTurns, DirectCallsAreNotPassedOver) {
     const auto engine = make_local_engine(1);
     int in_time = 0;
     for (int i = 0; i < 10; ++i) in_time += comes_before_the_next_job(*engine) ? 1 : 0;
-    EXPECT_GE(in_time, 8);  // a busy machine may have let a caller come late
+    EXPECT_GE(in_time, 8);  // on a busy machine, a caller may start too late
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class EngineMemory : public ::testing::TestWithParam<std::string> {};
 std::vector<std::string> kinds_to_measure() {
     const auto kinds = samples::scene_kinds();
     std::vector<std::string> names(kinds.begin(), kinds.end());
-    std::erase(names, "coincident");  // half a million million pairs
+    std::erase(names, "coincident");  // 499,999,500,000 pairs
     return names;
 }
 

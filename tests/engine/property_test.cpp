@@ -18,9 +18,9 @@ using test::same_bytes;
 using test::same_pairs;
 
 constexpr std::uint64_t cases_a_kind = test::scaled(300, 10);
-constexpr std::uint64_t least_buffer = 1 << 20;  // what Options::buffer_bytes is raised to
+constexpr std::uint64_t least_buffer = 1 << 20;  // smaller values of Options::buffer_bytes are raised to this
 
-/// Returns the engine for a number of threads. It is reused for all cases, so that state left by a call would show in
+/// Returns the engine for a number of threads. All cases reuse the engine, so that state left by a call would show in
 /// the next case.
 Engine& engine_of(unsigned threads) {
     static std::map<unsigned, std::unique_ptr<Engine>> engines;
@@ -29,7 +29,7 @@ Engine& engine_of(unsigned threads) {
     return *engine;
 }
 
-/// The calls of an engine on the objects of a case, whether it is a join or not.
+/// Makes the calls of an engine on the objects of a case with one or two sets.
 class Calls {
 public:
     explicit Calls(const Case& a_case) : case_(a_case), first_(a_case.first.view()) {
@@ -118,7 +118,7 @@ void check_case(const Case& a_case) {
     EXPECT_FALSE(calls.find(a_case.threads[1], calls.options(Order::octal), octal).truncated);
     ASSERT_TRUE(same_pairs(baselines::ascending(octal), expected, calls.searched())) << "octal";
     calls.find(a_case.threads[2], calls.options(Order::octal), again);
-    EXPECT_TRUE(same_bytes(again, octal)) << "octal, by other numbers of threads";
+    EXPECT_TRUE(same_bytes(again, octal)) << "octal, with another number of threads";
     check_limit(a_case, calls, Order::ascending, expected);
     check_limit(a_case, calls, Order::octal, octal);
     check_stream(a_case, calls, Order::ascending, expected);

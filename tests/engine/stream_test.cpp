@@ -54,10 +54,10 @@ TEST_P(Stream, IsInTheOrderOfItsShares) {
     EXPECT_TRUE(stream(0, 1, 1).empty());
 }
 
-/// A share that another thread runs does not keep the calling thread from running the next.
+/// While another thread runs a share, the calling thread runs the next share.
 TEST_P(StreamOfThreads, RunSharesSideBySide) {
-    // As many as may be begun before the first ends: with more, the calling thread may hold the last of those, which
-    // nobody may follow while a helper that is not given a core is in the first.
+    // Number of shares that may begin before the first share ends. With more shares, the calling thread could wait for
+    // a successor in the last of them, while the helper that runs the first share gets no core.
     const std::size_t shares = 4 * GetParam();
     std::mutex mutex;
     std::condition_variable changed;

@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(test::all_kind
 class WrongEngine final : public Engine {
 public:
     enum class Wrong { nothing, twice, missing, counted } wrong = Wrong::nothing;
-    Pair named = {};  ///< that is given twice or is missing
+    Pair named = {};  ///< the pair that is repeated or omitted
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
@@ -79,7 +79,7 @@ protected:
     void expect_failure(const std::string& words, const Call& call) const {
         try {
             call();
-            ADD_FAILURE() << "passed";
+            ADD_FAILURE() << "no error was thrown";
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::engine_failed);
             const std::string pair =
@@ -171,7 +171,7 @@ TEST(Verified, ABadBoxIsRefusedAsEver) {
     options.verify = true;
     try {
         (void)find_pairs(std::span<const Box3f>(boxes), options);
-        FAIL() << "passed";
+        FAIL() << "no error was thrown";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::bad_input);
     }
@@ -190,7 +190,7 @@ TEST(Verified, StopsWhenAsked) {
     const auto engine = make_local_engine(1);
     try {
         (void)engine->count_pairs({std::span<const Box3f>(boxes), {}}, options, stop.get_token());
-        FAIL() << "went on";
+        FAIL() << "the verification did not stop";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
     }

@@ -62,7 +62,7 @@ public:
         std::vector<Pair> found;
         const Summary summary = Call(case_).in(Order::ascending).find(engine(0), found);
         expect_set("ascending", found);
-        expect("entries", summary.entries <= 8 * objects_of(case_), "more than 8 entries an object");
+        expect("entries", summary.entries <= 8 * objects_of(case_), "more than 8 entries per object");
         expect("summary", summary.pairs == found.size() && !summary.truncated, "the summary differs from the list");
         (void)Call(case_).in(Order::octal).find(engine(1), octal_);
         found = octal_;

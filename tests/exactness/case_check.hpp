@@ -1,4 +1,4 @@
-// CaseCheck: makes every call of an engine on one case and compares each result with the expected pairs.
+// check_case: makes the calls of an engine on one case and compares each result with the expected pairs.
 //
 // Findings are values, not test failures. The search for a smaller failing scene and the tests of planted faults both
 // need them.

@@ -23,10 +23,10 @@ std::uint64_t object_count(std::uint64_t seed) {
 
 TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
 #ifdef OCTOPAIR_TEST_HOOKS
-    const test::TuningScope tuning(default_tuning);  // which histories change
+    const test::TuningScope tuning(default_tuning);  // restores the tuning that the histories change
 #endif
     const auto families = test::family_names();
-    // A fifth of the large scenes, unless the environment asks for a number of cases.
+    // By default a fifth of the number of large scenes. The environment can set another number of cases.
     const std::uint64_t count = test::case_count(test::scene_range(test::SceneSize::large, 20).size() / 5);
     const std::uint64_t most_tried = 4 * count;
     std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
@@ -51,7 +51,7 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
 }
 
-/// A scene whose full detections once gave pairs twice, so that pairs of removed objects stayed in the list.
+/// A scene whose full steps once gave pairs twice, so that pairs of objects that had moved away stayed in the list.
 TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
     const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     Scene scene(SceneOptions{.threads = 2});

@@ -271,7 +271,8 @@ std::vector<ObjectId> LargeHistory::some_ids(std::uint64_t count) {
     return ids;
 }
 
-/// Returns a box moved far, or a little: up to its own size, or so that it touches its old place.
+/// Returns `box` moved by up to half its size, or so that it touches its old place. With `far`, the move starts
+/// at the place of another object.
 Box3d LargeHistory::moved(const Box3d& box, bool far) {
     const bool touches = random_.below(8) == 0;
     const Box3d other = far ? any_object().place : box;

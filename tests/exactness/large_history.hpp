@@ -2,8 +2,8 @@
 // (src/verification).
 //
 // Objects    Objects of a random call of a family (support/families.hpp). Both sets of a join form one scene.
-// Scenes     With test hooks, two scenes get identical calls. The first searches around changes where possible, the second
-//            searches all objects at each step. Without test hooks, a single scene chooses by measured times.
+// Scenes     With test hooks, two scenes get identical calls. The first searches around changes where possible, the
+//            second searches all objects at each step. Without test hooks, a single scene chooses by measured times.
 #pragma once
 
 #include <cstdint>

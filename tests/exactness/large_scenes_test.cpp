@@ -19,7 +19,7 @@ using test::Calls;
 using test::Case;
 
 constexpr std::uint64_t usual_scenes = test::scaled(20, 10);
-constexpr std::uint64_t large_parts = 4;  // of the scenes, so that several processes can share them
+constexpr std::uint64_t large_parts = 4;  // the scenes are split, so that several processes can share them
 constexpr std::uint64_t least_objects = test::scaled(9'000, 3);
 
 class LargeScenes : public ::testing::TestWithParam<std::uint64_t> {};
@@ -64,7 +64,7 @@ TEST(ClothScenes, GiveEachPairOnce) {
     }
 }
 
-/// Represents a set of pairs in any order: their number, and a sum of mixed pairs.
+/// Fingerprint of a set of pairs that does not depend on their order: the number of pairs and the sum of their hashes.
 struct SetOfPairs {
     std::uint64_t count = 0, sum = 0;
     bool operator==(const SetOfPairs&) const = default;

@@ -70,7 +70,8 @@ public:
         last_ = now;
     }
 
-    /// Makes a step with a fault and reads its pairs. Returns the message of the thrown error, empty if no error was thrown.
+    /// Makes a step with a fault and reads its pairs. Returns the message of the thrown error, empty if no error
+    /// was thrown.
     std::string faulty_step(Fault fault) {
         const test::FaultScope planted(fault);
         try {
@@ -88,7 +89,7 @@ private:
     std::vector<Box3f> boxes_;
     std::vector<ObjectId> ids_;
     Scene scene_;
-    std::vector<Pair> last_;  // of the last step that did not throw
+    std::vector<Pair> last_;  // pairs of the last step that did not throw
 };
 
 Tuning tuning_with(std::uint64_t seed, StepChoice step) {

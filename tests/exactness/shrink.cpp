@@ -9,7 +9,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Leaves out the objects [begin, begin + count).
+/// The objects to leave out: [begin, begin + count).
 struct Cut {
     std::size_t begin, count;
 };

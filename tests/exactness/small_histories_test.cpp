@@ -16,7 +16,7 @@ namespace octopair::test {
 namespace {
 
 constexpr std::uint64_t usual_histories = test::scaled(1500, 20);
-constexpr std::uint64_t history_parts = 4;  // of the histories, so that several processes can share them
+constexpr std::uint64_t history_parts = 4;  // the histories are split, so that several processes can share them
 
 class SmallHistories : public ::testing::TestWithParam<std::uint64_t> {};
 
@@ -27,7 +27,7 @@ std::string history_name(samples::RandomStream& random) {
     return names[random.below(names.size())];
 }
 
-/// Returns mostly few objects: brute force and nested octrees take long for many.
+/// Returns mostly few objects, because brute force and nested octrees take long for many objects.
 test::HistorySize history_size(samples::RandomStream& random) {
     const std::uint64_t size = random.below(100);
     return {size < 50 ? 20u : size < 95 ? 70u : 300u, 12};
@@ -49,7 +49,7 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
         try {
             history.run();
         } catch (const std::exception& error) {
-            FAIL() << error.what();  // within the trace that names the history
+            FAIL() << error.what();  // the trace names the history
         }
         if (HasFatalFailure()) return;
     }

@@ -12,7 +12,7 @@ namespace octopair::test {
 Case small_case(std::uint64_t seed) {
     static const auto families = family_names(), kinds = all_kind_names();
     samples::RandomStream random(seed, 1);
-    // Mostly few objects: the time of nested octrees grows fast with them.
+    // Mostly few objects, because the time of nested octrees grows fast with the number of objects.
     const std::uint64_t size = random.below(100), bound = size < 50 ? 20 : size < 98 ? 50 : 300;
     const std::uint64_t objects = 2 + random.below(bound - 1);
     if (random.below(4) != 0) return make_family_case(families[random.below(families.size())], objects, seed);

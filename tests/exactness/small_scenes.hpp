@@ -10,7 +10,8 @@
 
 namespace octopair::test {
 
-/// Makes the i-th small case: 2 to 300 objects of a family, or of a kind with degenerate scenes. A pure function of `seed`.
+/// Makes the i-th small case: 2 to 300 objects of a family, or of a kind with degenerate scenes. A pure function of
+/// `seed`.
 Case small_case(std::uint64_t seed);
 
 #ifdef OCTOPAIR_TEST_HOOKS

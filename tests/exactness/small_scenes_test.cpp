@@ -11,7 +11,7 @@ namespace octopair::test {
 namespace {
 
 constexpr std::uint64_t usual_small_scenes = test::scaled(10'000, 20);
-constexpr std::uint64_t small_parts = 4;  // of the scenes, so that several processes can share them
+constexpr std::uint64_t small_parts = 4;  // the scenes are split, so that several processes can share them
 
 class SmallScenes : public ::testing::TestWithParam<std::uint64_t> {};
 

@@ -23,7 +23,7 @@ public:
 
 private:
     samples::RandomStream random_;
-    double kept_;  // part of the constants that stay as they are
+    double kept_;  // part of the constants that keep their values
 };
 
 void shrink(Tuning::Sampling& sampling, Shrinker& to) {
@@ -138,7 +138,7 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
     to.one_of<std::size_t>(scene.share_queries, {1, 2});
 }
 
-/// Accepts hardly any sweep, and takes small samples: octants count as crowded, and octrees nest in them.
+/// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
     tuning.scan.crowded_octant = 1;
@@ -166,7 +166,7 @@ Tuning tiny_tuning(std::uint64_t seed) {
     shrink(tuning.ranks, to);
     shrink(tuning.scene, to);
     if (seed % 3 == 0) favour_crowds(tuning);
-    if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds them for itself
+    if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds its own nested octrees
     return tuning;
 }
 

@@ -25,7 +25,8 @@ const int shared_hooks = [] {
     return file;
 }();
 
-/// Returns this process for 1 thread, otherwise as many worker processes. So the test compares octal order between both.
+/// Returns a local engine for 1 thread, otherwise an engine with as many worker processes. So tests compare the octal
+/// order of both engines.
 test::EngineFor workers(Arrangement arrangement) {
     std::shared_ptr<Engine> local = make_local_engine(2);
     std::shared_ptr<Engine> two = make_process_engine({.workers = 2, .arrangement = arrangement});

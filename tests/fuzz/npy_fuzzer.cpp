@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         check_round_trip(header, data.size());
         const io::SceneShape shape = io::scene_shape(header, "f.npy");
         const std::uint64_t columns = shape.spheres ? 4 : 6;
-        // Where nothing stands, lengths may be anything.
+        // Without data, the lengths can have any values.
         require(data.empty() || shape.objects * shape.frames * columns * io::item_bytes(header.type) == data.size());
         if (shape.spheres && header.type == io::NpyType::float32) check_spheres<float>(data, shape.objects);
         if (shape.spheres && header.type == io::NpyType::float64) check_spheres<double>(data, shape.objects);

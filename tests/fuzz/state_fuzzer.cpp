@@ -54,7 +54,8 @@ void try_result(const std::string& bytes) {
     });
 }
 
-/// Reads a complete file of a job whose owner is `text`, then with more of the text as damage at its end.
+/// Reads a complete job file whose owner is the first half of `text`. Then reads damaged files with more text after
+/// or before the complete file.
 void try_whole_job(const std::string& text) {
     StoredSpec stored;
     stored.owner = text.substr(0, text.size() / 2);

@@ -40,7 +40,7 @@ TEST(Rounding, FiniteFloatAboveIsFiniteAndNearestZerosArePositive) {
     EXPECT_EQ(rounding::finite_float_above(0.1), rounding::float_above(0.1));
 }
 
-// Sums of 60-bit integers at distances of up to 60 bits: exact in 128 bits, mostly not in float64.
+// Sums of integers whose sizes differ by up to 60 bits. The sums are exact in 128 bits, and mostly inexact in float64.
 TEST(Rounding, SumAboveIsTheSmallestThatIsNotBelow) {
     __extension__ using Int128 = __int128;
     std::mt19937_64 random(2);

@@ -3,10 +3,15 @@
 #
 #     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE
 #
-# installed: `cmake --install BUILD` to a fresh prefix, which is then moved, and found there by find_package; the program
-# too, if PROGRAM is ON. With PROCESSES also what uses octopair::processes: it must run the workers' program of that tree,
-# told by no environment. With SERVICE what uses octopair::client, of a server of that tree. With MPI what uses
-# octopair::mpi, on two ranks. With PIPELINE what uses octopair::pipeline.
+# installed: installs BUILD to a fresh prefix and moves the prefix. find_package must find octopair there.
+# subdirectory: the consumer includes ROOT by add_subdirectory.
+#
+# The last five arguments are ON or OFF. ON also tests:
+#   PROGRAM    the installed program
+#   PROCESSES  octopair::processes; if installed, it must run the installed worker program without OCTOPAIR_WORKER
+#   SERVICE    octopair::client, if installed; with PROGRAM, on a server of the installed program
+#   MPI        octopair::mpi, on two ranks
+#   PIPELINE   octopair::pipeline, if installed
 set -euo pipefail
 how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8 with_pipeline=$9
 work=$(mktemp -d)
@@ -15,7 +20,7 @@ trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
 unset OCTOPAIR_WORKER
 prefix="$work/moved prefix"
 
-# From now on the workers' program of the installed tree leaves a mark when it is started.
+# Replaces the installed worker program with a script that leaves a mark and runs the worker program.
 watch_worker() {
     local program=$prefix/libexec/octopair/octopair-worker
     mv "$program" "$program.real"
@@ -23,11 +28,11 @@ watch_worker() {
     chmod +x "$program"
 }
 
-# Runs a command, which must start the workers' program of the installed tree.
+# Runs a command. Fails unless the command starts the installed worker program.
 starts_worker() {
     rm -f "$work/started"
     "$@"
-    test -f "$work/started" || { echo "$1 runs no worker of the installed tree" && exit 1; }
+    test -f "$work/started" || { echo "$1 does not run the installed worker program" && exit 1; }
 }
 
 try_program() {
@@ -40,7 +45,7 @@ try_program() {
     [ "$(cat "$work/pairs.csv")" = $'a,b\n0,2' ]
 }
 
-# Runs a command with the address of a server of the installed tree, which is started as it is configured there.
+# Starts the installed server with the installed configuration, and runs a command with the server's address.
 with_server() {
     "$prefix/bin/octopair" serve --config "$prefix/share/octopair/serve.toml" --listen "unix:$work/socket" &
     server=$!
@@ -51,13 +56,13 @@ with_server() {
     server=
 }
 
-# Its program is not where it was configured to be.
+# Verifies the systemd unit, with /bin/true in place of the server: the prefix was moved away from the unit's path.
 check_unit() {
     sed 's|^ExecStart=[^ ]*|ExecStart=/bin/true|' "$prefix/lib/systemd/system/octopair.service" > "$work/octopair.service"
     ! type systemd-analyze > /dev/null 2>&1 || systemd-analyze verify --man=no "$work/octopair.service"
 }
 
-# A consumer's build: NAME TARGET OPTION...
+# NAME TARGET OPTION...: builds a target of the consumer in the folder NAME.
 build_consumer() {
     local name=$1 target=$2
     shift 2
@@ -77,7 +82,7 @@ else
 fi
 
 if [ "$how" = subdirectory ]; then
-    # That each source compiles by itself, as it does for a user's build, is a check of its own.
+    # A unity build takes less time. checks.sources_alone tests that each source compiles alone, as in a user's build.
     build_consumer tree all "${options[@]}" -DCONSUMER_WITH_PROCESSES="$with_processes" -DCONSUMER_WITH_MPI="$with_mpi" \
         -DCMAKE_UNITY_BUILD=ON
     "$work/tree/consumer"

@@ -62,7 +62,7 @@ Rows as_rows(const Integers& integers, int exponent) {
     return rows;
 }
 
-// Numbers of 30 bits, so that exact results have some 95: far more than float64 holds.
+// Numbers of 30 bits. Exact results have about 95 bits, far more than float64 holds.
 RC_GTEST_PROP(BoundedPose, BoundsHoldTheExactResult, ()) {
     __extension__ using Int128 = __int128;
     const std::int64_t most = std::int64_t(1) << 30;
@@ -73,7 +73,7 @@ RC_GTEST_PROP(BoundedPose, BoundsHoldTheExactResult, ()) {
         (BoundedPose(as_rows(a, -30)) * BoundedPose(as_rows(b, -30)))
             .apply({std::ldexp(double(v[0]), -30), std::ldexp(double(v[1]), -30), std::ldexp(double(v[2]), -30)});
     for (int row = 0; row < 3; ++row) {
-        // In units of 2^-90.
+        // The exact result in units of 2^-90.
         Int128 exact = Int128(a[row][3]) << 60;
         for (int k = 0; k < 3; ++k) {
             Int128 inner = Int128(b[k][3]) << 30;

@@ -152,7 +152,7 @@ TEST_F(BaselineTest, WhatWasNearAndMeetsIsNew) {
     io::Baseline baseline = read(old);
     EXPECT_EQ(words(baseline, news, {}, findings), "new new same same same 2 gone");
     EXPECT_EQ(baseline.gone()[0], old.substr(0, old.find('\n')));
-    // Pairs whose class nobody asked for are what they were, whatever that was.
+    // Without classes in the new result, pairs of the baseline count as the same whatever their class was.
     io::Baseline unasked = read(old);
     EXPECT_EQ(words(unasked, news, {}), "same same same same same 0 gone");
 }
@@ -162,7 +162,7 @@ TEST_F(BaselineTest, ObjectsWithoutNamesAreKnownByNumber) {
     EXPECT_EQ(words(one_set, {{3, 5}, {3, 6}}, {}), "same new 0 gone");
     io::Baseline join = read(R"({"a":3,"b":5})", true);
     EXPECT_EQ(words(join, {{5, 3}}, {}), "new 1 gone");
-    // A name that looks like a number is none.
+    // The name '#5' is a name, not the number of an object.
     const std::vector<std::string> objects = {"", "", "", "#5"};
     io::Baseline named = read(R"({"a":3,"b":5,"a_name":"#5"})");
     EXPECT_EQ(words(named, {{3, 5}}, {{objects}, {objects}}), "same 0 gone");

@@ -81,7 +81,7 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
 TEST_F(HtmlReport, NamesAreTextAndNothingIsFetched) {
     const io::ReportScene scene{"<b>car</b>", {{{reported_names}, {reported_names}}}, std::span(boxes), {}};
     const std::string text = page(scene, {reported_pairs, {}, {}});
-    EXPECT_EQ(count(text, "<script"), 6u);  // five with data, one with the page's own
+    EXPECT_EQ(count(text, "<script"), 6u);  // five scripts with data, one with the page's code
     EXPECT_EQ(count(text, "</script"), 6u);
     EXPECT_EQ(count(text, "<b>"), 0u);
     EXPECT_EQ(count(text, "http:") + count(text, "https:") + count(text, "src="), 0u);

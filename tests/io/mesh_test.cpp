@@ -62,7 +62,8 @@ TEST_F(Mesh, FacesWithMoreCornersAreCut) {
     EXPECT_EQ(read("q.obj", obj, MeshObjects::triangle).objects, 2u);
 }
 
-/// A unit triangle in four nodes: unchanged, moved, mirrored in a child of the moved node, and in a node without a name.
+/// A unit triangle in four nodes: unchanged, moved, mirrored in a child of the moved node, and in a node without
+/// a name.
 const std::string instances_gltf = R"({
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
   "nodes": [
@@ -111,7 +112,7 @@ TEST_F(Mesh, InstancesShareShapes) {
     const auto& mesh = std::get<shape::Mesh>(scene.shapes->shapes[0]);
     EXPECT_EQ(mesh.vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
-    // still, moved and the one without a name are children of the world; mirrored is one of moved.
+    // 'still', 'moved' and the node without a name are children of 'world'. 'mirrored' is a child of 'moved'.
     const auto& parents = scene.shapes->parents;
     EXPECT_EQ(parents, (std::vector<std::uint32_t>{0, 0, 1, 0}));
     const Pose mirrored = scene.shapes->poses[2];
@@ -130,7 +131,7 @@ TEST_F(Mesh, AShapeHasTheTrianglesOfAllMeshesOfItsNode) {
     EXPECT_EQ(quad.triangles.size(), 2u);
     EXPECT_EQ(quad.vertices.size(), 4u);
     EXPECT_TRUE(std::get<shape::Mesh>(scene.shapes->shapes[scene.shapes->geometry[1]]).triangles.empty());
-    // The same objects and boxes as without shapes.
+    // The option `shapes` changes neither objects nor boxes.
     const LoadedScene plain = read("q.obj", obj, MeshObjects::node);
     EXPECT_EQ(plain.names, scene.names);
     EXPECT_FALSE(plain.shapes);
@@ -166,7 +167,7 @@ TEST_F(Mesh, RefusesVerticesThatAreNowhere) {
     for (const MeshObjects objects : {MeshObjects::node, MeshObjects::triangle}) {
         const std::string words =
             error_of(ErrorCode::bad_input, [&] { (void)read("i.gltf", instances_gltf, objects); });
-        // The file's own number, not what posing makes of it: -infinity times 0 is not a number.
+        // The message has the number of the file. After the pose, the number would be nan: -infinity times 0.
         EXPECT_NE(words.find("vertex 2 has the coordinate -inf, which is not finite"), std::string::npos) << words;
     }
 }

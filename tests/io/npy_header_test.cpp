@@ -132,7 +132,7 @@ TEST(NpyHeader, RefusesEveryBitFlip) {
         for (std::size_t bit = 0; bit < 8 * (whole.size() - 72); ++bit) {
             std::string flipped = whole;
             flipped[bit / 8] = char(flipped[bit / 8] ^ 1 << bit % 8);
-            // Versions 2.0 and 3.0 are one bit apart, and differ in nothing that stands in this file.
+            // Versions 2.0 and 3.0 differ in a single bit, and the file is valid in both versions.
             const bool same_file = version > 1 && bit == 6 * 8;
             if (same_file) continue;
             const std::string path = directory.file("flipped.npy");

@@ -59,7 +59,7 @@ TEST_F(Npy, ReadsFrames) {
 }
 
 TEST_F(Npy, ReadsOneFrameAtATime) {
-    constexpr std::size_t objects = 5000;  // more than are widened at once
+    constexpr std::size_t objects = 5000;  // more than the reader widens at once
     std::vector<float> floats(2 * objects * 6);
     for (std::size_t i = 0; i < floats.size(); ++i) floats[i] = float(i) * 0.3f;
     const auto narrow = io::NpyFrames::open(save(npy_of(NpyType::float32, {2, objects, 6}, floats)));

@@ -80,7 +80,7 @@ TEST(SceneReader, JoinsFrameByFrame) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(second[i].min[0], float(10 + i));
 }
 
-/// Two objects of one shape.
+/// Returns a scene with two objects of the same shape.
 LoadedScene shaped_scene(double radius) {
     LoadedScene scene = scene_of<double>({wide_box_at(0), wide_box_at(1)});
     scene.shapes.emplace();

@@ -37,7 +37,7 @@ rc::Gen<Dyadic> dyadic(bool positive) {
 
 RC_GTEST_PROP(Spheres, Float64BoxIsTheSmallestThatHoldsTheExactOne, ()) {
     const Dyadic centre = *rc::gen::resize(1000, dyadic(false)), radius = *rc::gen::resize(1000, dyadic(true));
-    // Two bits finer than either, so that neighbours of the ends are whole too.
+    // Two bits finer than both numbers, so that the neighbours of the ends are also whole numbers.
     const int unit = std::min(centre.exponent, radius.exponent) - 2;
     const Wide c = scaled(centre.value(), unit), r = scaled(radius.value(), unit);
     const auto x = centre.value();

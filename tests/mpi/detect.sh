@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `octopair detect --engine mpi` gives the files of the local engine, and ends alike on all ranks.
+# Tests that `octopair detect --engine mpi` writes the files of the local engine, and ends in the same way on all ranks.
 #
 #     detect.sh PROGRAM MPIRUN
 source "$(dirname "$(realpath "$0")")/in_folder.sh"
@@ -9,7 +9,7 @@ source "$(dirname "$(realpath "$0")")/in_folder.sh"
 "$program" generate brownian --objects 2000 --frames 3 --seed 1 --output moving.npy --quiet
 printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,1\n' > few.csv
 python3 - << 'END'
-# Paddings of 20,000 + 3,000 objects, and 1,000 spheres; written by hand, as NumPy may not be there.
+# Paddings of 20,000 + 3,000 objects, and 1,000 spheres; written without NumPy, which may not be installed.
 import array, struct
 def write(name, code, shape, values):
     text = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (code, shape)
@@ -20,7 +20,7 @@ write("padding.npy", "<f8", "(23000,)", array.array("d", [0.001 * (i % 7) for i 
 write("spheres.npy", "<f4", "(1000, 4)", array.array("f", [(i * 37 % 101) * 0.01 for i in range(4000)]))
 END
 
-# RANKS NAME ARGUMENTS...: the same file from ranks as from threads.
+# RANKS NAME ARGUMENTS...: fails unless ranks write the same file as threads.
 same() {
     local ranks=$1 name=$2
     shift 2
@@ -49,16 +49,16 @@ for frame in 0 1 2; do rm -f "local.$frame.npy" "ranks.$frame.npy"; done
 on_ranks 2 detect moving.npy --engine mpi --threads 2 --output ranks.moving.npy --quiet
 for frame in 000000 000001 000002; do cmp "local.moving.$frame.npy" "ranks.moving.$frame.npy"; done
 [ "$("$program" detect a.npy --count-only --quiet)" = "$(on_ranks 3 detect a.npy --engine mpi --count-only --quiet)" ] ||
-    fail "another count"
-[ "$("$program" detect few.csv --quiet)" = "$(on_ranks 2 detect few.csv --engine mpi --quiet)" ] || fail "another output"
+    fail "ranks give another count"
+[ "$("$program" detect few.csv --quiet)" = "$(on_ranks 2 detect few.csv --engine mpi --quiet)" ] || fail "other pairs"
 on_ranks 2 detect a.npy --engine mpi --stats stats.json --count-only 2> summary.txt > count.txt
-grep -q '"ranks": 2' stats.json || fail "the stats do not tell the ranks"
-grep -q 'on 2 ranks with 1 thread each' summary.txt || fail "the summary does not tell the ranks"
+grep -q '"ranks": 2' stats.json || fail "the stats do not have the number of ranks"
+grep -q 'on 2 ranks with 1 thread each' summary.txt || fail "the summary does not have the number of ranks"
 
 for order in "--order ascending" "--order octal" "--count-only" "--limit 1000" "--against b.npy"; do
     on_ranks 3 detect a.npy --engine mpi --verify --stats stats.json $order > pairs.csv 2> summary.txt
     grep -q '"verified": true' stats.json || fail "the stats do not say that the pairs were verified: $order"
-    grep -q '^verified    .* by a second algorithm' summary.txt || fail "the summary does not: $order"
+    grep -q '^verified    .* by a second algorithm' summary.txt || fail "no verification in the summary: $order"
 done
 
 printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,nan\n' > bad.csv
@@ -70,9 +70,9 @@ on_ranks 2 detect a.npy --engine mpi --fail-on-collision --count-only --quiet > 
 [ "$status" = 1 ] || fail "exit status $status under --fail-on-collision"
 status=0
 on_ranks 2 detect a.npy --engine mpi --output /nowhere/pairs.npy --quiet 2> errors.txt || status=$?
-[ "$status" = 4 ] || fail "exit status $status where no file can be made"
+[ "$status" = 4 ] || fail "exit status $status for an output in a folder that does not exist"
 
-# A rank that is killed ends all, soon.
+# If a rank is killed, all ranks end within 10 seconds.
 "$program" generate coincident --objects 400000 --seed 1 --output much.npy --quiet
 on_ranks 3 detect much.npy --engine mpi --count-only --quiet > /dev/null 2>&1 &
 job=$!
@@ -82,7 +82,7 @@ sleep 0.3
 kill -9 "$(ranks_at_work | sed -n 2p)"
 status=0
 wait $job || status=$?
-[ "$status" != 0 ] || fail "a killed rank goes unnoticed"
+[ "$status" != 0 ] || fail "the call succeeded although a rank was killed"
 for _ in $(seq 100); do [ -n "$(ranks_at_work)" ] || break; sleep 0.1; done
-[ -z "$(ranks_at_work)" ] || fail "a killed rank leaves others"
+[ -z "$(ranks_at_work)" ] || fail "other ranks run after a rank was killed"
 echo "ranks give what threads give"

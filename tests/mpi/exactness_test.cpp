@@ -85,7 +85,7 @@ TEST_F(MpiSmallScenes, OfSlices) {
     EXPECT_EQ(test::paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once}), "");
 }
 
-/// Makes calls of an engine on rank 0. Other ranks follow it.
+/// Makes calls of an engine on rank 0. Other ranks follow that engine.
 template <typename Calls>
 void lead_engines(const Calls& calls) {
     if (test::own_rank() != 0) return follow(MPI_COMM_WORLD);
@@ -104,7 +104,7 @@ TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
 }
 
 TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
-    if (test::rank_count() == 1) GTEST_SKIP() << "no neighbour";
+    if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
     lead_engines([](const test::EngineFor& engines) {
         const test::FaultScope planted(Fault::rank_takes_neighbour);
         const auto finding = test::check_small_cases({0, 300}, engines);

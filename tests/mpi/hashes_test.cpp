@@ -119,7 +119,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
     }
 }
 
-/// The pairs of a single rank do not fit: all pairs are sent in windows.
+/// The pairs of a single rank do not fit into the buffer, so all pairs are sent in windows.
 TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
     std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     boxes.insert(boxes.end(), 500, boxes.front());

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# `octopair detect --engine mpi` on separate hosts gives the local engine's bytes, over a slow network too, and ends in time
-# where a link is cut.
+# Tests `octopair detect --engine mpi` on separate hosts. The bytes equal those of the local engine, also over a slow
+# network. If a link is cut, the call ends in time.
 #
 #     hosts.sh PROGRAM MPIRUN
 #
-# The hosts alpha, beta and gamma are Linux namespaces: each has a network, a name, processes, shared memory and a folder for
-# temporary files of its own, so that nothing but the network joins its ranks to others'. They lie within namespaces of this
-# script, and end with it, however it ends. Where the system lets nobody make namespaces, the script says so and exits 77.
+# The hosts alpha, beta and gamma are Linux namespaces. Each host has its own network, name, processes, shared memory
+# and folder for temporary files, so ranks on different hosts share only the network. The hosts are inside namespaces of
+# this script, and end when the script ends for any reason. If the system permits no namespaces, the script exits with 77.
 set -euo pipefail
 program=$1 mpirun=$2
 here=$(cd "${0%/*}" && pwd)
@@ -16,7 +16,7 @@ skip() { echo "skipped: $*" && exit 77; }
 
 if [ -z "${OCTOPAIR_HOSTS:-}" ]; then
     for tool in unshare nsenter ip python3; do
-        [ -n "$(command -v $tool)" ] || skip "there is no $tool"
+        [ -n "$(command -v $tool)" ] || skip "$tool is not installed"
     done
     apart=(unshare --net --uts --ipc --mount --pid --fork --kill-child --mount-proc)
     [ "$(id -u)" = 0 ] || apart+=(--user --map-root-user)
@@ -32,18 +32,18 @@ if [ -z "${OCTOPAIR_HOSTS:-}" ]; then
     exit $status
 fi
 
-# From here on this is alpha, where mpirun runs.
+# The rest of the script runs on host alpha, like mpirun.
 work=$OCTOPAIR_HOSTS
 cd "$work"
 hosts=(alpha beta gamma)
-export TMPDIR=$work/tmp    # where Open MPI's daemons and ranks of one host meet
+export TMPDIR=$work/tmp    # files through which Open MPI's daemons and ranks of one host communicate
 mkdir tmp
 
-# WHERE COMMAND...: in a host's network, or that of the wire.
+# WHERE COMMAND...: runs a command in the network of a host, or of the wire.
 in_network() { nsenter --target "$(cat "$1")" --net "${@:2}"; }
 wait_for() { until [ -e "$1" ]; do sleep 0.01; done; }
 
-# NAME: what a host has for itself.
+# NAME: sets up a host: its name, loopback interface, temporary files, shared memory and addresses.
 settle() {
     hostname "$1"
     ip link set lo up
@@ -82,7 +82,7 @@ make_hosts() {
     done
 }
 
-# Open MPI starts its daemons through this, as through ssh: HOST COMMAND...
+# HOST COMMAND...: runs a command on a host. Open MPI starts its daemons with this script instead of ssh.
 cat > as_ssh << 'END'
 #!/bin/sh
 host=$(cat "$OCTOPAIR_HOSTS/$1")
@@ -96,7 +96,7 @@ on_ranks() {
 }
 settings=()
 
-# MILLISECONDS MEGABITS: every frame comes so much later; so much goes to each host in a second.
+# MILLISECONDS MEGABITS: delays every frame by the milliseconds, and sends at most the megabits per second to each host.
 slow_down() {
     local host
     for host in "${hosts[@]}"; do in_network wire ip link set $host nomaster; done
@@ -105,10 +105,10 @@ slow_down() {
     slow=$!
 }
 
-# HOST: bytes that it has received and sent.
+# HOST: prints the number of bytes that the host has received and sent.
 carried() { in_network "$1" awk '$1 == "eth0:" { print $2 + $10 }' /proc/net/dev; }
 
-# SCENE ORDER: the bytes of the local engine.
+# SCENE ORDER: fails unless ranks give the bytes of the local engine.
 same() {
     "$program" detect "$1" --order "$2" --output local.npy --quiet
     on_ranks 5 "$program" detect "$1" --order "$2" --engine mpi --output ranks.npy --stats stats.json --quiet
@@ -117,26 +117,26 @@ same() {
 
 at_work() { pgrep -f "^$program detect $1|^orted|^[^ ]*/orted" || true; }
 
-# SCENE COMMAND...: a call is cut short by a command while its objects are on their way; it must end in 15 seconds, and so
-# must what it ran.
+# SCENE COMMAND...: runs a command, which cuts a link, while a call sends its objects. The call must fail. All its
+# processes must end within 15 seconds after that.
 cut_short() {
     local job status=0 before
     before=$(carried gamma)
     on_ranks 3 "$program" detect "$1" --engine mpi --output cut.npy --quiet > said.txt 2>&1 &
     job=$!
     until [ $(($(carried gamma) - before)) -gt 1000000 ]; do
-        kill -0 $job || fail "nothing to cut: $(cat said.txt)"
+        kill -0 $job || fail "the call ended before the cut: $(cat said.txt)"
         sleep 0.02
     done
     "${@:2}"
     SECONDS=0
     wait $job || status=$?
-    [ $status != 0 ] || fail "a cut goes unnoticed"
+    [ $status != 0 ] || fail "the call succeeded after the cut"
     while [ -n "$(at_work "$1")" ]; do
-        [ $SECONDS -lt 15 ] || fail "a cut leaves processes: $(ps -o pid,args -p $(at_work "$1"))"
+        [ $SECONDS -lt 15 ] || fail "processes run after the cut: $(ps -o pid,args -p $(at_work "$1"))"
         sleep 0.1
     done
-    [ ! -e cut.npy ] || fail "a cut leaves a file"
+    [ ! -e cut.npy ] || fail "the call left a file after the cut"
     echo "exit status $status and no process left after $SECONDS s"
 }
 
@@ -152,15 +152,15 @@ echo "hosts give the bytes of the local engine"
 slow_down 5 100
 same boxes.npy ascending
 python3 -c 'import json; assert json.load(open("stats.json"))["seconds"]["detect"] > 0.1' || fail "the network is not slow"
-echo "so they do with 5 ms and 100 Mbit/s between them"
+echo "hosts give these bytes also with 5 ms and 100 Mbit/s between them"
 
-# Between two hosts that mpirun's host both reaches: only a limit of the whole time helps.
+# Cuts the link between two hosts that mpirun's host still reaches. Only a limit of the total time ends the call.
 slow_down 1 10
 lose_each_other() { in_network beta ip neighbour replace 10.77.0.3 dev eth0 lladdr 02:00:00:00:00:99 nud permanent; }
 settings=(--timeout 8)
 cut_short many.npy lose_each_other
 in_network beta ip neighbour delete 10.77.0.3 dev eth0
 
-# Between a host and all others: the daemons notice that they hear nothing of each other.
+# Cuts the links between gamma and all other hosts. The daemons detect this by TCP keepalive.
 settings=(--mca oob_tcp_keepalive_time 1 --mca oob_tcp_keepalive_intvl 1 --mca oob_tcp_keepalive_probes 2)
 cut_short many.npy in_network wire ip link set gamma down

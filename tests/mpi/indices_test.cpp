@@ -130,7 +130,7 @@ TEST_F(RankIndices, AreRefusedOnAllRanks) {
     expect_refused(ErrorCode::bad_input, "3 indices for", last ? std::span(indices).first(3) : std::span(indices));
     if (test::rank_count() > 1) {
         expect_refused(ErrorCode::usage, "other ranks give indices", last ? std::span(indices).first(0) : indices);
-        // Each rank began with the same.
+        // All ranks give the same indices.
         expect_refused(ErrorCode::bad_input, "is given to two objects", indices);
     }
     std::ranges::transform(indices, indices.begin(),

@@ -22,7 +22,7 @@ namespace {
 using test::AnyCall;
 using test::Case;
 
-/// Makes calls of an engine on rank 0. Other ranks follow it.
+/// Makes calls of an engine on rank 0. Other ranks follow that engine.
 template <typename Calls>
 void lead(const Calls& calls, unsigned threads = 1) {
     if (test::own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
@@ -71,10 +71,10 @@ protected:
     const std::vector<Box3f> many_{60'000, Box3f{{0, 0, 0}, {1, 1, 1}}};
 };
 
-/// Streams far more pairs than the buffer holds. In octal order, some ranks find pairs twice. In ascending order, pairs
-/// are sent in windows.
+/// Streams far more pairs than the buffer holds. In octal order, some ranks find their pairs a second time. In
+/// ascending order, pairs are sent in windows.
 TEST_F(RankLeading, StreamsInBoundedMemory) {
-    // All these boxes are at one place, which a single rank owns. The crowd is distributed over all ranks.
+    // The coincident boxes are at one place, which a single rank owns. All ranks own some boxes of the loop.
     std::vector<Box3f> boxes = samples::make_scene("coincident", test::scaled(1'000, 1), 1);
     for (std::size_t i = 0; i < test::scaled(6'000, 2); ++i) {
         Box3f& box = boxes.emplace_back();
@@ -87,7 +87,7 @@ TEST_F(RankLeading, StreamsInBoundedMemory) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const std::uint64_t count = local->count_pairs(all);
-        ASSERT_GT(count, test::scaled(10 << 17, 4));  // pairs; 2^17 are 1 MiB
+        ASSERT_GT(count, test::scaled(10 << 17, 4));  // 2^17 pairs are 1 MiB
         std::vector<std::optional<std::uint64_t>> limits = {{}, count / 3};
         if (!test::sanitized) limits.insert(limits.end(), {7, count - 5, count});
         for (const Order order : {Order::octal, Order::ascending}) {
@@ -159,7 +159,7 @@ TEST_F(RankLeading, PassesOnWhatTheCallersFunctionsThrow) {
                 };
             };
             EXPECT_THROW((void)engine.stream_pairs(objects(), full_after(0), options), Full);
-            taken = 0;  // together with the last pairs, which another rank found
+            taken = 0;  // the sink throws at the last pairs, which another rank found
             EXPECT_THROW((void)engine.stream_pairs(objects(), full_after(expected_.size() - 1), options), Full);
             EXPECT_THROW(
                 (void)engine.stream_pairs(
@@ -221,9 +221,9 @@ TEST_F(RankLeading, IsFollowedAgainAndByNobodyElse) {
 }
 
 TEST(RankHeartbeat, TellsWhoIsSilent) {
-    if (test::rank_count() == 1) GTEST_SKIP() << "nobody else";
+    if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
     const bool first = test::own_rank() == 0, last = test::own_rank() + 1 == test::rank_count();
-    constexpr std::chrono::milliseconds silence(2000);  // longer than a busy machine stalls
+    constexpr std::chrono::milliseconds silence(2000);  // longer than the stalls of a busy machine
     Communicator comm(MPI_COMM_WORLD);
     Heartbeat heartbeat(comm, silence);
     const auto work = [&](int times, const auto& each) {
@@ -233,7 +233,7 @@ TEST(RankHeartbeat, TellsWhoIsSilent) {
         }
     };
     heartbeat.begin();
-    work(500, [&] { EXPECT_NO_THROW(heartbeat.beat()); });  // longer than that
+    work(500, [&] { EXPECT_NO_THROW(heartbeat.beat()); });  // longer than `silence`
     MPI_Barrier(MPI_COMM_WORLD);
     if (first) {
         heartbeat.begin();

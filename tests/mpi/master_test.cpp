@@ -36,7 +36,8 @@ std::unique_ptr<Engine> make_paper_engine(unsigned ranks_per_machine = 2, unsign
 
 Objects view(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes), {}}; }
 
-/// All objects are on the master, and only the master computes the expected result. All ranks continue, whatever the result.
+/// Expects that the master has all pairs and other ranks have none. Only the master computes the expected pairs. All
+/// ranks continue after a failure.
 void expect_at_master(const std::vector<Pair>& own, const std::function<std::vector<Pair>()>& expected) {
     if (own_rank() == 0) {
         EXPECT_TRUE(test::same_bytes(own, expected()));
@@ -153,7 +154,7 @@ TEST(RankMaster, IsOneOfTheRanksThatBuildLists) {
     }
 }
 
-/// The rank with the bad box in its run finds it, and all ranks report the local engine's message.
+/// The rank with the bad box in its run finds that box, and all ranks report the local engine's message.
 TEST(RankMaster, NamesTheFirstBadBox) {
     std::vector<Box3f> boxes = samples::make_scene("dense", 5'000, 1);
     const std::vector<Box3f> good = boxes;

@@ -46,7 +46,7 @@ TEST_P(RankProperty, AgreesWithThreads) {
 
 /// Uses more objects, so that every rank owns octants.
 TEST_P(RankProperty, AgreesWithThreadsOnLargerScenes) {
-    if (GetParam() == "denormals" || GetParam() == "largest") GTEST_SKIP() << "seconds a call, for any engine";
+    if (GetParam() == "denormals" || GetParam() == "largest") GTEST_SKIP() << "each call takes seconds with any engine";
     Case whole;
     whole.first.boxes = test::make_double_boxes(GetParam(), 13'000, test::case_seed(GetParam(), 0));
     const AnyCall count{whole, Order::octal, false, false};

@@ -3,8 +3,8 @@
 
     slow_wire.py MILLISECONDS MEGABITS INTERFACE...
 
-Every frame arrives so much later, and each interface is given so many megabits in a second. The kernel can do the same
-(tc, netem), where it was built with that; those of containers and small virtual machines often were not.
+Delays every frame by MILLISECONDS, and sends at most MEGABITS per second to each interface. The kernel's netem (tc)
+does the same, but the kernels of containers and small virtual machines often lack netem.
 """
 import heapq
 import select
@@ -14,7 +14,7 @@ import time
 
 EVERY_PROTOCOL, OUTGOING = 3, 4         # ETH_P_ALL, PACKET_OUTGOING
 PACKET_LEVEL, OFFLOAD_HEADER = 263, 15  # SOL_PACKET, PACKET_VNET_HDR
-# With an offload header a frame is up to 64 KiB, whose checksum nobody has computed; it is passed on as it is.
+# With an offload header, a frame has up to 64 KiB, and its checksum is not computed. Frames are forwarded unchanged.
 HEADER, TARGET, SOURCE = 10, slice(10, 16), slice(16, 22)
 
 
@@ -30,8 +30,8 @@ class Wire:
     def __init__(self, delay, bytes_per_second, interfaces):
         self.delay, self.bytes_per_second = delay, bytes_per_second
         self.busy_until = {open_port(interface): 0.0 for interface in interfaces}
-        self.home = {}        # hardware address: the port it was heard on
-        self.under_way = []   # a heap of (when, number, port, frame)
+        self.home = {}        # hardware address -> port that received frames from this address
+        self.under_way = []   # heap of (arrival time, number, port, frame)
         self.frames = 0
 
     def take(self, port):
@@ -52,13 +52,13 @@ class Wire:
             for port in select.select(list(self.busy_until), [], [], wait)[0]:
                 try:
                     self.take(port)
-                except OSError:  # the interface went down, which is told once
+                except OSError:  # the interface went down; the kernel reports this once
                     pass
             while self.under_way and self.under_way[0][0] <= time.monotonic():
                 _, _, port, frame = heapq.heappop(self.under_way)
                 try:
                     port.send(frame)
-                except OSError:  # a frame is lost
+                except OSError:  # the frame is lost
                     pass
 
 

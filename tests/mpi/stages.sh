@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# `octopair detect --engine mpi` with filters behind the pairs gives the files of the local engine, and ends alike on all
-# ranks.
+# Tests that `octopair detect --engine mpi` with filters writes the files of the local engine, and ends in the same way
+# on all ranks.
 #
 #     stages.sh PROGRAM MPIRUN
 source "$(dirname "$(realpath "$0")")/in_folder.sh"
 
 python3 - << 'END'
-# Shapes of every kind, close to each other, and a mesh that folds through itself.
+# Shapes of every kind, close to each other, and a mesh that intersects itself.
 import array, json, math, random, struct
 random.seed(7)
 shapes = {
@@ -59,7 +59,7 @@ with open("padding.npy", "wb") as f:
     f.write(array.array("d", [0.01 * (i % 7) for i in range(301)]).tobytes())
 END
 
-# RANKS NAME ARGUMENTS...: the same file from ranks as from threads, and not an empty one.
+# RANKS NAME ARGUMENTS...: fails unless ranks write the same file as threads, and the file has results.
 same() {
     local ranks=$1 name=$2
     shift 2
@@ -77,9 +77,10 @@ same 3 pairs.csv shapes.json --stage pairs
 same 2 pairs.npy shapes.json --stage pairs --exclude rules.json
 same 3 found.jsonl folds.off --objects triangle --stage features --adjacent include
 [ "$("$program" detect others.json --quiet)" = "$(on_ranks 2 detect others.json --engine mpi --quiet)" ] ||
-    fail "another output"
+    fail "ranks print other pairs"
 
-# The limit counts what comes out of filters, whichever rank's; it ends within the first one's, a later one's, or not at all.
+# The limit counts the collisions that pass the filters on all ranks. The result ends within the collisions of the first
+# rank, within those of a later rank, or is complete.
 all=$("$program" detect shapes.json --stage features --count-only --quiet)
 [ "$all" = "$(on_ranks 3 detect shapes.json --stage features --engine mpi --count-only --quiet)" ] || fail "another count"
 for limit in 1 $((all / 2)) "$all"; do
@@ -92,7 +93,7 @@ for limit in 1 $((all / 2)) "$all"; do
     done
 done
 python3 - << 'END'
-# The last ones, where the limit was not in the way: filters count what all ranks did.
+# Statistics of the last call, which the limit did not cut: the counters of filters are sums over all ranks.
 import json
 local, ranks = (json.load(open(name)) for name in ("local.json", "ranks.json"))
 counts = lambda stats: [(f["name"], f["in"], f["out"]) for f in stats["filters"]]
@@ -100,19 +101,19 @@ assert ranks["ranks"] == 3 and len(counts(ranks)) > 1 and local["candidates"] > 
 assert counts(local) == counts(ranks) and local["candidates"] == ranks["candidates"]
 END
 
-# Held against an older result, and on a page.
+# Comparison with an older result, and a report page.
 head -n 100 local.jsonl > old.jsonl
 against_old() { echo "shapes.json --baseline old.jsonl --output $1.jsonl --report $1.html --stats $1.json --quiet"; }
 "$program" detect $(against_old local)
 on_ranks 2 detect $(against_old ranks) --engine mpi
-cmp local.jsonl ranks.jsonl && cmp local.html ranks.html || fail "another result beside a baseline"
-[ "$(grep '"same"' local.json)" = "$(grep '"same"' ranks.json)" ] || fail "other changes"
+cmp local.jsonl ranks.jsonl && cmp local.html ranks.html || fail "ranks give another result with a baseline"
+[ "$(grep '"same"' local.json)" = "$(grep '"same"' ranks.json)" ] || fail "another number of same collisions"
 
 echo '{"objects": [{"shape": {"type": "sphere", "radius": 1}}, {"shape": {"type": "sphere", "radius": -1}}]}' > bad.json
 echo '{"ignored_pairs": [["part 1", "nobody"]]}' > nobody.json
 refuses 3 'bad.json: .*radius' bad.json
 refuses 3 "nobody.json: .*'nobody'" shapes.json --exclude nobody.json
 on_ranks 2 detect shapes.json --engine mpi --report /nowhere/page.html --output no.csv --quiet 2> errors.txt &&
-    fail "a page is made nowhere"
-[ ! -e no.csv ] || fail "a result without its page"
+    fail "detect succeeded without its report"
+[ ! -e no.csv ] || fail "detect wrote a result without its report"
 echo "ranks filter as threads do"

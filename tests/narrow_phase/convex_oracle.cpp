@@ -76,7 +76,7 @@ Point3d nearest(const shape::Cone& cone, const Point3d& to) {
     return nearer(to, base, on_segment({0, 0, half}, towards(to, cone.radius, -half), to));
 }
 Point3d nearest(const shape::Ellipsoid& ellipsoid, const Point3d& to) {
-    // The point x with to - x along its normal: x_k = r_k^2 to_k / (r_k^2 + t), for the t >= 0 that puts it on the surface.
+    // Point x of the surface with to - x along the normal at x: x_k = r_k^2 to_k / (r_k^2 + t) for one t >= 0.
     const Point3d& r = ellipsoid.radii;
     const auto at = [&](double t) {
         return Point3d{r[0] * r[0] * to[0] / (r[0] * r[0] + t), r[1] * r[1] * to[1] / (r[1] * r[1] + t),

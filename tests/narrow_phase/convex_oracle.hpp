@@ -1,4 +1,4 @@
-// Oracle for convex shapes. Decides by membership of points only, without support functions.
+// Oracle for convex shapes. Computes nearest points of single shapes, without support functions.
 #pragma once
 
 #include "geometry/vector.hpp"
@@ -11,7 +11,7 @@ Point3d nearest_in(const shape::Any& shape, const Point3d& to);
 
 struct PosedShape {
     shape::Any shape;
-    Pose pose;  // turned and moved only
+    Pose pose;  // rotation and translation only
 };
 Point3d nearest_in(const PosedShape& posed, const Point3d& to);
 

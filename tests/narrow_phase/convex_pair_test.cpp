@@ -95,7 +95,7 @@ void expect_overlap(const Thing& a, const Thing& b, RandomStream& random) {
     EXPECT_NEAR(length(found.normal), 1, 1e-12);
     EXPECT_FALSE(meet(a, b.moved(times(found.normal, found.depth + 1e-9))));
     EXPECT_LT(std::max(a.off(found.point), b.off(found.point)), 1e-9);
-    // No shorter way parts them.
+    // No shorter translation separates the shapes.
     for (int i = 0; i < 10; ++i) {
         const Point3d way = random_point(random);
         EXPECT_TRUE(meet(a, b.moved(times(way, 0.999 * found.depth / length(way)))));
@@ -113,7 +113,7 @@ TEST(ConvexPair, EveryShapeAgainstEveryShape) {
                 const Thing b(random_shape(kind_b, random), random_pose(random, 1.5));
                 const double oracle = distance_by_turns(a.posed, b.posed, 300);
                 const bool found = meet(a, b);
-                // An oracle that comes close to 0 cannot tell; one that is 0 has a point of both.
+                // The oracle is an upper bound: 0 proves a common point, and a small value proves nothing.
                 EXPECT_TRUE(found || oracle >= 1e-12);
                 EXPECT_FALSE(found && oracle > 0.02) << oracle;
                 found ? ++meeting : ++apart;
@@ -147,11 +147,11 @@ TEST(ConvexPair, KnownDistancesAndDepths) {
     EXPECT_DOUBLE_EQ(gap(box, ball.moved({4, 6, 0})), 4);
     EXPECT_DOUBLE_EQ(gap(rod, ball.moved({3, 0, 0.5})), 1.5);
     EXPECT_DOUBLE_EQ(contact(box, ball.moved({1.5, 0, 0})).depth, 0.5);
-    // The ball's centre in the box: out by the nearest side.
+    // The ball's centre is in the box. The shortest way out is through the nearest side.
     const ConvexContact deep = contact(box, ball.moved({0.75, 0, 0}));
     EXPECT_DOUBLE_EQ(deep.depth, 1.25);
     EXPECT_NEAR(deep.normal[0], 1, 1e-12);
-    // Axes that cross.
+    // Capsules whose axes cross.
     const Thing across(shape::Capsule{0.5, 2}, make_pose({0, 0, 0}, {1, 1, 0, 0}));
     EXPECT_DOUBLE_EQ(contact(rod, across).depth, 1);
     EXPECT_DOUBLE_EQ(gap(rod, across.moved({2, 0, 0})), 1);
@@ -175,7 +175,7 @@ TEST(ConvexPair, SizesDownToTheLeastNumbers) {
                 const Thing a(shape_a), b(shape_b, Point3d{size / 2, 0, 0});
                 EXPECT_TRUE(meet(a, b)) << size;
                 EXPECT_LE(contact(a, b).depth, 4 * size);
-                // Below that numbers have fewer digits than the proof of a gap needs.
+                // Below 1e-308, numbers have fewer digits than the proof of a gap needs.
                 EXPECT_FALSE(size >= 1e-308 && meet(a, b.moved({10 * size, 0, 0}))) << size;
             }
         }
@@ -209,7 +209,7 @@ TEST(ConvexPair, InEachOtherOrTheSame) {
         const Thing thing(random_shape(kind, random), random_pose(random, 2));
         EXPECT_TRUE(meet(thing, thing));
         EXPECT_EQ(gap(thing, thing), 0);
-        if (kind == kinds - 1) continue;  // a hull of one point stays in itself wherever the other one goes
+        if (kind == kinds - 1) continue;  // a hull can be a single point, which cannot contain the grain
         const ConvexContact found = contact(thing, thing);
         EXPECT_FALSE(meet(thing, thing.moved(times(found.normal, found.depth + 1e-9))));
         const Thing grain(shape::Sphere{0.01}, thing.posed.pose);
@@ -226,7 +226,7 @@ TEST(ConvexPair, FlatHulls) {
     const Thing corner(shape::ConvexHull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     for (const Thing& thing : {sheet, stick, dot, corner}) {
         EXPECT_TRUE(meet(thing, thing));
-        EXPECT_EQ(contact(thing, thing).depth, 0) << "flat things are parted by any step across them";
+        EXPECT_EQ(contact(thing, thing).depth, 0) << "any step across a flat shape separates the shapes";
     }
     EXPECT_TRUE(meet(sheet, sheet.moved({1, 1, 0})));
     EXPECT_FALSE(meet(sheet, sheet.moved({1, 1, 1e-9})));
@@ -256,7 +256,7 @@ TEST(ConvexPair, HugeAgainstTiny) {
 TEST(ConvexPair, FarFromTheOrigin) {
     RandomStream random(8, 0);
     for (int kind = 0; kind < kinds; ++kind) {
-        // Places that are the same numbers of 2^-30 there.
+        // Rounds places to multiples of 2^-30, which float64 still holds exactly far from the origin.
         const auto near = [&](double at) { return std::round(at * 0x1p30) * 0x1p-30; };
         Thing a(random_shape(kind, random), random_pose(random, 1)), b(random_shape(3, random), random_pose(random, 1));
         for (Thing* thing : {&a, &b}) {
@@ -303,7 +303,7 @@ TEST(ConvexPair, HoldsWhatStaysBelowItsSurface) {
                 const Thing inner(random_shape(kind_b, random), random_pose(random, 0.3));
                 if (!convex_contains(outer.convex(), inner.convex())) continue;
                 ++held;
-                // No point of the inner one is outside.
+                // No point of the inner shape is outside of the outer shape.
                 for (int k = 0; k < 50; ++k) {
                     const Point3d point = nearest_in(inner.posed, times(random_point(random), 10));
                     EXPECT_LT(outer.off(point), 1e-12) << kind_a << ", " << kind_b;

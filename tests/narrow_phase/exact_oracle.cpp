@@ -143,7 +143,8 @@ TrianglePair grid_pair(unsigned most, std::mt19937& random) {
     return pair;
 }
 
-/// Returns triangles with corners drawn from a few places. Most corners are shared, and some triangles have a corner twice.
+/// Returns triangles with corners drawn from a few places. Most corners are shared, and some triangles have a
+/// corner twice.
 TrianglePair neighbours(unsigned places, std::mt19937& random) {
     std::vector<Point3d> from(places);
     for (Point3d& place : from) place = grid_point(3, random);

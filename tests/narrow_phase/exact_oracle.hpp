@@ -15,15 +15,16 @@ namespace octopair::test {
 /// Returns the sign of the determinant of b - a, c - a, d - a.
 int oracle_plane_side(const std::array<Point3d, 4>& corners);
 
-/// Returns whether two triangles intersect. Clips one triangle by the half spaces and planes whose intersection is the other.
+/// Returns whether two triangles intersect. Clips one triangle by the half spaces and planes whose intersection is the
+/// other triangle.
 bool oracle_meet(const Triangle3d& a, const Triangle3d& b);
 /// Returns whether the triangles intersect outside of the shared corner, edge or edges.
 bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b);
 /// The intersection of two triangles.
 struct OracleContact {
-    std::size_t corners;  ///< different ones
-    bool area;            ///< it is more than a segment
-    bool inside;          ///< its middle is inside of both: no point of their edges
+    std::size_t corners;  ///< number of distinct corners
+    bool area;            ///< the intersection is more than a segment
+    bool inside;          ///< the middle of the intersection is on no edge of either triangle
 };
 OracleContact oracle_contact(const Triangle3d& a, const Triangle3d& b);
 

@@ -139,7 +139,7 @@ TEST(MeshPair, TouchingCounts) {
     EXPECT_FALSE(surfaces_meet(boxes.a(), boxes.b()));
     boxes.expect_as_by_all_pairs();
 
-    // Turned alike: the corner is at one place, whatever is rounded.
+    // With equal poses, rounding moves the common corner to the same place in both meshes.
     RandomStream random(9, 0);
     for (int round = 0; round < 200; ++round) {
         boxes.pose_a = boxes.pose_b = random_pose(random, 1000);
@@ -162,13 +162,13 @@ TEST(MeshPair, EmptyAndDegenerateMeshes) {
     EXPECT_FALSE(surface_gap(couple.a(), couple.b(), 10));
     EXPECT_FALSE(encloses_part(couple.b(), couple.a()));
 
-    // All triangles at one place: the tree cannot tell them apart.
+    // All triangles are at one point, so the tree cannot separate them.
     shape::Mesh points;
     for (int i = 0; i < 1000; ++i) points.vertices.push_back({0.5, 0.5, i < 999 ? 1.0 : 3.0});
     for (std::uint32_t i = 0; i < 998; ++i) points.triangles.push_back({i, i + 1, 0});
     Couple at_point(points, box_mesh({0, 0, 0}, {1, 1, 1}));
     EXPECT_EQ(at_point.visited().size(), at_point.all_meeting().size());
-    EXPECT_EQ(at_point.visited().size(), 998u * 2);  // the place is on the diagonal of the top
+    EXPECT_EQ(at_point.visited().size(), 998u * 2);  // the point is on the diagonal of the top, between two triangles
 }
 
 TEST(MeshPair, HugeAndTinyNumbers) {
@@ -212,7 +212,7 @@ TEST(MeshInside, ClosedMeshesEnclose) {
     for (const Pose& pose : {Pose{}, random_pose(random, 100), mirrored}) {
         EXPECT_EQ(enclosed(ball, pose, {0, 0.7, 1.5}), (Answers{true, true, false}));
         EXPECT_EQ(enclosed(turned_over(ball), pose, {0, 0.7, 1.5}), (Answers{true, true, false}));
-        // A hollow ball, and two solids of one mesh, the one in the other.
+        // First a hollow ball, then a mesh of two solids, one inside the other.
         EXPECT_EQ(enclosed(joined(ball, turned_over(core)), pose, {0, 0.7, 1.5}), (Answers{false, true, false}));
         EXPECT_EQ(enclosed(joined(ball, core), pose, {0, 0.7, 1.5}), (Answers{true, true, false}));
         shape::Mesh open = ball;
@@ -243,7 +243,7 @@ TEST(MeshInside, WhatIsHeldIsWhole) {
     Couple boxes(cube(2), cube(1));
     EXPECT_TRUE(contains_mesh(boxes.a(), boxes.b()));
     EXPECT_FALSE(contains_mesh(boxes.b(), boxes.a()));
-    // In the wall of a hollow one, all around the hollow.
+    // The surface of b is inside the wall of a hollow cube and surrounds the hollow.
     shape::Mesh hollow = cube(1.5);
     for (auto& corners : hollow.triangles) std::swap(corners[0], corners[1]);
     Couple around(joined(cube(2), hollow), cube(1.75));

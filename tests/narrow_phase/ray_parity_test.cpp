@@ -37,7 +37,7 @@ TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
     std::mt19937 random(4);
     unsigned inside = 0, outside = 0, on_surface = 0;
     for (unsigned round = 0; round < test::scaled(600, 10); ++round) {
-        // Tetrahedra through each other are one closed mesh, with corners and edges in line with each other and the places.
+        // Intersecting tetrahedra form one closed mesh. Their corners and edges are often in line with `place`.
         std::vector<Tetrahedron> solids(3);
         std::vector<Triangle3d> faces;
         const double scale = round % 3 == 0 ? 1 : round % 3 == 1 ? 1e6 / 3 : 1e-310;

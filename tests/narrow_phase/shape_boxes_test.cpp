@@ -158,12 +158,12 @@ TEST(ShapeBoxes, PlanesReachAllOthers) {
     made.add(shape::Plane{{0, 0, 2}, 4}, Pose{});
     made.add(shape::Plane{{1, 0, 1}, 0}, Pose{});
     const std::vector<Box3d> boxes = boxes_of(made.all());
-    // Across an axis: thin, and as wide as the rest.
+    // A plane across an axis has a thin box, as wide as the boxes of other objects.
     EXPECT_NEAR(boxes[2].min[2], 2, 1e-12);
     EXPECT_LT(boxes[2].max[2] - boxes[2].min[2], 1e-12);
     EXPECT_LE(boxes[2].min[0], -1);
     EXPECT_GE(boxes[2].max[0], 11);
-    // Askew: the bounds of the rest.
+    // An oblique plane has the bounds of the other objects.
     EXPECT_EQ(boxes[3].min[2], boxes[0].min[2]);
     EXPECT_EQ(boxes[3].max[0], boxes[1].max[0]);
     Made second;
@@ -184,7 +184,7 @@ TEST(ShapeBoxes, PlanesAgainstSolids) {
             const ConvexGap gap = plane_gap(plane, span);
             EXPECT_LE(gap.at_least, oracle + 1e-12);
             EXPECT_EQ(meets(span), gap.distance == 0);
-            // The nearest points are points of the two, so the distance is not too long either.
+            // The nearest points lie on the plane and on the shape, so the distance is not too short either.
             EXPECT_LT(vector::length(vector::minus(nearest_in(surface, gap.on_a), gap.on_a)), 1e-9);
             EXPECT_LT(vector::length(vector::minus(nearest_in(thing, gap.on_b), gap.on_b)), 1e-9);
             EXPECT_NEAR(gap.at_least, gap.distance, 1e-12);

@@ -24,7 +24,8 @@ using vector::minus;
 using vector::plus;
 using vector::times;
 
-/// How much of the area or length that a place spans with the triangle is too much for it to be inside.
+/// Returns the excess of the areas that `place` spans with the edges over the triangle's area: 0 if `place` is on the
+/// triangle. For a degenerate triangle, uses lengths instead of areas.
 double off_triangle(const Point3d& place, const Triangle3d& triangle) {
     const auto area = [](const Point3d& a, const Point3d& b, const Point3d& c) {
         return length(cross(minus(b, a), minus(c, a)));
@@ -75,7 +76,7 @@ TEST(TriangleGap, NoPlaneTellsThatItIsLonger) {
         ASSERT_NEAR(length(way), gap.distance, 1e-14) << text(pair);
         if (gap.distance < 1e-3) continue;
         ++apart;
-        // The slab across the way between the nearest points has a triangle on each side.
+        // The planes across `way` at the nearest points separate the triangles.
         for (const Point3d& corner : a) ASSERT_LE(dot(way, minus(corner, on_a)), 1e-11 * gap.distance) << text(pair);
         for (const Point3d& corner : b) ASSERT_GE(dot(way, minus(corner, on_b)), -1e-11 * gap.distance) << text(pair);
     }

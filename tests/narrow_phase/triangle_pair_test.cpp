@@ -117,7 +117,7 @@ TEST(TrianglePrefilter, SaysNothingWrongWhereProductsOverflowOrVanish) {
     }
 }
 
-/// Returns the triangles with corners and axes in another order, turned over, and mirrored.
+/// Returns the pair with triangles, corners and axes in random order, and in half of the cases mirrored.
 TrianglePair rearranged(TrianglePair pair, std::mt19937& random) {
     std::array<std::size_t, 3> axes = {0, 1, 2};
     std::shuffle(axes.begin(), axes.end(), random);

@@ -11,14 +11,14 @@
 namespace octopair::test {
 namespace {
 
-/// Appends the flags of a random subtree whose leaves lie at most `depth` levels below.
+/// Appends the flags of a random subtree whose leaves are at most `depth` levels below its root.
 void append_random_splits(std::mt19937& random, unsigned depth, SplitFlags& splits) {
     const bool is_split = depth > 0 && random() % 3 == 0;
     splits.push_back(is_split ? 1 : 0);
     for (unsigned digit = 0; is_split && digit < 8; ++digit) append_random_splits(random, depth - 1, splits);
 }
 
-/// Flags of a tree that is split along the path to the root's first cell only, to the deepest level.
+/// Returns the flags of a tree that is split only along the path to the root's first cell, down to the deepest level.
 SplitFlags deepest_corner() {
     SplitFlags splits;
     for (unsigned level = 0; level < deepest; ++level) splits.push_back(1);

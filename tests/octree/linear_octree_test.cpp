@@ -138,13 +138,13 @@ std::vector<std::string> kinds() {
     return names;
 }
 
-/// The sorted entries of some objects, and their statistics.
+/// The sorted entries of some objects, and the positions where the entries of each octant begin.
 struct OwnedList {
     std::vector<Entry> entries;
     std::vector<std::uint64_t> home_begins, ghost_begins;
 };
 
-/// Returns the list of objects [begin, end), made by the steps of a worker in the paper's arrangement.
+/// Returns the list of a block of objects, made by the steps of a worker in the paper's arrangement.
 OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, ObjectBlock objects) {
     BuildMemory memory(own_pages(), own_pages());
     memory.resize(source.size(), 1, layout.directory.octants().size(), 1);
@@ -157,7 +157,7 @@ OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, Obj
     OwnedList list;
     list.entries.resize(std::size_t(memory.totals[0]) + 1);
     const std::array<std::uint64_t, 1> begin = {0};
-    // Twice: a step that is done again does the same.
+    // Runs the step twice: a repeated step must give the same result.
     for (int i = 0; i < 2; ++i) steps.scatter({0, objects}, {list.entries, begin, octants, list.entries.size() - 1});
     list.entries.pop_back();
     const auto homes = memory.home_part(memory.places, 0), ghosts = memory.ghost_part(memory.places, 0);
@@ -214,9 +214,9 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Scene, ::testing::ValuesIn(kinds()), [](const au
 
 TEST(OctantSample, HasMoreOfMoreObjects) {
     EXPECT_EQ(octant_sample(1'000'000).stride(), 64u);
-    EXPECT_EQ(octant_sample(1'000'000'000).stride(), 476u);  // 2^21 at most, and then
+    EXPECT_EQ(octant_sample(1'000'000'000).stride(), 476u);  // at most 2^21 objects are sampled
     const Sample large = octant_sample(10'000'000'000);
-    EXPECT_LE(large.stride(), 2048u);  // so that no box of it stands for a crowd
+    EXPECT_LE(large.stride(), 2048u);  // more than 2^21 objects, so that a sampled object never represents a crowd
     EXPECT_LT(large[large.size() - 1], 10'000'000'000u);
     EXPECT_LT(large[large.size() - 2], large[large.size() - 1]);
 }

@@ -62,11 +62,11 @@ public:
         std::vector<std::uint32_t> found;
         octree_.search(cells, found);
         std::sort(found.begin(), found.end());
-        ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "twice";
+        ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "an object was found twice";
         for (std::uint32_t object = 0; object < cells_.size(); ++object) {
             const bool is_found = std::binary_search(found.begin(), found.end(), object);
             if (!here_[object]) {
-                ASSERT_FALSE(is_found) << "object " << object << " is not there";
+                ASSERT_FALSE(is_found) << "object " << object << " is not in the octree";
             } else if (overlap(cells_[object], cells)) {
                 ASSERT_TRUE(is_found) << "object " << object << " is missing";
             }
@@ -132,7 +132,8 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     EXPECT_TRUE(visitor.taken.empty());
 }
 
-/// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether it was cancelled.
+/// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether the build
+/// was cancelled.
 bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, MutableOctree& octree) {
     std::stop_source stop;
     if (delay.count() == 0) stop.request_stop();
@@ -160,7 +161,7 @@ TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     std::vector<CellBox> cells(boxes.size());
     octree.space().cells(boxes, cells);
     unsigned cancelled = 0;
-    // From before the first octant to about the last.
+    // The moments range from the start of the build to about its end.
     for (unsigned moment = 0; moment < moments; ++moment) {
         if (!stopped_after(whole * moment / moments, linear, octree)) continue;
         ++cancelled;

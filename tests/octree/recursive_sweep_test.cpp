@@ -31,7 +31,7 @@ class CollectingWriter final : public ShareWriter {
 public:
     bool counting() const override { return false; }
     void write(std::span<const Pair> pairs) override { found.insert(found.end(), pairs.begin(), pairs.end()); }
-    void write_count(std::uint64_t) override { FAIL() << "the pairs themselves are wanted"; }
+    void write_count(std::uint64_t) override { FAIL() << "expected pairs, not a number of pairs"; }
 
     std::vector<Pair> found;
 };
@@ -106,7 +106,7 @@ private:
 // More than two tiles of 4,096 rows, so that rows meet the columns of other tiles.
 TEST_P(SweepsOf, TiledSweepFindsAllPairs) {
     for (const std::size_t count : {1u, 2u, 300u, 9'000u}) {
-        if (GetParam() == Shape::coincident && count > 300) continue;  // all of 40 million pairs
+        if (GetParam() == Shape::coincident && count > 300) continue;  // 40 million pairs
         expect_all_pairs(count, [](const ScanContext& context, const SweepInput& input, Executor& executor) {
             tiled_sweep(context, input, 0, executor);
         });
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, SweepsOf,
                          ::testing::Values(Shape::cubes, Shape::rods, Shape::coincident, Shape::lattice));
 
 TEST(ChooseSweep, TakesTheAxisThatSeparatesBest) {
-    std::vector<Entry> plates(3'000);  // thin on y alone
+    std::vector<Entry> plates(3'000);  // thin only on y
     for (std::size_t i = 0; i < plates.size(); ++i) {
         plates[i] = {{0, float(i), 0}, {1, float(i) + 0.5f, 1}, std::uint32_t(i), 0};
     }

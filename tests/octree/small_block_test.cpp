@@ -25,7 +25,7 @@ TEST(SmallBlock, KernelFindsWhatTheSpecificationDoes) {
     std::mt19937 random(1);
     std::size_t found = 0;
     for (int round = 0; round < 20000; ++round) {
-        // Few numbers make many that touch, or begin before the unit.
+        // With few numbers, many boxes touch or begin before the unit.
         const std::uint32_t numbers = round % 2 == 0 ? 4 : 256;
         SmallBlock block{};
         block.count = std::uint32_t(random()) % (SmallBlock::capacity + 1);
@@ -58,7 +58,7 @@ TEST(Unit, NumbersLoseNothing) {
         const auto random_cells = [&] {
             CellBox box;
             for (unsigned axis = 0; axis < 3; ++axis) {
-                // Near the unit, so that they touch it, its borders and each other.
+                // Near the unit, so that boxes touch the unit, its borders and each other.
                 const std::int64_t first = std::int64_t(octant.lo[axis]) - side,
                                    last = std::int64_t(octant.lo[axis]) + 2 * side;
                 std::int64_t a = std::uniform_int_distribution<std::int64_t>(first, last)(random);

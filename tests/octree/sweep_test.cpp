@@ -21,7 +21,7 @@ std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::
     std::uniform_int_distribution<int> place(0, 12), length(0, 3), mask(0, 31);
     std::vector<Entry> entries(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const int times = random() % 16 == 0 ? 5 : 1;  // a few are far longer
+        const int times = random() % 16 == 0 ? 5 : 1;  // a few boxes are far longer
         for (int axis = 0; axis < 3; ++axis) {
             entries[i].min[axis] = float(place(random));
             entries[i].max[axis] = entries[i].min[axis] + float(times * length(random));

@@ -56,7 +56,7 @@ TEST(Fit, CannotTellFromLessThanTwo) {
     EXPECT_DOUBLE_EQ(fit(one).linear.a, 5e-7);
 }
 
-/// Between times that lie 10% above and below a line, the best `a` in relative terms is less than the mean.
+/// For one time 10% above a line and one 10% below, the fit of relative residuals gives an `a` below the line's slope.
 TEST(Fit, ResidualsAreRelative) {
     const std::vector<Sample> samples = {{1000, 1.1e-5, 0}, {1000000, 0.9e-2, 0}};
     const Fits fits = fit(samples);

@@ -72,7 +72,7 @@ TEST(Study, StopsWhenAsked) {
     };
     try {
         (void)measure({"uniform", {1000}, 2, 5, 20}, progress, stop.get_token());
-        FAIL() << "went on";
+        FAIL() << "measure() ignored the stop request";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
         EXPECT_EQ(said, 5);

@@ -37,8 +37,8 @@ TEST_P(TeamOf, NoTwoRunningBodiesShareAWorker) {
 }
 
 TEST_P(TeamOf, RethrowsTheFailureOfABodyAndStartsNoOther) {
-    // Index 3 throws while the bodies of other workers wait for it; each later body would take 100 microseconds more. All
-    // of them together would take longer than a thread that throws may be kept waiting for a core.
+    // Bodies after index 3 wait until index 3 throws. Then each body takes 100 microseconds, so all 100,000 bodies take
+    // at least 2 seconds. This is longer than the system may delay the thread that throws.
     std::atomic<int> begun = 0;
     std::atomic<bool> failing = false;
     const auto body = [&](std::size_t i, unsigned) {

@@ -42,7 +42,7 @@ struct Crowd {
 };
 
 std::vector<Pair> left_by(std::unique_ptr<Filter> filter, const Crowd& crowd) {
-    // Every pair goes in: all boxes are one.
+    // All boxes are equal, so every pair reaches the filter.
     const std::vector<Box3f> boxes(crowd.poses.size(), Box3f{{0, 0, 0}, {1, 1, 1}});
     Pipeline pipeline(1);
     pipeline.add(std::move(filter));

@@ -57,7 +57,7 @@ TEST_P(Endings, FiltersThrowWhereTheirPairIs) {
         }
         EXPECT_LE(found.pairs.size(), place);
         EXPECT_TRUE(std::equal(found.pairs.begin(), found.pairs.end(), pairs.begin()));
-        EXPECT_LT(place - found.pairs.size(), 4096u);  // no more than its block is lost
+        EXPECT_LT(place - found.pairs.size(), 4096u);  // at most the block of the bad pair is lost
     }
 }
 
@@ -70,7 +70,7 @@ TEST_P(Endings, WhatTheSinkThrowsReachesTheCaller) {
     };
     EXPECT_THROW(pipeline.run(*engine_, all_of(boxes_), sink, options()), int);
     EXPECT_EQ(calls, 3u);
-    // Both are as good as new.
+    // The pipeline and the engine can be used again.
     calls = 10;
     EXPECT_EQ(pipeline.run(*engine_, all_of(boxes_), sink, options()).search.pairs,
               engine_->count_pairs(all_of(boxes_)));

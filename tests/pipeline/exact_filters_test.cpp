@@ -1,5 +1,5 @@
-// Tests exact stages for objects. The pipeline gives the result of a test of all pairs of objects. Also tests cases
-// that other libraries are known to get wrong.
+// Tests exact filters for objects. The pipeline finds the same collisions as a test of all pairs of objects. Also tests
+// cases that other libraries are known to get wrong.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -153,13 +153,12 @@ TEST(ExactFilters, DistancesAreThoseOfTheNearestPoints) {
         const auto& [p, q] = finding.nearest;
         EXPECT_NEAR(std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]), finding.distance, 1e-9);
         EXPECT_LE(finding.distance, 0.5 * (1 + 1e-9));
-        // The gap of the boxes is no larger, along any axis.
         EXPECT_GT(finding.distance, 0);
     }
     EXPECT_GT(apart, 20u);
 }
 
-/// Makes two boxes of triangles, the second at `place`.
+/// Makes two box meshes, the second at `place`.
 Scene two_boxes(const Point3d& size_a, const Point3d& size_b, const Point3d& place) {
     Scene scene;
     scene.add(box_mesh({0, 0, 0}, size_a));
@@ -170,7 +169,7 @@ Scene two_boxes(const Point3d& size_a, const Point3d& size_b, const Point3d& pla
 TEST(ExactFilters, MeshInMesh) {
     const Finding inside = collision_of(two_boxes({10, 10, 10}, {1, 1, 1}, {2, 3, 4}));
     EXPECT_EQ(inside.collision_class, CollisionClass::contained);
-    EXPECT_EQ(inside.depth, 3);  // of the corner at (3, 4, 5)
+    EXPECT_EQ(inside.depth, 3);  // depth of the corner at (3, 4, 5)
     EXPECT_TRUE(inside.contacts.empty());
 }
 
@@ -181,7 +180,7 @@ TEST(ExactFilters, MeshesOnTopOfEachOther) {
 }
 
 TEST(ExactFilters, FacesInOnePlane) {
-    // Side by side, and edge to edge, and corner to corner.
+    // The boxes share a whole face, a part of a face, an edge, or a corner.
     for (const Point3d& place : {Point3d{1, 0, 0}, Point3d{1, 0.5, 0.25}, Point3d{1, 1, 0}, Point3d{1, 1, 1}}) {
         const Finding touch = collision_of(two_boxes({1, 1, 1}, {1, 1, 1}, place));
         EXPECT_EQ(touch.collision_class, CollisionClass::touching);
@@ -193,11 +192,11 @@ TEST(ExactFilters, FacesInOnePlane) {
 TEST(ExactFilters, OneMeshTwice) {
     const Finding twice = collision_of(two_boxes({2, 3, 4}, {2, 3, 4}, {0, 0, 0}));
     EXPECT_EQ(twice.collision_class, CollisionClass::penetrating);
-    EXPECT_EQ(twice.depth, 1);  // of the middle, though no corner is inside
+    EXPECT_EQ(twice.depth, 1);  // depth of the middle; no corner is inside
 }
 
 TEST(ExactFilters, CoaxialWallsThatOverlap) {
-    // Two walls of one section in one line, 50 mm too long: no triangle passes through another.
+    // Two collinear walls with equal cross-sections overlap by 50 mm. No triangle passes through another.
     const Finding walls = collision_of(two_boxes({4, 0.2, 2.5}, {4, 0.2, 2.5}, {3.95, 0, 0}));
     EXPECT_EQ(walls.collision_class, CollisionClass::penetrating);
     EXPECT_NEAR(walls.depth, 0.05, 1e-12);
@@ -205,7 +204,7 @@ TEST(ExactFilters, CoaxialWallsThatOverlap) {
 
 TEST(ExactFilters, MirroredAndScaledMeshes) {
     Scene scene = two_boxes({1, 1, 1}, {1, 1, 1}, {0, 0, 0});
-    scene.poses[1].rows = {{{-2, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};  // from -2 to 0
+    scene.poses[1].rows = {{{-2, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};  // x from -2 to 0
     EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::touching);
     scene.poses[1].rows[0][3] = 0.125;
     EXPECT_EQ(collision_of(scene).collision_class, CollisionClass::penetrating);
@@ -236,8 +235,8 @@ TEST(ExactFilters, EmptyAndDegenerateMeshes) {
     Scene scene;
     scene.add(box_mesh({0, 0, 0}, {1, 1, 1}));
     scene.add(shape::Mesh{});
-    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {}});           // a vertex that nothing uses
-    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {{0, 0, 0}}});  // a point
+    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {}});           // a vertex without a triangle
+    scene.add(shape::Mesh{{{0.5, 0.5, 0.5}}, {{0, 0, 0}}});  // a triangle that is a point
     scene.add(shape::Mesh{{{0.5, 0.5, 0.5}, {2, 0.5, 0.5}}, {{0, 1, 0}}});
     EXPECT_EQ(pairs_of(find(scene)), (std::vector<Pair>{{0, 3}, {0, 4}, {3, 4}}));
 }
@@ -280,11 +279,11 @@ TEST(ExactFilters, SolidsInMeshesWithWallsInOnePlane) {
     EXPECT_EQ(finding_of(cube, shape::Sphere{1}, {3, 0, 0}).depth, 2);
     EXPECT_EQ(finding_of(cube, shape::Box{{1, 1, 1}}, {5, 0, 0}).collision_class, CollisionClass::touching);
     EXPECT_EQ(finding_of(cube, shape::Box{{1, 1, 1}}, {5, 0, 0}).depth, 0);
-    EXPECT_EQ(finding_of(cube, shape::Sphere{1}, {0, 0, 0}).depth, 5);  // contained: out through a wall
+    EXPECT_EQ(finding_of(cube, shape::Sphere{1}, {0, 0, 0}).depth, 5);  // contained: distance to leave through a wall
 }
 
 TEST(ExactFilters, ContactsLeadOutOfClosedMeshes) {
-    for (const double height : {-0.1, 0.1, 0.2}) {  // of the ball's centre above the lower wall
+    for (const double height : {-0.1, 0.1, 0.2}) {  // height of the ball's centre above the lower wall
         Scene scene;
         scene.add(box_mesh({-1, -1, 0}, {1, 1, 2}));
         scene.add(shape::Sphere{0.25}, make_pose({0.25, 0.125, height}));
@@ -321,7 +320,7 @@ TEST(ExactFilters, ContactsAreCutByTheLimitAndSaySo) {
     ASSERT_GT(all.contacts.size(), 50u);
     EXPECT_FALSE(all.more_contacts);
     for (const Contact& contact : all.contacts) {
-        // Where both are.
+        // The contact is inside both spheres.
         EXPECT_LE(std::hypot(contact.point[0], contact.point[1], contact.point[2]), 1 + 1e-9);
         EXPECT_LE(std::hypot(contact.point[0] - 0.5, contact.point[1] - 0.25, contact.point[2] - 0.125), 1 + 1e-9);
     }
@@ -344,7 +343,7 @@ TEST(MovingObjects, FastOnesDoNotPassThroughThinOnes) {
     EXPECT_NEAR(hit.time, (100 - 0.01) / 400, 1e-9);
     EXPECT_EQ(hit.collision_class, CollisionClass::touching);
     ASSERT_EQ(hit.contacts.size(), 1u);
-    EXPECT_NEAR(hit.contacts[0].normal[0], -1, 1e-6);  // from the wall to the ball
+    EXPECT_NEAR(hit.contacts[0].normal[0], -1, 1e-6);  // points from the wall to the ball
     scene.end_poses[1] = make_pose({-0.02, 0, 0});
     EXPECT_TRUE(find(scene).empty());
     const Finding near = collision_of(scene, {0.02});
@@ -362,7 +361,8 @@ TEST(MovingObjects, BladesTurnIntoWhatTheyReach) {
         }
         scene.add(shape::Sphere{0.25}, make_pose({0, 1.5, 0}));
         scene.end_poses = {make_pose({0, 0, 0}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}), scene.poses[1]};
-        // The blade's side reaches the ball when it is as far from the blade's axis as both are thick.
+        // The blade touches the ball when the ball's centre is 0.35 from the blade's axis: 0.1 (half the blade's
+        // thickness) + 0.25 (the ball's radius).
         const double angle = std::acos(-1.0) / 2 - std::asin(0.35 / 1.5);
         EXPECT_NEAR(collision_of(scene).time, angle / (std::acos(-1.0) / 2), 1e-5);
         scene.end_poses[0] = make_pose({0, 0, 0}, {std::cos(0.5), 0, 0, std::sin(0.5)});
@@ -381,7 +381,7 @@ TEST(MovingObjects, LongWaysBesideEachOtherAreNoImpact) {
     EXPECT_TRUE(find(scene, {0.49}).empty());
     EXPECT_EQ(find(scene, {0.51}).size(), 1u);
 
-    // Along a tilted plane, and along a rail, both turned by 45 degrees.
+    // These paths are parallel to a plane and to a rail, both turned by 45 degrees.
     Scene plane;
     plane.add(shape::Sphere{1}, make_pose({-1000, 1000, 0}));
     plane.add(shape::Plane{{1, 1, 0}, -1.3 * std::sqrt(2.0)});

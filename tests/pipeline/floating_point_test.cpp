@@ -18,7 +18,7 @@ namespace {
 
 class PipelineFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
 
-/// The input of objects, before any computation.
+/// Input values of shapes, poses and triangles, before any computation.
 struct Raw {
     std::vector<shape::Any> shapes;
     std::vector<std::uint32_t> geometry;

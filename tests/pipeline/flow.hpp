@@ -1,4 +1,4 @@
-// Helpers for tests of pipelines: a scene, filters that leave a trace, and the output of a pipeline.
+// Helpers for tests of pipelines: a filter that records a number for each pair, and the collected output of a pipeline.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline std::uint64_t lot(Pair pair) {
     return mixed ^ mixed >> 29;
 }
 
-/// Keeps every pair whose lot is not divisible by `divisor`, and records its lot.
+/// Keeps every pair whose lot is not divisible by `divisor`, and records the lot in the pair's finding.
 class LotFilter final : public Filter {
 public:
     explicit LotFilter(std::uint64_t divisor) : divisor_(divisor) {}

@@ -16,7 +16,7 @@ INSTANTIATE_TEST_SUITE_P(, PipelineMemory, ::testing::Values(Order::octal, Order
 
 TEST_P(PipelineMemory, IsThatOfABatch) {
     constexpr std::uint64_t objects = test::scaled(7000, 5);
-    constexpr std::uint64_t pairs = objects * (objects - 1) / 2;  // 24 million; with what is learned of them 5 GB
+    constexpr std::uint64_t pairs = objects * (objects - 1) / 2;  // 24 million; with their findings 5 GB
     const auto boxes = samples::make_scene("coincident", objects, 1);
     Pipeline pipeline(2);
     pipeline.add(std::make_unique<LotFilter>(~std::uint64_t(0)));

@@ -74,7 +74,7 @@ std::string arrangement_name_of(const ::testing::TestParamInfo<Arrangement>& inf
 INSTANTIATE_TEST_SUITE_P(, AnyPipeline, ::testing::ValuesIn(arrangements()), arrangement_name_of);
 
 TEST_P(AnyPipeline, LetsThroughWhatAPlainLoopDoes) {
-    const auto boxes = samples::make_scene("dense", 40'000, 1);  // pairs for more than a small buffer
+    const auto boxes = samples::make_scene("dense", 40'000, 1);  // more pairs than a small buffer holds
     const auto pairs = engine_pairs(boxes, GetParam().order);
     const Outcome expected = expected_of(pairs);
     const auto engine = make_local_engine(GetParam().threads);
@@ -135,7 +135,7 @@ TEST_P(AnyPipeline, TellsItsProgress) {
     const auto boxes = samples::make_scene("dense", 20'000, 1);
     Options asked = options();
     std::vector<double> told;
-    std::mutex telling;  // which may be on another thread than the sink
+    std::mutex telling;  // progress may be called on another thread than the sink
     asked.progress = [&](double done) {
         const std::lock_guard lock(telling);
         told.push_back(done);
@@ -151,7 +151,7 @@ TEST_P(AnyPipeline, TellsItsProgress) {
     EXPECT_TRUE(std::ranges::is_sorted(told));
     ASSERT_FALSE(told.empty());
     EXPECT_EQ(told.back(), 1.0);
-    // Also while filters are at work.
+    // Progress is also reported while filters run.
     EXPECT_GT(std::ranges::count_if(told, [](double done) { return done > 0.65 && done < 1; }), 3);
 }
 
@@ -172,7 +172,7 @@ TEST(Pipeline, WithoutFiltersIsTheEngine) {
     EXPECT_THROW(pipeline.add(nullptr), Error);
 }
 
-/// Keeps every other pair of a batch, by its numbers.
+/// Keeps the pairs of a batch whose lot is even, by their positions in the batch.
 class OtherFilter final : public Filter {
 public:
     std::string_view name() const override { return "others"; }
@@ -268,7 +268,7 @@ TEST(Pipeline, SinkIsCalledOnTheCallingThread) {
     EXPECT_EQ(callers, std::set{std::this_thread::get_id()});
 }
 
-/// Holds each pair until a given number of pairs is held at the same time, or until a timeout.
+/// Holds each batch until `threads` batches are held at the same time, or until a timeout of 60 seconds.
 class Meeting final : public Filter {
 public:
     explicit Meeting(unsigned threads) : threads_(threads) {}
@@ -293,7 +293,7 @@ private:
     mutable bool met_ = false, alone_ = false;
 };
 
-/// Filters run on all threads while an engine's threads are blocked in its search behind a slow sink.
+/// Tests that filters run on all threads of the pipeline. The engine's threads may be blocked inside the search.
 TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
     const auto boxes = samples::make_scene("dense", 30'000, 1);
     for (const Order order : {Order::octal, Order::ascending}) {

@@ -20,7 +20,7 @@ using Names = std::vector<std::string>;
 
 constexpr std::uint32_t objects = 40;
 
-/// Returns every pair of `objects`, or every a and b of a join.
+/// Returns all pairs within one set of `objects` objects, or all pairs between two such sets.
 std::vector<Pair> all_pairs(bool join) {
     std::vector<Pair> pairs;
     for (std::uint32_t a = 0; a < objects; ++a) {
@@ -104,7 +104,7 @@ TEST_P(SimpleFilters, ParentsDiffer) {
     EXPECT_EQ(through(*filter, join()), kept(join(), [&](Pair pair) { return parents[pair.a] != parents_b[pair.b]; }));
 }
 
-/// Returns whether a pattern matches a name, by another algorithm.
+/// Returns whether a pattern matches a name. Reference for matches_pattern, by recursion.
 bool fits_plainly(std::string_view name, std::string_view pattern) {
     if (pattern.empty()) return name.empty();
     if (pattern[0] == '*') {
@@ -164,7 +164,7 @@ TEST(SimpleFilterErrors, SizesAgree) {
     EXPECT_THROW((void)make_filter("none", {}), Error);
 }
 
-/// Tests a filter whose objects are not the engine's objects.
+/// Tests filters that have values for fewer objects than the engine.
 TEST(SimpleFilterErrors, ObjectsWithoutValuesAreRefused) {
     const auto boxes = samples::make_scene("coincident", 5, 1);
     const Numbers three{1, 2, 3};

@@ -1,5 +1,6 @@
-// A test application that is killed while it uses an engine. Makes an engine, prints the ids of its workers, and then
-// does what its arguments say.
+// Test application that ends without destroying its engine. Makes an engine, prints the ids of the workers, and acts on
+// its first argument. `exit`: exits. `busy`: makes calls until a signal kills it. `fork`: starts a child that keeps the
+// sockets open, and waits for a signal. Otherwise: waits for a signal.
 #include <signal.h>
 #include <unistd.h>
 
@@ -21,13 +22,13 @@ void print_workers() {
 
 [[noreturn]] void live(const std::string& how) {
     const Scene scene("clustered", how == "busy" ? 200'000 : 10, 1);
-    // Never destroyed.
+    // The engine is never destroyed, so workers must detect the end of the application.
     Engine* const engine = make_process_engine(3).release();
     (void)ask(*engine, scene, {});
     print_workers();
     if (how == "exit") std::exit(0);
     if (how == "fork" && ::fork() == 0) {
-        // A child that keeps the sockets open, longer than the application lives. The child must close the output that
+        // The child keeps the sockets open for longer than the application lives. The child must close the output that
         // tests read.
         (void)::close(1);
         (void)::close(2);

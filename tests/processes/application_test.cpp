@@ -1,5 +1,5 @@
-// Tests unusual applications: they ignore or wait for all children, receive signals all the time, throw from sinks, or
-// request the impossible.
+// Tests unusual applications: they ignore or wait for all children, receive a signal every millisecond, throw from
+// sinks, pass bad boxes, or call from many threads.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/time.h>
@@ -55,7 +55,7 @@ TEST_F(Applications, MayIgnoreTheirChildren) {
     (void)::signal(SIGCHLD, before);
 }
 
-/// Waits for all children of the process, as they end, until the Waiter is destroyed.
+/// Waits, on another thread, for every child of the process that ends, until the Waiter is destroyed.
 class Waiter {
 public:
     explicit Waiter(int options)
@@ -107,7 +107,7 @@ private:
 };
 
 TEST_F(Applications, MayBeInterruptedAllTheTime) {
-    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // allocation of its copy takes a while
+    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // signals interrupt the allocation of the copy
     const Interrupter interrupter;
     call_with_faults();
     const auto engine = make_process_engine(2);

@@ -66,7 +66,7 @@ private:
         }
     }
 
-    /// Overwrites one or a few words of [offset, offset + size).
+    /// Overwrites 1 or 4 random words of [offset, offset + size).
     void scribble(std::uint64_t offset, std::uint64_t size) {
         const std::uint64_t words = random_.below(3) == 0 ? 4 : 1;
         for (std::uint64_t i = 0; i < words; ++i) {

@@ -1,7 +1,8 @@
 // Tests workers that write random bytes into the shared tables. The application neither crashes nor hangs. With sound
 // workers the same engine then finds the right pairs again.
 //
-// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>. The time and place of each write also depend on the machine.
+// Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>. The time and place of each write also depend on the
+// machine.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -21,7 +22,7 @@ namespace {
 using test::Asked;
 using test::Scene;
 
-/// Requests a stop after a while, long enough for all possible work.
+/// Requests a stop after `most`, which must be longer than any call takes.
 class Deadline {
 public:
     explicit Deadline(std::chrono::seconds most)
@@ -55,7 +56,7 @@ protected:
         } catch (const Error& error) {
             EXPECT_GT(std::string(error.what()).size(), 10u);
         }
-        EXPECT_FALSE(deadline.passed()) << "hangs";
+        EXPECT_FALSE(deadline.passed()) << "the call hangs";
     }
 
     const Scene scene_{"clustered", 16'000, 1};

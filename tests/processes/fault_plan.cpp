@@ -10,7 +10,7 @@ namespace octopair::test {
 
 MappedPlan::MappedPlan() : file_(::memfd_create("faults", MFD_CLOEXEC)), named_(true) {
     if (!file_.open() || ::ftruncate(file_.number(), sizeof(FaultPlan)) != 0)
-        throw std::runtime_error("no memory file");
+        throw std::runtime_error("cannot make a memory file for the plan of faults");
     map();
     const std::string path = "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file_.number());
     ::setenv(plan_variable, path.c_str(), 1);
@@ -35,7 +35,7 @@ void MappedPlan::map() {
 }
 
 void MappedPlan::set(std::span<const Fault> faults) {
-    if (faults.size() > FaultPlan::most) throw std::length_error("too many faults at once");
+    if (faults.size() > FaultPlan::most) throw std::length_error("the plan has no room for so many faults");
     plan_->end.store(0);
     plan_->next.store(0);
     plan_->passed.store(0);

@@ -1,7 +1,7 @@
 // A plan of faults for worker processes, in memory that a test shares with its workers (faulty_worker.cpp).
 //
-// A fault belongs to a step. After a given number of workers, the next worker that begins a share of the step takes the
-// fault. The fault happens at its planned moment. Faults are taken one after another.
+// A fault belongs to a step. After a given number of shares of the step, the worker that begins the next share takes
+// the fault. The fault happens at its planned moment. Faults are taken one after another.
 #pragma once
 
 #include <sys/mman.h>
@@ -25,8 +25,8 @@ struct Fault {
     Step step = Step::encode;
     FaultKind kind = FaultKind::kill;
     Moment moment = Moment::begin;
-    std::uint32_t ticks = 0;    ///< tick: which one; where there are fewer, the end
-    std::uint32_t pass_by = 0;  ///< shares of the step to let pass
+    std::uint32_t ticks = 0;    ///< Moment::tick: index of the tick; a share with fewer ticks fails at its end
+    std::uint32_t pass_by = 0;  ///< number of shares of the step to skip
 };
 
 /// Number of lost workers, by step and kind.
@@ -34,8 +34,8 @@ using FaultCounts = std::array<std::array<std::uint64_t, 3>, step_names.size()>;
 
 struct FaultPlan {
     static constexpr std::uint32_t most = 64;
-    std::atomic<std::uint32_t> next, end;  ///< of the faults below
-    std::atomic<std::uint32_t> passed;     ///< shares that the next fault has let pass
+    std::atomic<std::uint32_t> next, end;  ///< indices into `faults`
+    std::atomic<std::uint32_t> passed;     ///< number of shares skipped for the next fault
     std::array<Fault, most> faults;
     std::array<std::array<std::atomic<std::uint64_t>, 3>, step_names.size()> happened;
 };

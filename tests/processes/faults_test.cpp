@@ -26,7 +26,7 @@ using test::Moment;
 
 constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
 constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
-constexpr unsigned most_of_a_step = 2;  // in a call: a third fault in a share would end the call
+constexpr unsigned most_of_a_step = 2;  // per call: a third fault in one share would end the call
 constexpr unsigned most_tries = 20;
 
 /// The calls and objects of a case.
@@ -90,7 +90,7 @@ protected:
         EXPECT_EQ(counted.stopped, stopped);
     }
 
-    /// Tests every step of the call with every kind of fault.
+    /// Expects that every kind of fault happened in every step of the calls.
     void expect_all_kinds(bool ordered) {
         if (test::sanitized) return;
         const test::FaultCounts happened = plan_.happened();

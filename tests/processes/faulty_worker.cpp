@@ -18,7 +18,7 @@ namespace octopair::test {
 namespace {
 
 [[noreturn]] void end_by(int signal) {
-    // Also if a sanitizer handles the signal.
+    // A sanitizer may have installed a handler that does not end the process.
     (void)::signal(signal, SIG_DFL);
     (void)::raise(signal);
     ::_exit(99);
@@ -30,7 +30,7 @@ public:
 
     void begin(Step step) override {
         step_ = step;
-        // Drop a fault whose pass was given up before its moment.
+        // Also drops an earlier fault whose pass ended before the fault's moment.
         fault_ = take(step);
         ticks_ = 0;
         if (fault_ && fault_->moment == Moment::begin) happen();

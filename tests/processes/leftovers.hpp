@@ -24,7 +24,7 @@ struct ProcessStatus {
 std::vector<ProcessStatus> all_processes();
 /// Returns the children of a process, including ended children.
 std::vector<pid_t> children_of(pid_t parent);
-bool process_lives(pid_t id);  ///< and is no zombie
+bool process_lives(pid_t id);  ///< Returns whether the process exists and is not a zombie.
 
 /// Polls every few milliseconds, for `most` at most, until `condition` holds. Returns whether it held.
 bool comes_true(const std::function<bool()>& condition, std::chrono::milliseconds most);

@@ -1,5 +1,5 @@
-// Tests lifetimes. Lists survive later calls of their engine, and boxes survive the calls that read them. A forked
-// process holds a copy of its parent's engine.
+// Tests lifetimes. Lists stay valid after later calls of their engine, destroyed box arrays leave no descriptors open,
+// and a forked process cannot use its parent's engine.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -58,7 +58,7 @@ TEST_F(WorkerLifetimes, BoxesThatAreGoneAreForgotten) {
         engine->find_pairs({std::span<const Box3f>(array.boxes())}, list);
         ASSERT_EQ(list.to_vector(), pairs);
     }
-    EXPECT_LE(test::Belongings::now().descriptors, before + 4) << "the arena and the pairs, but no array";
+    EXPECT_LE(test::Belongings::now().descriptors, before + 4) << "more is open than the arena and the pairs";
 }
 
 TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {

@@ -40,7 +40,7 @@ private:
 class WorkerLimits : public test::Processes {
 protected:
     enum class End { right, refused };
-    /// Expects the right answer, or an Error of the resources or of the engine.
+    /// Expects the right answer, or an Error with resource_limit or engine_failed. Returns which of the two happened.
     End right_or_refused(Engine& engine, const Scene& scene, const Asked& asked) {
         const Answer expected = test::ask(*local_, scene, asked);
         try {
@@ -118,7 +118,7 @@ TEST_F(WorkerLimits, OfFilesThatPairsDoNotFitInto) {
             SCOPED_TRACE(std::to_string(bytes) + ", order " + std::to_string(int(order)));
             try {
                 (void)test::ask(*engine, crowd_, {.how = How::list, .order = order});
-                ADD_FAILURE() << "fitted";
+                ADD_FAILURE() << "the pairs fitted into the limit";
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
             }
@@ -153,7 +153,8 @@ TEST_F(WorkerLimits, OfAddressSpace) {
     EXPECT_GT(refused, 1u);
 }
 
-/// Returns the exit status of a child that may start no more processes. The super-user has no such limit.
+/// Returns the exit status of a child that may not start processes: 0 if the engine reports the right error. Gives up
+/// the superuser's rights first, because the superuser has no such limit.
 int fail_without_processes() {
     if (::getuid() == 0 && ::setuid(65534) != 0) return 0;
     const rlimit none{1, 1};

@@ -30,7 +30,7 @@ using test::Scene;
 
 class WorkerLosses : public test::Processes {};
 
-/// Ends or stops workers of this process. Returns whether there were any workers.
+/// Sends `signal` to at most `most` workers of this process, from number `choice` on. Returns whether workers exist.
 bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {
     const auto workers = test::children_of(::getpid());
     for (std::size_t i = 0; i < std::min(most, workers.size()); ++i) {
@@ -59,7 +59,7 @@ TEST_F(WorkerLosses, BetweenCallsAreMadeGood) {
 }
 
 TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
-    const Scene scene("clustered", 6'000, 1);  // few enough for one worker
+    const Scene scene("clustered", 6'000, 1);  // few enough objects for one worker
     test::MappedPlan plan;
     const auto engine = test::make_faulty_engine(3);
     for (const Step step : {Step::encode, Step::count, Step::scatter, Step::scan, Step::order}) {
@@ -70,7 +70,7 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
             plan.set(std::vector<Fault>(3, fault));
             try {
                 (void)test::ask(*engine, scene, asked);
-                ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
+                ADD_FAILURE() << "no error after faults in step " << step_names[std::size_t(step)];
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ErrorCode::engine_failed) << error.what();
                 EXPECT_NE(std::string(error.what()).find(step_names[std::size_t(step)]), std::string::npos)
@@ -92,7 +92,7 @@ TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
         plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
         try {
             (void)test::ask(*engine, scene, {});
-            ADD_FAILURE() << "went well, " << step_names[std::size_t(step)];
+            ADD_FAILURE() << "no error after faults in step " << step_names[std::size_t(step)];
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::engine_failed);
             EXPECT_STREQ(error.what(), "a worker process failed without an error message");
@@ -114,8 +114,8 @@ TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     }
 }
 
-/// Signals workers from another thread at random times. Sends fewer signals in a call than the number of workers that a
-/// share may lose. On a busy machine a share can last for several pauses.
+/// Sends signals to workers from another thread at random times. Sends fewer signals in a call than the number of
+/// workers that a share may lose, because on a busy machine a share can last for several pauses.
 class Disturber {
 public:
     Disturber(int signal, std::size_t at_once, milliseconds pause, std::uint64_t seed)
@@ -137,7 +137,7 @@ public:
 
 private:
     std::mutex mutex_;
-    unsigned left_ = 0;  // signals in this call
+    unsigned left_ = 0;  // signals that remain in this call
     std::jthread thread_;
 };
 
@@ -157,8 +157,8 @@ protected:
                 const Scene& scene = scenes[i % scenes.size()];
                 Asked asked = test::random_call(seed + i);
                 if (scene.kind == "speck") {
-                    // Any clearance joins the whole speck, and a share would take longer than the workers' lifetime in
-                    // this test.
+                    // With any clearance all objects of the speck are pairs. A share would then last longer than a
+                    // worker lives in this test.
                     asked.margin = 0;
                     asked.padded = false;
                 }

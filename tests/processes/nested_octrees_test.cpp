@@ -30,7 +30,7 @@ using test::Scene;
 constexpr std::uint64_t objects = 60'000;
 constexpr std::uint64_t most_pairs = 2'000'000;
 constexpr unsigned crew_size = 2;
-constexpr std::uint32_t octree_blocks = 2 * crew_size;  // shares of encode, and of sort, of the outermost octree
+constexpr std::uint32_t octree_blocks = 2 * crew_size;  // shares of encode, and of scatter, of the outermost octree
 
 class NestedOctrees : public test::Processes {};
 

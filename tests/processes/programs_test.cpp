@@ -26,14 +26,14 @@ protected:
         return path;
     }
 
-    /// Expects that the construction or every call fails.
+    /// Expects that the construction or every call fails with an error that names the program.
     void expect_failed(const std::string& program, int calls = 2) {
         try {
             const auto engine = make_process_engine({.workers = 2, .worker_program = program});
             for (int i = 0; i < calls; ++i) {
                 try {
                     (void)test::ask(*engine, scene_, {});
-                    ADD_FAILURE() << "went well with " << program;
+                    ADD_FAILURE() << "no error with " << program;
                 } catch (const Error& error) {
                     expect_names(error, program);
                 }
@@ -87,7 +87,7 @@ TEST_F(WorkerPrograms, ThatAreGoneForAWhile) {
     for (int i = 0; i < 3; ++i) {
         try {
             (void)test::ask(*engine, scene_, {});
-            ADD_FAILURE() << "went well without a program";
+            ADD_FAILURE() << "no error without a program";
         } catch (const Error& error) {
             expect_names(error, program);
         }

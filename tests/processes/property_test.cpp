@@ -69,7 +69,7 @@ TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
     Engines engines;
     std::uint64_t seed = test::test_seed(1);
     for (const std::string& kind : test::all_kind_names()) {
-        if (kind == "denormals" || kind == "largest") continue;  // seconds a call, for any engine
+        if (kind == "denormals" || kind == "largest") continue;  // a call takes seconds with any engine
         SCOPED_TRACE(kind + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         Case a_case;
         a_case.first.boxes = test::make_double_boxes(kind, 13'000, seed++);

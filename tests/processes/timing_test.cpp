@@ -35,7 +35,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
         for (const Step step : {Step::encode, Step::scan}) {
             Clock::duration took{};
             for (int attempt = 0; attempt < 3;
-                 ++attempt) {  // any thread may be delayed on a machine that is busy otherwise
+                 ++attempt) {  // a machine that is busy with other work may delay any thread
                 plan.set(std::vector<Fault>{{.step = step, .kind = kind}});
                 const auto begin = Clock::now();
                 (void)test::ask(*engine, scene, {});
@@ -78,7 +78,7 @@ protected:
         for (const int delay : {0, 3, 15, 40, 90, 200}) {
             SCOPED_TRACE(asked.describe() + ", after " + std::to_string(delay) + " ms");
             std::optional<Clock::duration> took;
-            // Any thread may be delayed on a machine that is busy otherwise.
+            // A machine that is busy with other work may delay any thread.
             for (int attempt = 0; attempt < 3; ++attempt) {
                 took = time_to_cancel(engine, scene, asked, milliseconds(delay));
                 if (!took || *took <= cancel_patience) break;
@@ -143,7 +143,7 @@ protected:
     void expect_gone(const Application& application) {
         EXPECT_EQ(application.workers.size(), 3u);
         EXPECT_TRUE(test::comes_true([&] { return application.left() == 0; }, milliseconds(10000)))
-            << application.left() << " workers live on";
+            << application.left() << " workers are still running";
         for (const pid_t worker : application.workers) (void)::kill(worker, SIGKILL);
     }
     void kill(const Application& application) {

@@ -43,10 +43,10 @@ inline bool exactly_touches(const Sphere& sphere, const Box3d& box) {
     return exact_squared_distance(point_box(sphere.centre), box) <= radius * radius;
 }
 
-/// Returns the float64 nearest to the distance, rounded to even, or infinity beyond the range of float64.
+/// Returns the float64 nearest to the distance, with ties to even, or infinity beyond the range of float64.
 inline double rounded_distance(const Integer& squared) {
     if (squared == 0) return 0;
-    // 64 more bits of the root than those of the smallest float64.
+    // The root is the distance times 2^(1074 + 64): it has 64 bits below the last bit of the smallest float64.
     Integer rest;
     const Integer root = boost::multiprecision::sqrt(Integer(squared << 128), rest);
     const int bits = int(msb(root)) + 1, dropped = std::max(bits - 53, 64);

@@ -29,7 +29,7 @@ protected:
     void expect_refused(Call&& call, const std::string& words) {
         try {
             call();
-            FAIL() << "accepted";
+            FAIL() << "the scene accepted the call";
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::bad_input);
             EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
@@ -146,7 +146,7 @@ TEST(Scene, AStepThatWasStoppedCanBeRepeated) {
     EXPECT_EQ(step.began[0], (Pair{0, 1}));
 }
 
-/// A memory resource for SceneOptions::room_for_pairs.
+/// A budget of bytes for SceneOptions::room_for_pairs. Throws: std::runtime_error if the budget is exhausted.
 class Room {
 public:
     explicit Room(std::uint64_t bytes) : left(bytes) {}
@@ -175,7 +175,7 @@ TEST(Scene, AStepThatHasNoRoomForItsPairsCanBeRepeated) {
         const StepResult& step = scene.step();
         EXPECT_EQ(step.pairs(), 3100u * 3099 / 2);
         EXPECT_EQ(step.began.size(), 3100u * 3099 / 2 - 4950);
-        EXPECT_GE(room.taken, 16 * step.pairs()) << "those of the list, and those that began";
+        EXPECT_GE(room.taken, 16 * step.pairs()) << "16 bytes per pair: in the list, and among those that began";
         EXPECT_LE(room.taken, 32 * step.pairs());
     }
 }

@@ -19,7 +19,7 @@
 
 namespace octopair::test {
 
-/// The boxes of a history: an endless sequence of a kind, or the boxes of one scene of a family in ever new orders.
+/// Boxes of a history: an endless sequence of a kind, or the boxes of one scene of a family, each time in a new order.
 class BoxSource {
 public:
     /// `name`: name of a kind or a family. `scene_objects`: number of boxes of a scene.
@@ -27,7 +27,8 @@ public:
         const auto families = family_names();
         is_family_ = std::find(families.begin(), families.end(), name) != families.end();
     }
-    /// Requires: called before the first next(). Boxes that are not float64 have coordinates that float32 holds.
+    /// Makes the first boxes. Without `float64`, all coordinates are float32 values. Requires: called before the first
+    /// next().
     void begin(bool float64, std::mt19937_64& random) {
         float64_ = float64;
         renew(random);
@@ -36,7 +37,7 @@ public:
         if (next_ == boxes_.size()) renew(random);
         return boxes_[next_++];
     }
-    /// Returns a clearance that matters in such a scene without joining all of it.
+    /// Returns a clearance that adds pairs, but does not make all objects pairs.
     double clearance() const { return is_family_ ? clearance_ : 0.5; }
 
 private:
@@ -75,7 +76,7 @@ private:
 
 /// The size of a history.
 struct HistorySize {
-    std::uint64_t objects = 320;  ///< at first, at most
+    std::uint64_t objects = 320;  ///< bound on the number of objects at first
     int steps = 25;
 };
 
@@ -105,7 +106,7 @@ public:
         for (int i = 0; i < size_.steps; ++i) {
             model_.check(scene_);
             if (::testing::Test::HasFatalFailure()) return;
-            // Pairs that nobody reads wait to be merged into the list.
+            // Reads the lists at some steps only, so that the list merges the changes of several steps at once.
             if (i + 1 == size_.steps || chance(0.5)) model_.check_lists(scene_);
             if (::testing::Test::HasFatalFailure()) return;
             settle();
@@ -132,7 +133,8 @@ private:
         if (with_traits_ && chance(0.3)) set_traits(random_() % most);
     }
 
-    /// Runs in some histories and at some steps only: queries may make an octree, which the next step does not use.
+    /// Checks queries in some histories and at some steps only: queries may build an octree, which the next step does
+    /// not use.
     void check_queries() {
         if constexpr (std::is_same_v<AnyScene, Scene>) {
             if (queried_ && chance(0.3)) QueryModel(model_, scene_, random_()).check();
@@ -191,7 +193,7 @@ private:
         std::vector<Box3d> boxes;
         for (const ObjectId id : ids) {
             Box3d box = next_box();
-            if (chance(0.5)) {  // a little
+            if (chance(0.5)) {  // a small move along x
                 box = model_.objects[id.index].box;
                 const double way = (box.max[0] - box.min[0]) * (double(random_() % 5) - 2) / 4;
                 box.min[0] += way;

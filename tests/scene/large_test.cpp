@@ -37,8 +37,8 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
         scenes.back().add(Objects{std::span<const Box3f>(boxes)}, ids);
     }
     std::mt19937 random(33);
-    // A scene decides by measured times whether a step is partial. A large scene takes more steps than usual until one step was
-    // partial. Few objects move in these additional steps.
+    // A scene decides by measured times whether a step is partial. If no usual step of a large scene was partial,
+    // further steps follow until a step is partial. Few objects move in these further steps.
     constexpr int usual_steps = 6, most_steps = 100;
     int partial = 0;
     for (int step = 0; step < usual_steps || (objects > 1000 && partial == 0 && step < most_steps); ++step) {
@@ -47,7 +47,8 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
             partial += scene.step().full ? 0 : 1;
             ASSERT_EQ(scene.pairs().to_vector(), expected) << "step " << step;
         }
-        // A twentieth move, half of them to the place of another, some of them twice. Two more grow over all, or shrink.
+        // In a usual step a twentieth of the objects move: half to new places, half onto another object, some twice.
+        // Objects 0 and 1 grow over all boxes, or shrink.
         const std::size_t moving = step < usual_steps ? boxes.size() / 20 : 1;
         std::vector<ObjectId> moved;
         std::vector<Box3f> to;
@@ -91,7 +92,8 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
     EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
 }
 
-/// Many objects move into a single place without octants. The step costs more than estimated, and the result stays right.
+/// Tests many objects that move out of the octree, where no octants divide them. The step costs more than estimated,
+/// and its result stays right.
 TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
     std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(30000, 4), 35);
     std::vector<ObjectId> ids(boxes.size());
@@ -101,7 +103,7 @@ TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
     const std::size_t leaving = boxes.size() / 10;
     for (std::size_t i = 0; i < leaving; ++i) {
         const float place = 10 + 2 * float(i);
-        boxes[i] = {{place, place, place}, {place + 2, place + 2, place + 2}};  // touches the next
+        boxes[i] = {{place, place, place}, {place + 2, place + 2, place + 2}};  // touches the next box
     }
     scene.move(std::span(ids).first(leaving), std::span<const Box3f>(boxes).first(leaving));
     scene.step();

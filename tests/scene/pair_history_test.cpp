@@ -31,7 +31,7 @@ protected:
         history_.take_over(changes);
         return changes;
     }
-    /// Returns the message of the Error that a call throws, empty if it throws none.
+    /// Returns the message of the Error that a call throws, or an empty text if the call succeeds.
     static std::string error_of(const std::function<void()>& call) {
         try {
             call();
@@ -50,7 +50,7 @@ protected:
         EXPECT_EQ(history_.size(), 3U);
         EXPECT_EQ(history_.list().to_vector(), (Pairs{{1, 2}, {3, 7}, {4, 5}}));
     }
-    /// Applies changes that are seen to be wrong when the list is made, and mends that with a full detection.
+    /// Applies changes whose error is found when the list is read. Then repairs the history with a full detection.
     void expect_inconsistent(const std::vector<PairChanges>& steps, const std::string& text) {
         for (const PairChanges& changes : steps) history_.apply(changes);
         for (int i = 0; i < 2; ++i) {

@@ -93,20 +93,20 @@ TEST(SceneQueries, ARayThatOnlyTouchesHits) {
     const std::vector<Box3d> boxes = {{{3, 1, 1}, {4, 2, 2}}, {{6, 2, 2}, {6, 2, 2}}, {{9, 3, 0}, {10, 3, 9}}};
     std::vector<ObjectId> ids(boxes.size());
     scene.add(Objects{std::span(boxes)}, ids);
-    // Along an edge of the first, through the second, which is a point.
+    // The ray runs along an edge of box 0, and through box 1, which is a point.
     EXPECT_EQ(scene.all_hits({{0, 2, 2}, {1, 0, 0}}), (std::vector<RayHit>{{0, 3}, {1, 6}}));
-    // From corner to corner, and into the border of the third, which is flat.
+    // The ray enters box 0 at a corner, passes through box 1, and hits the border of box 2, which is flat.
     EXPECT_EQ(scene.all_hits({{0, 0, 0}, {3, 1, 1}}), (std::vector<RayHit>{{0, 1}, {1, 2}, {2, 3}}));
-    // A segment that ends where the box begins, and one that ends before.
+    // The first segment ends where box 0 begins. The second segment ends before box 0.
     EXPECT_EQ(scene.all_hits({{0, 1.5, 1.5}, {3, 0, 0}, 1}), (std::vector<RayHit>{{0, 1}}));
     EXPECT_TRUE(scene.all_hits({{0, 1.5, 1.5}, {2.5, 0, 0}, 1}).empty());
-    // Backwards nothing is hit, and from within at once.
+    // A ray away from the boxes hits nothing. A ray that starts inside a box hits this box at 0.
     EXPECT_TRUE(scene.all_hits({{0, 1.5, 1.5}, {-1, 0, 0}}).empty());
     EXPECT_EQ(scene.first_hit({{3.5, 1.5, 1.5}, {0, 0, -1}}), (RayHit{0, 0}));
 }
 
-/// Points with integer coordinates that are 27 from (0, 0, 0), in the order of their coordinates, times 2^exponent and
-/// moved.
+/// Returns all points with integer coordinates at distance 27 from (0, 0, 0), in ascending order of their coordinates.
+/// Each coordinate c becomes (c + moved) * 2^exponent.
 std::vector<Box3d> points_of_a_sphere(int exponent, double moved) {
     std::vector<Box3d> points;
     for (int x = -27; x <= 27; ++x) {
@@ -144,7 +144,7 @@ TEST(SceneQueries, ASphereAndTheNearestFindExactlyEqualDistances) {
 }
 
 TEST(SceneQueries, TheNearestOfEqualRoundedDistancesComesFirst) {
-    // Both are reported as 1 away, but the first is 2^-81 farther.
+    // Both distances are reported as 1, but box 0 is 2^-81 farther.
     const std::vector<Box3d> boxes = {{{1, 0x1p-40, 0}, {1, 0x1p-40, 0}}, {{0, 1, 0}, {0, 1, 0}}};
     Scene scene({1, Precision::float64});
     std::vector<ObjectId> ids(boxes.size());

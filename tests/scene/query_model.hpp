@@ -15,8 +15,8 @@
 
 namespace octopair::test {
 
-/// Relation of a ray and a box, in higher precision than the library's. Nearly touching counts as `close`, where both
-/// answers are right.
+/// Relation of a ray and a box, in higher precision than the library's. `close`: the ray nearly touches the box, and
+/// both answers are right.
 enum class RayResult { miss, close, hit };
 
 inline RayResult cast(const Ray& ray, const Box3d& box, long double& along) {
@@ -60,7 +60,7 @@ private:
     double unit() { return std::uniform_real_distribution<>(0, 1)(random_); }
     Box3d object_box() { return all_.empty() ? Box3d{{0, 0, 0}, {1, 1, 1}} : all_[random_() % all_.size()]->box; }
 
-    /// Returns the box of an object, a corner of it, or a box that reaches from one object to another.
+    /// Returns the box of an object, a corner of a box, a point between two objects, or the box around two objects.
     Box3d random_box() {
         Box3d box = object_box();
         const Box3d other = object_box();
@@ -115,7 +115,7 @@ private:
 
         const std::vector<RayHit> hits = scene_.all_hits(ray, groups_);
         std::set<std::uint32_t> found;
-        for (const RayHit& hit : hits) ASSERT_TRUE(found.insert(hit.index).second) << "twice";
+        for (const RayHit& hit : hits) ASSERT_TRUE(found.insert(hit.index).second) << "the ray hits an object twice";
         ASSERT_TRUE(std::is_sorted(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
             return a.along != b.along ? a.along < b.along : a.index < b.index;
         }));

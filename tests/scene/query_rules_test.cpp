@@ -37,7 +37,7 @@ std::vector<Point> integer_points(int squared_radius) {
     return points;
 }
 
-/// Returns a box of zero extent at centre + point, all times 2^exponent.
+/// Returns a box of zero extent at (centre + point) * 2^exponent.
 Box3d scaled_box(const Point& point, const Point& centre, int exponent) {
     double at[3];
     for (unsigned axis = 0; axis < 3; ++axis) at[axis] = std::ldexp(point[axis] + centre[axis], exponent);
@@ -65,7 +65,8 @@ TEST(QueryRules, SpheresTouchEveryIntegerPointOnThem) {
     }
 }
 
-/// Random numbers of one kind: of a small grid at some scale, adjacent, of any bits, or at float64's limits.
+/// Random numbers of one kind: small integers, small integers times a power of 2, uniform from -1 to 1, any bits,
+/// special values of float64, or a mixture.
 class Numbers {
 public:
     explicit Numbers(std::mt19937_64& random)
@@ -153,7 +154,7 @@ TEST(QueryRules, DistancesCompareAsIntegersDo) {
         Numbers numbers(random);
         const Box3d place = numbers.box(), a = numbers.box();
         Box3d b = numbers.box();
-        if (i % 4 == 0) {  // As far away, or a hair's breadth from it.
+        if (i % 4 == 0) {  // distances to a and b are equal or nearly equal
             b = a;
             std::swap(b.min[2], b.min[i % 3]);
             std::swap(b.max[2], b.max[i % 3]);
@@ -184,7 +185,7 @@ TEST(QueryRules, AtTheEndsOfFloat64) {
 
     const Box3d least{{DBL_TRUE_MIN, 0, 0}, {1, 1, 1}}, edge{{DBL_TRUE_MIN, DBL_TRUE_MIN, 0}, {1, 1, 1}};
     EXPECT_EQ(distance(middle, least), DBL_TRUE_MIN);
-    EXPECT_EQ(distance(middle, edge), DBL_TRUE_MIN);  // 1.41 times that
+    EXPECT_EQ(distance(middle, edge), DBL_TRUE_MIN);  // exactly: 1.41 times DBL_TRUE_MIN
     EXPECT_EQ(compare_distances(middle, least, edge), -1);
     EXPECT_FALSE(overlap(Sphere{{0, 0, 0}, 0}, least));
     EXPECT_TRUE(overlap(Sphere{{0, 0, 0}, DBL_TRUE_MIN}, least));

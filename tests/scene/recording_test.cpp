@@ -146,7 +146,7 @@ std::vector<std::size_t> borders(const std::string& bytes) {
     return found;
 }
 
-/// Returns a record in the form of a recorder.
+/// Returns a record with a valid check and checksum, in the format of a recording.
 std::string record(std::uint32_t kind, const std::string& payload) {
     RecordHead head = {RecordKind(kind), 0, payload.size()};
     head.check = head.right_check();
@@ -228,7 +228,7 @@ TEST_F(Recording, ADifferenceIsFound) {
     EXPECT_NE(error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(counted)); })
                   .find("; recorded: " + std::to_string(counted.began) + " began"),
               std::string::npos);
-    EXPECT_EQ(replay_bytes(with(counted), {1, false}).steps, 3u);  // nobody asked
+    EXPECT_EQ(replay_bytes(with(counted), {1, false}).steps, 3u);  // results are not checked
 }
 
 TEST_F(Recording, WhereverItIsCutTheCallsBeforeAreMade) {
@@ -247,7 +247,7 @@ TEST_F(Recording, WhereverItIsCutTheCallsBeforeAreMade) {
         EXPECT_EQ(report.cut, std::find(ends.begin(), ends.end(), size) == ends.end());
         EXPECT_LE(report.steps, whole.steps);
         const auto records = std::uint64_t(std::upper_bound(ends.begin(), ends.end(), size) - ends.begin()) - 1;
-        // Of a step there are two records, if it ended.
+        // A step that ended has two records, an unfinished step has only the first.
         EXPECT_EQ(report.calls + 2 * report.steps - (report.unfinished ? 1 : 0), records);
     }
 }
@@ -331,7 +331,7 @@ TEST_F(Recording, ACallThatFailsIsNotInIt) {
     scene.move(ids, std::span(boxes));
     EXPECT_THROW((void)scene.step(stopped.get_token()), Error);
     (void)scene.step();
-    // The move, the step that was stopped, and the one after it.
+    // The records of the move, of the stopped step (its beginning), and of the next step (its beginning and result).
     EXPECT_EQ(content().size(), before + (record_overhead + 4 + 2 * 32) + 3 * record_overhead + sizeof(RecordedResult));
     const ReplayReport report = replay_bytes(content());
     EXPECT_EQ(report.calls, 2u);
@@ -346,7 +346,7 @@ TEST_F(Recording, IsThereBeforeAndAfterEachStep) {
     scene.add(Objects{std::span(boxes)}, ids);
     (void)scene.step();
     EXPECT_EQ(replay_bytes(content()).steps, 1u);
-    // As if the process had died in the step: its calls are there, and it is made again.
+    // The file after a crash in the step: the result is missing, and the replay repeats the step.
     const std::string died = content().substr(0, content().size() - record_overhead - sizeof(RecordedResult));
     const ReplayReport report = replay_bytes(died);
     EXPECT_TRUE(report.unfinished);
@@ -369,7 +369,7 @@ TEST_F(Recording, AScenesLastCallsAreInIt) {
 TEST_F(Recording, ReplacesWhatWasThere) {
     test::write_file(path(), std::string(10'000, 'x'));
     EXPECT_THROW(Scene({1, Precision::float32, -1, path()}), Error);
-    EXPECT_EQ(content().size(), 10'000u);  // not by a scene that is none
+    EXPECT_EQ(content().size(), 10'000u);  // a refused scene does not replace the file
     { Scene scene(options()); }
     EXPECT_EQ(content().size(), sizeof(RecordingHead));
 }
@@ -419,7 +419,7 @@ TEST_F(Recording, AFullDiskChangesNothing) {
         EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { scene.add(Objects{std::span(many)}, more); }), full);
         EXPECT_EQ(more.back(), ids[0]);
         EXPECT_EQ(scene.size(), 2u);
-        scene.move(ids, std::span(apart));  // which the buffer still holds
+        scene.move(ids, std::span(apart));  // still fits into the recorder's buffer
         EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { (void)scene.step(); }), full);
         EXPECT_EQ(scene.pairs().size(), 1u);
         EXPECT_EQ(replay_bytes(content()).steps, 1u);
@@ -449,7 +449,7 @@ TEST_F(Recording, AStepThatWasMadeStandsThoughItsResultIsWrittenLater) {
 }
 
 TEST_F(Recording, IsByteForByteWhatTheDocumentationShows) {
-    // Another form is another version (docs/formats.md), and this one is still read.
+    // A change of the format needs a new version (docs/formats.md), and this version must stay readable.
     const std::string example =
         "934f43544f5245430100000020000000000000000000000074368087592c9a7f010000008c3882db3c00000000000000"
         "0200000000000000000000000000000000000000000000000000803f0000803f0000803f0000803f0000000000000000"
@@ -473,7 +473,7 @@ TEST_F(Recording, IsByteForByteWhatTheDocumentationShows) {
 TEST_F(Recording, TheChecksumIsThatOfTheDocumentation) {
     Checksum sum;
     EXPECT_EQ(sum.value(), 0xdf442d22110c749bu);
-    // The same bytes in pieces are the same; their number and order count.
+    // The checksum does not depend on how the bytes are divided into pieces.
     const std::string text = "all of these bytes";
     sum.add(std::as_bytes(std::span(text)));
     EXPECT_EQ(sum.value(), 0x2689464b817b8a92u);

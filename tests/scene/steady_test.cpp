@@ -12,13 +12,13 @@
 namespace {
 
 std::atomic<std::uint64_t> allocations = 0;
-std::atomic<std::uint64_t> refused = ~std::uint64_t(0);  // the number of the allocation that gets no memory
+std::atomic<std::uint64_t> refused = ~std::uint64_t(0);  // index of the allocation that fails
 
 }  // namespace
 
 #ifndef OCTOPAIR_TEST_SANITIZED
-// The C library's functions under their other names: every allocation of this process comes by here, those of Buffer and
-// of operator new too. Large ones come from mmap, which is seen by the memory resident below.
+// These functions replace those of the C library. So every allocation of this process is counted, also those of Buffer
+// and operator new. Large allocations come from mmap; tests find them in the resident memory.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
@@ -66,7 +66,7 @@ private:
 
 TEST(SteadyScene, TakesNothingFromTheHeap) {
 #ifdef OCTOPAIR_TEST_SANITIZED
-    GTEST_SKIP() << "allocations are the sanitizer's";
+    GTEST_SKIP() << "the sanitizer replaces malloc";
 #endif
     constexpr std::uint64_t objects = 30'000;
     Swing swing(objects, 1);
@@ -85,7 +85,7 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
 /// Any allocation of a step may fail: the step throws, and a repeated step finds the same result.
 TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
 #ifdef OCTOPAIR_TEST_SANITIZED
-    GTEST_SKIP() << "allocations are the sanitizer's";
+    GTEST_SKIP() << "the sanitizer replaces malloc";
 #endif
     constexpr std::uint64_t objects = 3000;
     for (const std::uint64_t moved : {std::uint64_t(200), objects}) {

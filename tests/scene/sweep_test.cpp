@@ -34,11 +34,11 @@ TEST_F(FastBullet, HitsTheWallWhereItIsSwept) {
     const StepResult& through = scene_.step();
     ASSERT_EQ(through.began.size(), 1u);
     EXPECT_EQ(through.began[0], (Pair{0, 1}));
-    // Beyond the wall it leaves it, without a further call.
+    // In the next step the bullet is beyond the wall, without a further call.
     const StepResult& beyond = scene_.step();
     EXPECT_TRUE(beyond.began.empty());
     EXPECT_EQ(beyond.ended.size(), 1u);
-    // And its next way begins where it is.
+    // The next sweep begins at the bullet's present place.
     const Box3f further = bullet_at(6);
     scene_.sweep(bullet(), std::span(&further, 1));
     EXPECT_TRUE(scene_.step().began.empty());

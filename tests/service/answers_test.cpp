@@ -47,7 +47,7 @@ Found streamed(Engine& engine, std::span<const Box3f> boxes, Order order) {
     return {engine.stream_pairs({boxes, {}}, sink, {.order = order}).pairs, hash.value()};
 }
 
-/// A scene whose nested octrees once reported pairs twice; the client checks what it receives.
+/// Tests a scene whose nested octrees once reported pairs twice. With `verify`, the client checks the received pairs.
 TEST(ServedExactness, GivesEachPairOnce) {
     const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     const Served served;
@@ -64,7 +64,7 @@ class ServedHashes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ServedHashes, AreThoseOfThreads) {
     const test::Pinned& pinned = test::pinned_scene(GetParam());
-    if (test::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a second a call";
+    if (test::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a call takes a second under sanitizers";
     const std::vector<Box3f> boxes = samples::make_scene(GetParam(), pinned.objects, 1);
     const Found ascending{pinned.pairs, pinned.pair_hash};
     const Found octal = listed(*make_local_engine(2), boxes, Order::octal);
@@ -87,7 +87,7 @@ std::vector<std::string> sample_kinds() {
 
 INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
 
-/// Returns the answer to a call with the objects of a case, with the numbers of its summary.
+/// Returns the answer to a call with the objects of a case. The count and the truncation come from the call's summary.
 Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
     Options options;
     options.order = asked.order;

@@ -10,7 +10,7 @@ class Spares : public ::testing::Test {
 protected:
     static constexpr std::uint64_t many = 100'000;  // 2.4 MB
 
-    /// Returns the address of the boxes that are given back.
+    /// Gives an array of `count` boxes to the pool. Returns the address of its boxes.
     const Box3f* give(std::uint64_t count) {
         auto boxes = engine_->allocate_boxes<Box3f>(count);
         const Box3f* const place = boxes.boxes().data();

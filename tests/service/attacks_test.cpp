@@ -113,7 +113,7 @@ TEST_P(ServedAttacks, AnUploadOfAByteNowAndThen) {
                 return !call.write(test::upload_of(nullptr, data));
             },
             seconds(30));
-        EXPECT_TRUE(ended) << "goes on for ever";
+        EXPECT_TRUE(ended) << "the upload does not end";
         if (!ended) call.cancel();
         const grpc::Status status = call.finish();
         EXPECT_EQ(test::failure_in(status).limit(), "stall_seconds") << status.error_message();

@@ -22,7 +22,7 @@ using test::comes_true;
 using test::Gate;
 using test::Served;
 
-/// Sets timeouts so long that no stalled call ends.
+/// Puts the engines behind the gate. Sets the stall timeout so long that no stalled call ends.
 Served::Change patient(Gate& gate) {
     return [&gate](service::ServerOptions& options) {
         options.engine = test::gated_engines(gate);
@@ -33,7 +33,7 @@ Served::Change patient(Gate& gate) {
 
 class ServedCancel : public ::testing::Test {
 protected:
-    /// Stops a call on `boxes` when `reached` holds.
+    /// Cancels a job with `boxes` when `reached` holds. Expects that the job ends and its memory is freed.
     void expect_cancelled(const std::vector<Box3f>& boxes, const std::function<bool()>& reached) {
         const auto engine = served_.client();
         Job job = engine->submit(boxes);
@@ -145,7 +145,7 @@ public:
         (void)::kill(id_, SIGKILL);
         int status = 0;
         EXPECT_EQ(::waitpid(id_, &status, 0), id_);
-        EXPECT_TRUE(WIFSIGNALED(status)) << "it had ended before";
+        EXPECT_TRUE(WIFSIGNALED(status)) << "the client ended before it was killed";
         id_ = 0;
     }
 
@@ -193,7 +193,7 @@ TEST_F(ServedKilledClient, WhileItDoesNotReadItsResult) {
     client.stop();
     gate_.open();
     ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 0; }, minutes(1)));
-    EXPECT_GT(served_.load().memory_bytes, std::uint64_t(30) << 20) << "the result waits for its client";
+    EXPECT_GT(served_.load().memory_bytes, std::uint64_t(30) << 20) << "the unread result is not kept";
     client.kill();
     EXPECT_TRUE(served_.comes_to_rest());
     expect_serves();

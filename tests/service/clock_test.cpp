@@ -24,8 +24,8 @@ constexpr const char* fake_time = "/usr/lib/x86_64-linux-gnu/faketime/libfaketim
 class ServerClock : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
-        if (test::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before all else";
-        ASSERT_TRUE(std::filesystem::exists(fake_time)) << "package faketime";
+        if (test::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before libfaketime";
+        ASSERT_TRUE(std::filesystem::exists(fake_time)) << "install the package faketime";
         test::write_file(folder_.file("time"), "+0");
     }
     /// Returns the setting of a server whose clock this test changes.
@@ -72,7 +72,7 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
     EXPECT_EQ(job.state(), JobState::running);
     set_clock();
     EXPECT_EQ(job.summary().pairs, heap.size() * (heap.size() - 1) / 2);
-    // The default patience with uploads is a minute, which has not passed.
+    // By default an upload may stall for a minute, which has not passed.
     ASSERT_TRUE(upload.write(test::upload_of(nullptr, test::bytes_of_boxes(1000))));
     EXPECT_TRUE(upload.finish().ok());
     test::check_serves(server.address());
@@ -83,7 +83,7 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
 TEST_P(ServerClock, WhatTakesTooLongStillEnds) {
     ServerProgram& server = serve(" --max-seconds 3 --stall 3");
     const auto engine = connect(server.address(), {.patience = minutes(1)});
-    const std::vector<Box3f> heap(400'000);  // takes far longer than that
+    const std::vector<Box3f> heap(400'000);  // takes much longer than 3 s to count
     Job job = engine->submit_stream(heap, {});
     const auto channel = test::open_channel(server.address());
     const auto spec = test::spec_of(1000);

@@ -45,7 +45,7 @@ TEST_F(Drain, WaitsForNoUpload) {
     const auto call = stub.PrepareCall(&context, "/octopair.v1.Octopair/Detect", &queue);
     call->StartCall(nullptr);
     ASSERT_TRUE(queue.Next(&tag, &ok) && ok);
-    // The server has seen the call when it answers the next one of this connection.
+    // The server answers Describe, the next call of this connection, after it has received the call Detect.
     grpc::ClientContext other;
     octopair::v1::ServerDescription description;
     ASSERT_TRUE(octopair::v1::Octopair::NewStub(channel)->Describe(&other, {}, &description).ok());
@@ -90,7 +90,7 @@ TEST_F(Drain, CancelsWhatIsLeftAfterItsGrace) {
     ClientOptions hasty;
     hasty.patience = std::chrono::milliseconds(100);
     const auto engine = connect(address(), hasty);
-    // To count all pairs of so many equal boxes takes hours.
+    // Counting all pairs of a million equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     auto refused = std::async(std::launch::async,
                               [&] { return error_of(ErrorCode::engine_failed, [&] { engine->count_pairs({same}); }); });
@@ -110,7 +110,7 @@ constexpr const char* functions = R"(
             sleep 0.05
         done
     }
-    says() { for i in $(seq 1200); do grep -qs "$2" log$1 && return; sleep 0.05; done; echo "log$1 never says $2"; }
+    says() { for i in $(seq 1200); do grep -qs "$2" log$1 && return; sleep 0.05; done; echo "no $2 in log$1"; }
     )";
 
 class ServeProgram : public ProgramTest {

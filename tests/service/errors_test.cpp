@@ -44,7 +44,7 @@ protected:
 };
 
 TEST_F(ServedErrors, OfABoxWithItsIndexInEitherSet) {
-    for (const std::uint64_t objects : {std::uint64_t(40), std::uint64_t(60'000)}) {  // one message, and a stream
+    for (const std::uint64_t objects : {std::uint64_t(40), std::uint64_t(60'000)}) {  // one message; several messages
         for (const bool wide : {false, true}) {
             Scene scene("uniform", objects, 1);
             scene.first[objects / 2 + 3].min[1] = not_a_number;

@@ -32,7 +32,7 @@ std::vector<Pair> right_pairs(const std::vector<Box3f>& boxes) {
     return list.to_vector();
 }
 
-/// A job that streams. Its sink waits at a given number of pairs.
+/// A streamed job whose sink waits when `hold_from` pairs have arrived.
 class StreamedJob {
 public:
     StreamedJob(const ServerProgram& server, const std::vector<Box3f>& boxes, std::uint64_t hold_from)
@@ -173,8 +173,8 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     const auto begin = std::chrono::steady_clock::now();
     expect_right(large_, large_pairs_);
     const auto whole = std::chrono::steady_clock::now() - begin;
-    // Kill once in a job, at several moments. On a machine so busy that no attempt ends between two kills, many kills
-    // would be an error.
+    // Kills one worker per job, at several moments. With many kills per job, a busy machine might end no attempt
+    // between two kills, and the job would fail.
     for (int i = 0; i < 8 || (faults() < 1 && i < 1000); ++i) {
         const std::jthread killer([&] {
             std::this_thread::sleep_for(whole * (i % 4 + 1) / 5);

@@ -16,9 +16,9 @@ class Gate {
 public:
     void open();
     void close();
-    /// Waits until the gate opens. Throws: Error{cancelled} if stopped meanwhile.
+    /// Waits until the gate opens. Throws: Error{cancelled} if `stop` is requested before.
     void pass(const std::stop_token& stop);
-    /// Waits until `waiting` calls are at the gate, for a minute at most.
+    /// Waits until `waiting` calls are at the gate, for a minute at most. Returns false if the minute ended first.
     bool wait_for(unsigned waiting);
 
 private:

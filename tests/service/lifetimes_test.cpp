@@ -24,7 +24,7 @@ protected:
     Gate gate_;
     Served served_{[this](service::ServerOptions& options) {
         options.engine = test::gated_engines(gate_);
-        options.engine_widths.instant = 0;  // a gate would hold gRPC itself
+        options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
         options.stall = std::chrono::hours(10);
     }};
     const std::vector<Box3f> few_ = test::make_boxes("dense", 100, 1);
@@ -54,7 +54,7 @@ TEST_F(ServedLifetimes, AServerEndsWithItsCalls) {
         served_.stop();
         for (const Job* one : {&job, &small}) {
             ASSERT_TRUE(one->wait_for(minutes(1)));
-            EXPECT_NE(one->state(), JobState::cancelled) << "nobody cancelled it";
+            EXPECT_NE(one->state(), JobState::cancelled) << "no client cancelled the job";
         }
         gate_.close();
         served_.start();

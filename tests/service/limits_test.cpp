@@ -65,7 +65,7 @@ TEST(ServedLimits, OfObjectsThatNoMachineHas) {
             for (const bool join : {false, true}) {
                 auto spec = test::spec_of(objects);
                 if (join) spec.mutable_second()->set_objects(largest64 - objects + 2);
-                SCOPED_TRACE(std::to_string(objects) + (join ? " and as many as wrap around" : ""));
+                SCOPED_TRACE(std::to_string(objects) + (join ? " and a second set; the sum overflows" : ""));
                 test::RawCall call(channel);
                 (void)call.write(test::upload_of(&spec, test::bytes_of_boxes(1)));
                 const grpc::Status status = call.finish();
@@ -99,7 +99,7 @@ TEST(ServedLimits, OfPairsKept) {
 
 TEST(ServedLimits, OfMemory) {
     const Served served(limited([](auto& limits) { limits.memory_bytes = 8'000'000; }));
-    const std::vector<Box3f> many(100'000), crowd(2000);  // the pairs of `crowd` are too large
+    const std::vector<Box3f> many(100'000), crowd(2000);  // the pairs of `crowd` exceed the limit
     expect_refused("memory_bytes", 8'000'000, [&] { (void)count(served, many); });
     EXPECT_TRUE(served.comes_to_rest());
     PairList list;
@@ -114,7 +114,7 @@ protected:
     Served serve(const std::function<void(service::ServerLimits&)>& change) {
         return Served([&](service::ServerOptions& options) {
             options.engine = test::gated_engines(gate_);
-            options.engine_widths.instant = 0;  // a gate would hold gRPC itself
+            options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
             options.stall = std::chrono::hours(10);
             change(options.limits);
         });

@@ -24,7 +24,7 @@ protected:
         for (std::string line; std::getline(in, line);) lines.push_back(line);
         return lines;
     }
-    /// Waits for an event with the given message.
+    /// Waits for an event with the given message, for a minute at most. Returns the event, or null.
     json event(const std::string& message) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (std::chrono::steady_clock::now() < end) {

@@ -96,7 +96,7 @@ TEST(Messages, AreThoseOfTheExample) {
               "7A080000000001000000");
 }
 
-/// Accepts no input.
+/// Ignores all input.
 struct NoInput : service::InputTarget {
     void append(std::span<const std::byte>) override {}
     std::uint64_t missing() const override { return 0; }

@@ -1,4 +1,4 @@
-// Reads the metrics page of a server in the test's process. The server's log contains the address of the page.
+// Reads the metrics page of a server on this machine. The server's log contains the address of the page.
 #pragma once
 
 #include <netinet/in.h>
@@ -18,7 +18,7 @@ inline std::shared_ptr<spdlog::logger> log_to(std::ostringstream& log) {
     return service::make_log(service::LogForm::text, std::make_shared<spdlog::sinks::ostream_sink_mt>(log));
 }
 
-/// Returns the metrics page of the server with this log, empty if there is none.
+/// Returns the metrics page of the server with this log, or an empty text if the page cannot be read.
 inline std::string metrics_page(const std::string& log) {
     const std::string before = "metrics at http://localhost:";
     const std::size_t found = log.find(before);
@@ -39,7 +39,7 @@ inline std::string metrics_page(const std::string& log) {
     return answer;
 }
 
-/// Waits until the page contains a line.
+/// Waits for a minute at most until the page contains `line`.
 inline ::testing::AssertionResult page_has(const std::ostringstream& log, const std::string& line) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < end) {

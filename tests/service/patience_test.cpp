@@ -63,7 +63,7 @@ TEST(ServedPatience, EndsWhenAServerStaysAway) {
     test::Gate gate;
     Served served([&](service::ServerOptions& options) {
         options.engine = test::gated_engines(gate);
-        options.engine_widths.instant = 0;  // a gate would hold gRPC itself
+        options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
     });
     const auto engine = served.client(milliseconds(500));
     Job job = engine->submit(test::touching_boxes);
@@ -72,7 +72,7 @@ TEST(ServedPatience, EndsWhenAServerStaysAway) {
     EXPECT_EQ(test::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
     served.start();
     gate.open();
-    // With so little patience, a call may miss the server again.
+    // With a patience of 500 ms, a call may end again before the server answers.
     const auto answers = [&] {
         std::uint64_t pairs = 0;
         (void)test::code_of([&] { pairs = engine->count_pairs(test::objects_of(test::touching_boxes)); });

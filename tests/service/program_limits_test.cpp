@@ -47,7 +47,7 @@ TEST(ServerProgramLimits, OfAddressSpace) {
     test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});
     server.limit_memory(std::uint64_t(300) << 20);
-    const std::vector<Box3f> many(20'000'000), crowd(20'000);  // 480 MB; 1.6 GB of pairs
+    const std::vector<Box3f> many(20'000'000), crowd(20'000);  // 480 MB of boxes; 1.6 GB of pairs
     const auto too_many = [&] { (void)engine->count_pairs({std::span(many), {}}, {.limit = 1}); };
     PairList list;
     const auto too_crowded = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list); };
@@ -60,7 +60,7 @@ TEST(ServerProgramLimits, OfAddressSpace) {
 }
 
 TEST(ServerProgramLimits, OfPairsThatArePutInOrder) {
-    if (test::sanitized) GTEST_SKIP() << "the sanitizer's own memory counts";
+    if (test::sanitized) GTEST_SKIP() << "the memory of the sanitizer would count";
     ServerProgram server({.arguments = "--engine local --threads 1 --max-memory 64M"});
     test::check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});

@@ -45,7 +45,7 @@ bool RawCall::step() {
     if (queue_.AsyncNext(&tag, &ok, deadline) != grpc::CompletionQueue::GOT_EVENT) {
         context_.TryCancel();
         (void)queue_.Next(&tag, &ok);
-        throw std::runtime_error("a call stands still");
+        throw std::runtime_error("a step of the call took longer than a minute");
     }
     return ok;
 }

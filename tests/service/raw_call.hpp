@@ -1,4 +1,4 @@
-// Calls message by message, without octopair's client: any bytes, in any order.
+// Calls that send any bytes in any order, message by message, without octopair's client.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -19,7 +19,7 @@ namespace octopair::test {
 /// Opens a separate connection.
 std::shared_ptr<grpc::Channel> open_channel(const std::string& address);
 
-/// A stream. Every step waits for its completion, for a minute at most.
+/// A streaming call. Every step waits for its completion. Throws: std::runtime_error if a step takes over a minute.
 class RawCall {
 public:
     explicit RawCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method = "Detect");

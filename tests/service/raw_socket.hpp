@@ -16,7 +16,7 @@ public:
     explicit RawSocket(const std::string& address);
 
     int number() const { return socket_.number(); }
-    /// Sends bytes. Returns false if the peer is gone, or accepts nothing for five seconds.
+    /// Sends bytes. Returns false if the peer is gone, or does not accept all bytes within five seconds.
     bool send(std::string_view bytes) const;
     /// Returns the bytes received until the peer closes or `most` has passed.
     std::string receive(std::chrono::milliseconds most);

@@ -6,7 +6,7 @@ namespace {
 
 class ServeOptions : public ProgramTest {
 protected:
-    /// Returns the message about a file of these lines. The program exits before it listens.
+    /// Returns the error message for a configuration file with these lines. Expects that the program does not listen.
     std::string refused(const std::string& lines, int status = 2) const {
         write_file(file("c.toml"), lines);
         const Outcome outcome = run("serve --config c.toml --listen unix:socket");
@@ -14,7 +14,7 @@ protected:
         EXPECT_FALSE(std::filesystem::exists(file("socket"))) << lines;
         return outcome.err;
     }
-    /// Runs the server until it has started.
+    /// Starts the server, waits until its socket exists, and stops the server.
     Outcome served(const std::string& arguments) const {
         return shell("\"$P\" serve " + arguments + R"( 2>log & child=$!
             for i in $(seq 1200); do

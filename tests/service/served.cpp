@@ -49,7 +49,7 @@ void check_serves(const std::string& address) {
 void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call) {
     try {
         call();
-        ADD_FAILURE() << "was not refused, though beyond " << limit;
+        ADD_FAILURE() << "the call was not refused beyond the limit " << limit;
     } catch (const Error& error) {
         const std::string words = error.what();
         EXPECT_EQ(int(error.code()), int(ErrorCode::resource_limit)) << words;

@@ -38,7 +38,7 @@ private:
     std::unique_ptr<service::Server> server_;
 };
 
-/// Throws: Error if a job of a few objects does not find its pairs.
+/// Expects that a job of three boxes finds its pair. Throws: the job's Error.
 void check_serves(const std::string& address);
 
 /// Fails the test unless `call` throws Error{resource_limit} with the name and value of the limit.

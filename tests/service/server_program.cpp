@@ -29,7 +29,7 @@ void ServerProgram::start() {
     std::string shell = "sh", option = "-c", command = line;
     char* const words[] = {shell.data(), option.data(), command.data(), nullptr};
     if (::posix_spawn(&id_, "/bin/sh", nullptr, nullptr, words, environ) != 0)
-        throw std::runtime_error("no process can be started");
+        throw std::runtime_error("cannot start a process");
 }
 
 bool ServerProgram::lives() {

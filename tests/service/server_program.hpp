@@ -15,7 +15,7 @@ class ServerProgram {
 public:
     struct Setting {
         std::string arguments = "--engine local --threads 2";
-        std::string before = {};       ///< of the command in sh: "ulimit -n 40;"
+        std::string before = {};       ///< shell commands to run first, for example "ulimit -n 40;"
         std::string environment = {};  ///< "NAME=VALUE ..."
     };
 
@@ -37,10 +37,11 @@ public:
     void kill_and_restart();
     /// Returns the output of all runs of the server.
     std::string log() const { return test::read_file(folder_.file("log")); }
-    /// Return resident memory in bytes, and the number of open descriptors. Both are 0 if the server does not run.
+    /// Returns the resident memory in bytes, 0 if the server does not run.
     std::uint64_t memory() const;
     /// Limits further memory mappings to `more` bytes.
     void limit_memory(std::uint64_t more) const;
+    /// Returns the number of open descriptors, 0 if the server does not run.
     std::size_t descriptors() const;
 
 private:

@@ -13,7 +13,7 @@ using service::most_small_objects;
 using service::piece_bytes;
 using test::Served;
 
-/// Makes `crowd` boxes at one place, which all form pairs with each other, then boxes apart.
+/// Returns `objects` boxes. The first `crowd` boxes are equal, and the others touch no box.
 std::vector<Box3f> boxes_with(std::uint64_t objects, std::uint64_t crowd) {
     std::vector<Box3f> boxes;
     boxes.reserve(objects);
@@ -57,7 +57,7 @@ TEST(ServedSizes, OfInputsAtTheBordersOfPieces) {
 TEST(ServedSizes, OfInputsThatFillPiecesToTheByte) {
     const Served served;
     const auto remote = served.client();
-    // 32 bytes an object: boxes and paddings meet within a piece, and pieces end with the input.
+    // Each object has 32 bytes. So boxes and paddings meet within a piece, and the last piece ends with the input.
     for (const std::uint64_t objects :
          {piece_bytes / 32 - 1, piece_bytes / 32, piece_bytes / 32 + 1, piece_bytes / 16}) {
         SCOPED_TRACE(objects);

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Runs a command with a server of its own: with_server.sh PROGRAM COMMAND [ARGUMENT...]     @ADDRESS@ becomes its address
+# Starts a server, runs a command, and stops the server. In the arguments, @ADDRESS@ stands for the server's address.
+#
+#     with_server.sh PROGRAM COMMAND [ARGUMENT...]
 set -euo pipefail
 program=$1
 shift

@@ -22,7 +22,7 @@ std::uint64_t object_count(const std::string& kind, RandomStream& random) {
     return random.below(bound);
 }
 
-/// Returns the size of a typical box, so that margins and paddings matter but do not join everything.
+/// Returns the extent of a typical box. Clearances of this extent add pairs, but do not make all objects pairs.
 double usual_extent(const OwnedObjects& objects) {
     double extent = 0;
     const auto measure = [&](const auto& boxes) {
@@ -47,7 +47,7 @@ double clearance(double extent, RandomStream& random) {
         case 2:
             return extent * random.uniform();
         default:
-            return double(random.below(3)) / 2;  // on a lattice: exactly as far as a neighbour
+            return double(random.below(3)) / 2;  // on a lattice, exactly the distance of a neighbour
     }
 }
 

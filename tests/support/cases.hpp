@@ -3,7 +3,7 @@
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed> makes every property test run that case only.
 // Soak:   OCTOPAIR_TEST_CASES=<number> sets the number of cases of each kind.
 //         OCTOPAIR_TEST_SHARE=<per cent> sets a share of the default number.
-//         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> set the numbers for the tests of exactness.
+//         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> set the numbers for exactness tests.
 #pragma once
 
 #include <optional>
@@ -26,10 +26,10 @@ struct OwnedObjects {
 /// A random call: its objects and options.
 struct Case {
     OwnedObjects first;
-    std::optional<OwnedObjects> second;  ///< of a join
+    std::optional<OwnedObjects> second;  ///< second set of a join
     double margin = 0;
-    std::uint64_t limit = 0;         ///< for the calls with a limit; may be more than there are
-    std::uint64_t buffer_bytes = 0;  ///< for the calls that stream
+    std::uint64_t limit = 0;         ///< for calls with a limit; may exceed the number of pairs
+    std::uint64_t buffer_bytes = 0;  ///< for calls that stream
     unsigned threads[3] = {};        ///< 1 to 8
 
     std::string describe() const;
@@ -53,8 +53,8 @@ struct SceneRange {
     SceneRange part(std::uint64_t i, std::uint64_t parts) const;
 };
 enum class SceneSize : std::uint8_t { small, large };
-/// Returns `usual` scenes (fewer under sanitizers), the number that the environment sets, or the scene of
-/// OCTOPAIR_TEST_SEED only.
+/// Returns `usual` scenes, the number of scenes that the environment sets (fewer under sanitizers), or only the scene
+/// of OCTOPAIR_TEST_SEED.
 SceneRange scene_range(SceneSize size, std::uint64_t usual);
 
 }  // namespace octopair::test

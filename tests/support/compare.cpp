@@ -8,7 +8,7 @@ namespace octopair::test {
 
 namespace {
 
-/// Prints a box in hexadecimal, so that a test can hold it unchanged.
+/// Prints a box in hexadecimal, so that the exact values can be copied into a test.
 std::string describe(const Objects& objects, std::uint32_t index) {
     std::ostringstream text;
     text << std::hexfloat << index << " {";
@@ -36,15 +36,15 @@ std::vector<Pair> missing_from(const std::vector<Pair>& list, const std::vector<
     if (found == expected) return ::testing::AssertionSuccess();
     auto failure = ::testing::AssertionFailure();
     failure << found.size() << " pairs, not " << expected.size();
-    if (!std::is_sorted(found.begin(), found.end())) return failure << "; they are not ascending";
-    if (std::adjacent_find(found.begin(), found.end()) != found.end()) return failure << "; some come twice";
+    if (!std::is_sorted(found.begin(), found.end())) return failure << "; the pairs are not ascending";
+    if (std::adjacent_find(found.begin(), found.end()) != found.end()) return failure << "; some pairs occur twice";
     const auto show = [&](const char* what, const std::vector<Pair>& pairs) {
         if (pairs.empty()) return;
         failure << "\n  " << what << ": " << pairs.size() << ", the first " << describe(where.first, pairs[0].a)
                 << " with " << describe(where.second ? *where.second : where.first, pairs[0].b);
     };
     show("missing", missing_from(found, expected));
-    show("too many", missing_from(expected, found));
+    show("unexpected", missing_from(expected, found));
     return failure;
 }
 

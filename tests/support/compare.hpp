@@ -1,4 +1,4 @@
-// Comparisons of lists, files and boxes that report where two of them differ.
+// Comparisons of sequences and lists of pairs that report the first difference.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ struct Searched {
     const Objects* second = nullptr;
 };
 
-/// Succeeds if both lists hold the same pairs. Otherwise reports the number of differences and the first missing or
-/// extra pair. Requires: both lists are ascending.
+/// Succeeds if both lists hold the same pairs. Otherwise reports the numbers of missing and unexpected pairs, and the
+/// first of each. Fails if `found` is not ascending or has a pair twice. Requires: `expected` is ascending.
 ::testing::AssertionResult same_pairs(const std::vector<Pair>& found, const std::vector<Pair>& expected,
                                       const Searched& where);
 

@@ -62,7 +62,7 @@ Boxes3d repeat(std::uint64_t count, Next&& next) {
     return boxes;
 }
 
-/// Sizes over a factor of 16 to 64, with a different typical size on each axis.
+/// Sizes over a factor of 4 to 64, times a random factor of 0.3 to 1.3, with a different typical size on each axis.
 Boxes3d anisotropic(Draw& draw) {
     Point typical;
     for (double& side : typical) side = draw.spacing() * draw.power_of_two(-4, 1);
@@ -128,7 +128,7 @@ public:
     Box3d vertex(std::uint64_t u, std::uint64_t v) const {
         return around(at(u, v), {thickness_, thickness_, thickness_});
     }
-    /// Returns the box of either triangle of a cell.
+    /// Returns the box of the upper or the lower triangle of a cell.
     Box3d face(std::uint64_t u, std::uint64_t v, bool upper) const {
         const auto bare = [&](std::uint64_t i, std::uint64_t k) { return around(at(i, k), {0, 0, 0}); };
         const Box3d diagonal = hull(bare(u + 1, v), bare(u, v + 1));
@@ -181,7 +181,7 @@ Boxes3d swept(Draw& draw) {
     });
 }
 
-/// Whole numbers: borders, ends and octants coincide exactly. Coordinates are in units, not in the unit cube.
+/// Integer coordinates, so that the faces of boxes and octants coincide exactly. The world is not the unit cube.
 Boxes3d lattice(Draw& draw) {
     const double cells = std::max(1.0, std::floor(draw.random.uniform(0.7, 2) / draw.spacing()));
     const std::uint64_t longest = 2 + draw.random.below(3);
@@ -220,7 +220,7 @@ Boxes3d nested_clusters(Draw& draw) {
     });
 }
 
-/// Returns the number of world-sized objects for which the pairs of each object stay few.
+/// Returns a number of world-sized objects, at most 1 + 4 * sqrt(objects), so that the average object has few pairs.
 std::uint64_t world_sized(Draw& draw) {
     const double most = 1 + 4 * std::sqrt(double(draw.objects));
     return std::min(draw.objects, std::uint64_t(draw.random.uniform(0, most)));
@@ -284,7 +284,7 @@ Boxes3d flat(Draw& draw) {
     });
 }
 
-/// Piles of equal boxes, and rows of boxes within them.
+/// Piles of 1 to 30 equal boxes.
 Boxes3d piles(Draw& draw) {
     const double size = draw.spacing() * draw.power_of_two(-1, 1);
     Boxes3d boxes;

@@ -10,7 +10,7 @@
 namespace {
 
 [[noreturn]] void refuse(std::string_view name) {
-    std::fprintf(stderr, "OCTOPAIR_TEST_INSTRUCTIONS: %s is not a name of instructions\n", name.data());
+    std::fprintf(stderr, "OCTOPAIR_TEST_INSTRUCTIONS: %s is not the name of an instruction set\n", name.data());
     std::exit(2);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using samples::RandomStream;
 
-/// Places an object of a kind, in either precision.
+/// Function that makes a random box of a kind.
 template <typename Real>
 using MakeBox = Box<Real> (*)(RandomStream&);
 
@@ -47,7 +47,7 @@ Box<Real> duplicates(RandomStream& random) {
     return lattice<Real>(few);
 }
 
-/// Zero extent on `axes` of the three axes, in a random order of the axes. Coordinates repeat.
+/// Zero extent on `axes` of the three axes, from a random axis on. Coordinates repeat.
 template <typename Real, int axes>
 Box<Real> collapsed(RandomStream& random) {
     Box<Real> box;
@@ -72,7 +72,7 @@ Box<Real> giants(RandomStream& random) {
     return span_box<Real>(low, extent);
 }
 
-/// Corners on fractions of powers of two, which are borders of octants, or on the next number on either side.
+/// Coordinates k / 2^n, which are borders of octants, or the next number above or below.
 template <typename Real>
 Box<Real> borders(RandomStream& random) {
     const auto border = [&] {
@@ -137,7 +137,7 @@ Box<Real> largest(RandomStream& random) {
     return box;
 }
 
-/// A world of size 64, at 10 million on every axis: in float32 all coordinates are whole numbers.
+/// A world of size 64, at 10 or -10 million on every axis: in float32 all coordinates are whole numbers.
 template <typename Real>
 Box<Real> far_origin(RandomStream& random) {
     double low[3], extent[3];
@@ -159,7 +159,7 @@ Box<Real> decades(RandomStream& random) {
     return span_box<Real>(low, extent);
 }
 
-/// All objects in a plane, line or point of the world, except for an object far away.
+/// One object in 40 is a point far away, at up to a quarter of the largest number. All others are near the unit cube.
 template <typename Real>
 Box<Real> outliers(RandomStream& random) {
     if (random.below(40) == 0) {

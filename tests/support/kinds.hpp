@@ -17,7 +17,7 @@ std::vector<std::string> all_kind_names();
 /// Makes valid boxes. A pure function of its arguments.
 std::vector<Box3f> make_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
 
-/// Makes float64 boxes of the same kind, with the full precision or range of float64 if the kind tests precision or range.
+/// Makes float64 boxes of a kind, with the full precision or range of float64 if the kind tests precision or range.
 std::vector<Box3d> make_double_boxes(const std::string& kind, std::uint64_t objects, std::uint64_t seed);
 
 std::vector<Box3d> widened(const std::vector<Box3f>& boxes);

@@ -11,7 +11,8 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
-/// Debian's libtbb is not instrumented: the thread sanitizer cannot see how it orders tasks.
+/// True in builds with ThreadSanitizer. ThreadSanitizer cannot see how oneTBB orders tasks, because Debian's libtbb is
+/// not instrumented.
 #if defined(__SANITIZE_THREAD__)
 inline constexpr bool thread_sanitized = true;
 #elif defined(__has_feature)

@@ -1,5 +1,5 @@
-// Tests the second algorithm against brute force, on random calls of every kind and on boxes at the limits of the
-// number range.
+// Tests RowSearch, the second algorithm, against brute force, on random calls of every kind and on boxes at the limits
+// of the number range.
 #include "verification/row_search.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::vector<Pair> found_by(const RowSearch& search) {
     return pairs;
 }
 
-/// Expects the right answer for each single pair of objects as well.
+/// Expects that is_pair() returns true for exactly the given pairs.
 void expect_judged(const RowSearch& search, const std::vector<Pair>& pairs) {
     std::vector<Pair> judged;
     for (std::uint32_t a = 0; a < search.rows(); ++a) {
@@ -66,7 +66,7 @@ TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
 
-/// Returns all boxes with corners among a few numbers.
+/// Returns a box for each two numbers low <= high: [low, high] on x and y, and [-high, -low] on z.
 template <typename Real>
 std::vector<Box<Real>> boxes_among(const std::vector<Real>& numbers) {
     std::vector<Box<Real>> boxes;
@@ -124,7 +124,7 @@ TEST(RowSearch, StopsWhenAsked) {
     Team team(1);
     try {
         const RowSearch search({{std::span<const Box3f>(boxes), {}}, nullptr, 0}, team, stop.get_token());
-        FAIL() << "went on";
+        FAIL() << "RowSearch ignored the stop request";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
     }

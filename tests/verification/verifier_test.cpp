@@ -14,7 +14,7 @@
 namespace octopair::test {
 namespace {
 
-/// Objects, their pairs in ascending order, and a second order in place of the octal order.
+/// Objects, their pairs in ascending order, and the pairs in a random order in place of the octal order.
 struct Scene {
     Scene(std::uint64_t objects, bool with_second)
         : boxes(test::make_boxes("dense", objects, 3)), more(test::make_boxes("dense", objects / 2, 4)) {
@@ -40,7 +40,7 @@ struct Result {
     std::vector<Pair> pairs;
     bool truncated = false;
     std::optional<std::uint64_t> limit = {};
-    bool list = false;  ///< the pairs are at hand at the end
+    bool list = false;  ///< the verifier also gets the whole list at the end
     std::size_t piece = 7;
     unsigned threads = 1;
 };
@@ -194,10 +194,10 @@ TEST_P(VerifierOf, ChecksALimitedResult) {
         result.truncated = !result.truncated;
         if (limit == 0 || limit >= all) continue;
         result.pairs.pop_back();
-        EXPECT_NE(said(result), "") << limit << ": one less than the limit";
+        EXPECT_NE(said(result), "") << limit << ": a pair is missing";
         if (limit < 2) continue;
         result.pairs.insert(result.pairs.begin() + std::ptrdiff_t(limit / 2), result.pairs[limit / 4]);
-        EXPECT_NE(said(result), "") << limit << ": one given twice";
+        EXPECT_NE(said(result), "") << limit << ": a pair is given twice";
         if (!ascending()) continue;
         result = right();
         result.limit = limit;
@@ -276,7 +276,7 @@ TEST(Verifier, FindsAnInvalidBoxThatWasNotRefused) {
     Verifier verifier({.objects = {objects, nullptr, 0}, .kind = ResultKind::count});
     try {
         (void)verifier.finish({0, false});
-        FAIL() << "passed";
+        FAIL() << "the verifier accepted the result";
     } catch (const Error& error) {
         EXPECT_STREQ(error.what(),
                      "verification failed: the box of object 40 is not valid, but the engine accepted it");

@@ -1,4 +1,4 @@
-// A program that uses a library which uses octopair's worker processes.
+// A program that links a library. The library uses octopair's worker processes.
 #include <cstddef>
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-// Tests results: reads from any offset of an unchanged result, then cancel, release, and the retention time.
+// Tests results of detached jobs: reads from any offset, release, the retention time, and a restart of the server.
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
@@ -21,7 +21,7 @@ protected:
         std::string hash;
     };
 
-    /// Returns the answer of the call Result. Throws: its status.
+    /// Makes the call Result and returns its answer. Throws: the Error of the call's status.
     Answer ask(const std::string& id, std::uint64_t offset, const std::string& hash = {}) {
         v1::ResultRequest request;
         request.set_id(id);
@@ -59,7 +59,7 @@ protected:
 TEST_F(Collected, ComesFromAnyPlaceOn) {
     const std::string id = done();
     const std::vector<Pair> all = pairs_here(work_);
-    ASSERT_GT(all.size(), 3u * 131072);  // pieces
+    ASSERT_GT(all.size(), 3u * 131072);  // more than three pieces
     const std::string hash = ask(id, 0).hash;
     for (const std::uint64_t offset :
          {std::uint64_t(0), std::uint64_t(1), std::uint64_t(131071), std::uint64_t(131072), std::uint64_t(200001),

@@ -24,7 +24,7 @@ TEST(Drained, WaitsForWhatRuns) {
 TEST(Drained, LeavesWhatOutlastsItsGrace) {
     ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
     const auto client = host.client();
-    // To count all pairs of so many equal boxes takes hours.
+    // Counting all pairs of a million equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     Work work(Objects{std::span(same), {}});
     work.terms.count_only = true;

@@ -11,7 +11,8 @@
 namespace octopair::test {
 namespace {
 
-/// Mounts a disk of 3 MB at a folder, for this process only. Returns the reason if mounting is not permitted.
+/// Mounts a disk of 3 MB at a folder, for this process only. Returns the reason if that is not permitted, or an empty
+/// text.
 std::string mount_small_disk(const std::string& folder) {
     std::filesystem::create_directory(folder);
     if (::unshare(CLONE_NEWNS) == 0 && ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&

@@ -62,7 +62,7 @@ public:
         return std::make_unique<JobClient>(address(), options);
     }
 
-    /// Returns the files of jobs in the state folder.
+    /// Returns the files in the state folder whose names end with `ending`, except the lock.
     std::vector<std::string> files(const std::string& ending = {}) const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(state())) {

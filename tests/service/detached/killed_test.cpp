@@ -67,7 +67,7 @@ TEST(Killed, LosesAndRepeatsNothing) {
     ServeProgram server;
     JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
     const std::vector<Box3f> heap(scaled(4000, 2));  // 64 MB of pairs
-    // Takes seconds. Builds with test hooks check each counted pair.
+    // Counting takes seconds. Builds with test hooks check each counted pair, so their crowd is smaller.
     const std::vector<Box3f> crowd(has_test_hooks ? scaled(50'000, 2) : 150'000);
     const std::vector<Box3f> scene = make_boxes("dense", scaled(400'000, 10), 1);
     const Work of_heap(Objects{std::span(heap), {}}), of_scene(Objects{std::span(scene), {}});

@@ -26,7 +26,7 @@ TEST_F(JobProgramTest, WritesWhatDetectWrites) {
                             ") && \"$P\" result $id --release --quiet --output there." + ending + " && \"$P\" detect " +
                             what + " --quiet --output here." + ending + " && cmp " + files + " && \"$P\" status");
             EXPECT_EQ(outcome.status, 0) << what << outcome.err;
-            EXPECT_EQ(outcome.out, "") << "a job is there still";
+            EXPECT_EQ(outcome.out, "") << "the job was not released";
         }
     }
 }
@@ -77,7 +77,7 @@ TEST_F(JobProgramTest, TellsWhatWasCancelled) {
     EXPECT_EQ(outcome.err, "octopair: job " + id + " was cancelled\n");
     const Outcome released = with_server("\"$P\" cancel --release " + id + "; \"$P\" status");
     EXPECT_EQ(released.status, 0) << released.err;
-    EXPECT_EQ(released.out, id + "  cancelled, 200,000 objects\n") << "a job is there still";
+    EXPECT_EQ(released.out, id + "  cancelled, 200,000 objects\n") << "the job was not released";
 }
 
 TEST_F(JobProgramTest, SaysWhatIsWrong) {

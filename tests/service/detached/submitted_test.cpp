@@ -1,5 +1,5 @@
-// Tests jobs that are submitted and collected. Every call finds the pairs of the local engine, and each name runs one
-// job only.
+// Tests jobs that are submitted and collected. Every call finds the pairs of the local engine, and each id runs only
+// one job.
 #include "service/detached/host.hpp"
 #include "support/compare.hpp"
 

@@ -1,5 +1,5 @@
-// Tests jobs that wait for their turn or for memory. Such jobs can be cancelled, waited for, or unfinished when the
-// server ends.
+// Tests jobs that wait for their turn or for memory. Callers can cancel such jobs or wait for them. The next server
+// runs the jobs that a server left unfinished.
 #include <atomic>
 #include <thread>
 
@@ -10,7 +10,7 @@
 namespace octopair::test {
 namespace {
 
-/// Returns boxes for some tenths of a second of work, more than a lane for small jobs accepts.
+/// Returns boxes for some tenths of a second of work, more than a small job may have.
 std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
 
 TEST(Waiting, IsForMemory) {
@@ -39,7 +39,7 @@ TEST(Waiting, EndsWithTheTimeOrTheJob) {
 TEST(Waiting, CanBeCancelled) {
     const ServerContext host;
     const auto client = host.client();
-    // To count all pairs of so many equal boxes takes hours.
+    // Counting all pairs of a million equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     const JobTerms count{.count_only = true};
     const std::string running = client->submit({std::span(same), {}}, {}, count),

@@ -1,5 +1,5 @@
-// Tests that a remote scene refuses exactly the calls that a local scene refuses. It refuses at once, with the same
-// message and without its server. Both scenes then work as before.
+// Tests that a remote scene refuses exactly the calls that a local scene refuses. The remote scene refuses at once,
+// with the same message and without its server. Both scenes then work as before.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ protected:
         EXPECT_TRUE(step.began.empty());
         EXPECT_TRUE(step.ended.empty());
         EXPECT_EQ(step.persisting, 1u);
-        EXPECT_FALSE(step.full) << "the server has another scene than before";
+        EXPECT_FALSE(step.full) << "the server built the scene again";
     }
 
     test::SceneServer server_;
@@ -98,7 +98,7 @@ TEST_F(RemoteSceneErrors, Margins) {
 TEST(RemoteSceneConnect, WhereNobodyListens) {
     try {
         (void)connect_scene("unix:/nowhere/at/all", {}, {.connect_timeout = std::chrono::milliseconds(50)});
-        FAIL() << "connected";
+        FAIL() << "connected without a server";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::engine_failed);
     }

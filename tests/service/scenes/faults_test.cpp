@@ -29,14 +29,14 @@ TEST(RemoteSceneFaults, AStepWithoutAServerChangesNothingAndMayBeRepeated) {
     scene.move(std::span(ids).first(1), std::span(&elsewhere, 1));
     try {
         (void)scene.step();
-        FAIL() << "stepped";
+        FAIL() << "the step succeeded without a server";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::engine_failed);
     }
     EXPECT_EQ(scene.pairs().to_vector(), (std::vector<Pair>{{0, 1}}));
     server.come();
     const StepResult* step = nullptr;
-    // With so little patience, a call may miss the server again.
+    // With a patience of 100 ms, a step may fail again before the server answers.
     EXPECT_TRUE(test::comes_true([&] {
         try {
             step = &scene.step();
@@ -70,7 +70,7 @@ TEST(RemoteSceneFaults, AServerThatGoesDownDoesNotWaitForIdleScenes) {
     RemoteScene scene = server.scene();
     (void)add_pair(scene);
     (void)scene.step();
-    server.server().drain();  // never returns if the scene does not end
+    server.server().drain();  // returns only after the scene's call has ended
     server.go();
     server.come();
     EXPECT_EQ(scene.step().persisting, 1u);
@@ -91,7 +91,7 @@ TEST(RemoteSceneFaults, AClientThatGoesAwayFreesItsScene) {
             return false;
         }
     };
-    EXPECT_FALSE(steps()) << "a scene that does not count";
+    EXPECT_FALSE(steps()) << "the server accepted two scenes, but its limit is one job";
     first.reset();
     EXPECT_TRUE(test::comes_true(steps));
 }

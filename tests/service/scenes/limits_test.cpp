@@ -37,7 +37,7 @@ TEST(RemoteSceneLimits, Objects) {
     EXPECT_EQ(limit_of(scene), "objects 100");
     EXPECT_EQ(limit_of(scene), "objects 100");
     scene.remove(more);
-    EXPECT_EQ(limit_of(scene), "objects 100") << "its index is not free before a step";
+    EXPECT_EQ(limit_of(scene), "objects 100") << "a removed object keeps its index until the next step";
 }
 
 TEST(RemoteSceneLimits, IndicesOfRemovedObjectsAreFreeAgain) {
@@ -58,7 +58,7 @@ TEST(RemoteSceneLimits, Memory) {
     (void)add_boxes(scene, 100'000);
     EXPECT_EQ(limit_of(scene), "memory_bytes 16000000");
     (void)add_boxes(other, 50'000);
-    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene has memory";
+    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene still has memory";
 }
 
 void add_crowd(RemoteScene& scene, std::size_t count) {

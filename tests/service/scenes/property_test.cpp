@@ -74,7 +74,7 @@ public:
     bool contains(ObjectId id) const { return remote_->contains(id); }
 
 private:
-    /// Makes a step twice. The first is cancelled at a random moment, unless it has already ended.
+    /// Makes a step and cancels it at a random moment. Repeats the step if it was cancelled.
     const StepResult& step_twice() {
         const std::vector<Pair> before = remote_->pairs().to_vector();
         std::stop_source stop;

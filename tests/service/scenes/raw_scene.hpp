@@ -1,4 +1,4 @@
-// The call Scene, message by message.
+// The call Scene with any bytes, message by message, without octopair's RemoteScene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace octopair::test {
 
-/// Encodes records in memory, in the form of a recorder.
+/// Encodes calls as a recording in memory.
 class Records final : public CallEncoder {
 public:
     explicit Records(const SceneOptions& options = {}) { keep(bytes_of(recording_head(options))); }

@@ -57,7 +57,7 @@ private:
     std::optional<service::Server> server_;
 };
 
-/// Returns whether `holds` becomes true within a generous time.
+/// Returns whether `holds` becomes true within a minute.
 template <typename Condition>
 bool comes_true(Condition&& holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
