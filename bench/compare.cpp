@@ -49,7 +49,7 @@ void print(const Scene& scene, const std::vector<Row>& rows, unsigned threads) {
                 fmt::print("  {:<20} out of memory\n", row.contender);
                 break;
             case RowState::left_out:
-                fmt::print("  {:<20} left out above {} objects\n", row.contender, row.most_objects);
+                fmt::print("  {:<20} left out above {} objects\n", row.contender, row.max_objects);
                 break;
         }
     }
@@ -58,7 +58,7 @@ void print(const Scene& scene, const std::vector<Row>& rows, unsigned threads) {
 
 nlohmann::ordered_json row_json(const Row& row) {
     if (row.state == RowState::left_out) {
-        return {{"contender", row.contender}, {"left_out_above", row.most_objects}};
+        return {{"contender", row.contender}, {"left_out_above", row.max_objects}};
     }
     return {{"contender", row.contender},
             {"out_of_memory", row.state == RowState::out_of_memory},
@@ -124,8 +124,8 @@ int main(int count, char** words) {
     app.add_option("--threads", request.plan.threads,
                    "threads; above 1, contenders with one thread are left out (default 1)");
     app.add_option("--rounds", request.plan.rounds);
-    app.add_option("--seconds", request.plan.most_seconds, "time limit of a contender per scene (default 20)");
-    app.add_option("--least", request.plan.least_rounds,
+    app.add_option("--seconds", request.plan.max_seconds, "time limit of a contender per scene (default 20)");
+    app.add_option("--least", request.plan.min_rounds,
                    "minimum number of rounds, even beyond the time limit (default 3)");
     app.add_option("--only", request.plan.only, "only these contenders, even above their limit of objects");
     app.add_flag("--first", request.plan.first, "time only the first run of each contender");

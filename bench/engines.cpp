@@ -107,7 +107,7 @@ Json run_memory(const Request& request) {
         const bool bounded = which.engine == processes_name;
         fmt::print("  {:<28} {:<9} {:<10} {:>8.2f} {:>8.1f} {:>8.1f} {:>8.1f}{}\n", which.engine, which.kind,
                    order_name(which.order), double(use.pairs) / n, use.idle / 1e6, use.kept / n, use.highest / n,
-                   bounded && use.highest > most_engine_bytes * n ? "  MISSED" : "");
+                   bounded && use.highest > max_engine_bytes * n ? "  MISSED" : "");
         std::fflush(stdout);
         rows.push_back({{"engine", which.engine},
                         {"scene", which.kind},
@@ -117,7 +117,7 @@ Json run_memory(const Request& request) {
                         {"idle_bytes", use.idle},
                         {"kept_bytes", use.kept},
                         {"highest_bytes", use.highest}});
-        if (bounded) rows.back()["most_bytes"] = most_engine_bytes * n;
+        if (bounded) rows.back()["max_bytes"] = max_engine_bytes * n;
     }
     return rows;
 }

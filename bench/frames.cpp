@@ -182,7 +182,7 @@ int main(int count, char** words) {
     const CLI::Option* const frames =
         app.add_option("--frames", request.plan.frames, "frames after the first frame (default 100)")
             ->check(CLI::PositiveNumber);
-    app.add_option("--seconds", request.plan.most_seconds,
+    app.add_option("--seconds", request.plan.max_seconds,
                    "time limit of a tracker per case, after 10 frames at least (default 30)");
     app.add_flag("--quick", request.quick, "use a tenth of the objects and of the frames");
     app.add_option("--json", request.json);

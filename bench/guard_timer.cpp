@@ -43,17 +43,17 @@ double seconds_of_call(octopair::Engine& engine, const octopair::Objects& object
 }
 
 void run(const std::string& path, unsigned threads) {
-    constexpr double most_seconds = 0.5;
-    constexpr std::size_t least_calls = 3, most_calls = 1000;
+    constexpr double max_seconds = 0.5;
+    constexpr std::size_t min_calls = 3, max_calls = 1000;
     const std::vector<octopair::Box3f> boxes = read_boxes(path);
     const octopair::Objects objects{std::span<const octopair::Box3f>(boxes), {}};
     const auto engine = octopair::make_local_engine(threads);
     octopair::PairList pairs;
     (void)seconds_of_call(*engine, objects, pairs);
     std::vector<double> seconds;
-    seconds.reserve(most_calls);
+    seconds.reserve(max_calls);
     double spent = 0;
-    while (seconds.size() < least_calls || (spent < most_seconds && seconds.size() < most_calls)) {
+    while (seconds.size() < min_calls || (spent < max_seconds && seconds.size() < max_calls)) {
         seconds.push_back(seconds_of_call(*engine, objects, pairs));
         spent += seconds.back();
     }

@@ -9,7 +9,7 @@ namespace octopair::baselines {
 namespace {
 
 constexpr unsigned bits_of_level = 4;
-constexpr unsigned most_level = (32 - bits_of_level) / 3;
+constexpr unsigned max_level = (32 - bits_of_level) / 3;
 
 /// Sorts by path, then by level. These are the high 32 bits of a key, and the position of the entry is the low 32 bits.
 /// The radix sort is stable, so entries with equal codes stay in the order of objects.
@@ -31,7 +31,7 @@ void radix_sort_entries(std::vector<PaperEntry>& entries, unsigned level) {
 }  // namespace
 
 void sort_entries(std::vector<PaperEntry>& entries, PaperSort sort, unsigned level) {
-    if (sort == PaperSort::radix && level <= most_level && entries.size() <= std::uint32_t(-1)) {
+    if (sort == PaperSort::radix && level <= max_level && entries.size() <= std::uint32_t(-1)) {
         radix_sort_entries(entries, level);
     } else {
         std::sort(entries.begin(), entries.end());

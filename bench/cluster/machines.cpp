@@ -44,7 +44,7 @@ double port_bytes(const Measured& measured) {
     return double(ranks[0].bytes_sent) * leaving(setup) + to_master;
 }
 
-double most_messages(const EachRank& ranks) {
+double max_messages(const EachRank& ranks) {
     std::uint64_t most = 0;
     for (const RankCosts& costs : ranks) most = std::max(most, costs.messages_sent);
     return double(most);
@@ -186,7 +186,7 @@ double critical_path(const Measured& measured) {
 }
 
 Modelled modelled(const Measured& measured, const Network& network) {
-    const double messages = most_messages(measured.together) * leaving(measured.setup);
+    const double messages = max_messages(measured.together) * leaving(measured.setup);
     return {critical_path(measured),
             port_bytes(measured) / network.bytes_per_second + messages * network.latency_seconds};
 }

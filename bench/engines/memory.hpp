@@ -14,7 +14,7 @@
 
 namespace octopair::bench {
 
-constexpr double most_engine_bytes = 80;  ///< bytes per object, sum over all processes of the process engine
+constexpr double max_engine_bytes = 80;  ///< bytes per object, sum over all processes of the process engine
 
 struct EngineMemoryCase {
     std::string engine;  ///< name in contenders()

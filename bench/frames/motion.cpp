@@ -9,7 +9,7 @@ namespace octopair::bench {
 namespace {
 
 constexpr std::uint64_t seed = 2;
-constexpr double most_of_size = 0.1;  // largest step per frame on an axis, as a fraction of the object's size
+constexpr double max_move = 0.1;  // largest step per frame on an axis, as a fraction of the object's size
 
 Box3f bounds_of(std::span<const Box3f> boxes) {
     Box3f all = boxes.front();
@@ -36,7 +36,7 @@ Motion::Motion(std::vector<Box3f> boxes, double share)
         samples::RandomStream random(seed, i);
         for (int axis = 0; axis < 3; ++axis) {
             const double size = double(boxes_[i].max[axis]) - double(boxes_[i].min[axis]);
-            velocities_[i].along[axis] = float(size * random.uniform(-most_of_size, most_of_size));
+            velocities_[i].along[axis] = float(size * random.uniform(-max_move, max_move));
         }
     }
 }

@@ -81,7 +81,7 @@ void run_frame(std::vector<Runner>& runners, const Frame& frame) {
 void end_slow(std::vector<Runner>& runners, const FramePlan& plan) {
     for (std::size_t i = 1; i < runners.size(); ++i) {
         Runner& runner = runners[i];
-        if (runner.spent > plan.most_seconds && runner.track.seconds.size() >= plan.least_frames) {
+        if (runner.spent > plan.max_seconds && runner.track.seconds.size() >= plan.min_frames) {
             runner.tracker.reset();
         }
     }

@@ -13,8 +13,8 @@ namespace octopair::bench {
 
 struct FramePlan {
     unsigned frames = 100;  ///< frames after the first frame
-    unsigned least_frames = 10;
-    double most_seconds = 30;  ///< time limit of a tracker, after `least_frames` at least
+    unsigned min_frames = 10;
+    double max_seconds = 30;  ///< time limit of a tracker, after `min_frames` at least
 };
 
 /// `processor`: processor time of all threads of this process. This time is more reliable for long frames when other

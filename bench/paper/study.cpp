@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 using baselines::PaperSettings;
 using baselines::PaperSort;
 
-constexpr unsigned least_rounds = 3;
+constexpr unsigned min_rounds = 3;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -159,10 +159,10 @@ private:
     }
 
     bool rests(const Point& point, unsigned round) const {
-        if (round <= least_rounds) return false;
+        if (round <= min_rounds) return false;
         double spent = 0;
         for (const Run& run : point.runs) spent += run.seconds;
-        return spent > study_.plan.most_seconds;
+        return spent > study_.plan.max_seconds;
     }
 
     void expect_as_many(const Series& series) const {

@@ -25,7 +25,7 @@ struct StudyPlan {
     std::vector<std::uint64_t> objects;  ///< ascending, without repeats, each at least 2
     unsigned threads = 1;                ///< largest number of processors, at least 1
     unsigned rounds = 7;
-    double most_seconds = 20;  ///< time limit of a setup per number of objects, after 3 rounds at least
+    double max_seconds = 20;  ///< time limit of a setup per number of objects, after 3 rounds at least
 };
 
 enum class Finder : std::uint8_t { paper, paper_standard_sort, octopair };

@@ -41,8 +41,8 @@ std::vector<Runner> make_runners(const Scene& scene, const ComparisonPlan& plan)
         Runner& runner = runners.emplace_back();
         runner.row.contender = kind.name;
         runner.row.limit = kind.limit;
-        runner.row.most_objects = kind.most_objects;
-        if (scene.boxes.size() > kind.most_objects && !named(plan, kind)) {
+        runner.row.max_objects = kind.max_objects;
+        if (scene.boxes.size() > kind.max_objects && !named(plan, kind)) {
             runner.row.state = RowState::left_out;
         } else {
             runner.contender = kind.make(plan.threads);
@@ -70,7 +70,7 @@ void run_first(Runner& runner, std::span<const Box3f> boxes, std::optional<Found
 /// Runs each contender that has not yet used its time.
 void run_round(std::vector<Runner>& runners, std::span<const Box3f> boxes, const ComparisonPlan& plan) {
     for (Runner& runner : runners) {
-        const bool rests = runner.row.seconds.size() >= plan.least_rounds && runner.spent > plan.most_seconds;
+        const bool rests = runner.row.seconds.size() >= plan.min_rounds && runner.spent > plan.max_seconds;
         if (!runner.contender || rests) continue;
         runner.row.seconds.push_back(timed_run(*runner.contender, boxes));
         runner.spent += runner.row.seconds.back();

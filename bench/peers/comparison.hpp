@@ -17,21 +17,21 @@ struct ComparisonPlan {
     std::vector<std::string> only;  ///< contenders by name; empty: all
     unsigned threads = 1;           ///< above 1, contenders with one thread are left out
     unsigned rounds = 7;
-    unsigned least_rounds = 3;
-    double most_seconds = 20;  ///< time limit of a contender, after `least_rounds` at least
-    bool first = false;        ///< only the first run
+    unsigned min_rounds = 3;
+    double max_seconds = 20;  ///< time limit of a contender, after `min_rounds` at least
+    bool first = false;       ///< only the first run
 };
 
 enum class RowState : std::uint8_t {
     measured,
     out_of_memory,  ///< happens to algorithms that hold all candidates
-    left_out        ///< too many objects (ContenderKind::most_objects)
+    left_out        ///< too many objects (ContenderKind::max_objects)
 };
 
 struct Row {
     std::string contender;
     bool limit = false;
-    std::uint64_t most_objects = 0;
+    std::uint64_t max_objects = 0;
     RowState state = RowState::measured;
     double first_seconds = 0;
     std::vector<double> seconds;  ///< in the order of the rounds

@@ -56,7 +56,7 @@ struct ContenderKind {
     bool threads;  ///< true: can use several threads
     bool limit;    ///< true: measures a hardware limit, finds no pairs
     std::unique_ptr<Contender> (*make)(unsigned threads);
-    std::uint64_t most_objects = any_number;  ///< larger scenes take minutes, and run only if selected by name
+    std::uint64_t max_objects = any_number;  ///< larger scenes take minutes, and run only if selected by name
 };
 
 /// Returns octopair, the baselines, and every peer in this build.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/command/words.hpp"
+#include "cli/command/option_values.hpp"
 #include "cluster/on_ranks.hpp"
 #include "cluster/study.hpp"
 #include "program/on_ranks.hpp"
@@ -59,7 +59,7 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
             [request](const std::vector<std::string>& names) {
                 request->plan.arrangements.clear();
                 for (const std::string& name : names) {
-                    cli::check_word({"--arrangement", {"shared", "paper"}, {}}, name);
+                    cli::check_value("--arrangement", {"shared", "paper"}, name);
                     request->plan.arrangements.push_back(cluster::arrangement_of(name));
                 }
             },

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "cluster/machines.hpp"
 #include "cluster/study.hpp"
 #include "octopair/error.hpp"
@@ -13,13 +13,13 @@ namespace octopair::bench {
 
 namespace {
 
-constexpr unsigned most_machines = 10'000;
+constexpr unsigned max_machines = 10'000;
 constexpr unsigned ranks_per_machine = 2;  // like in the paper
 
 std::vector<unsigned> parse_machines(const std::vector<std::string>& texts) {
     std::vector<unsigned> machines;
     for (const std::string& text : texts) {
-        machines.push_back(unsigned(parse_between("--machines", text, {1, most_machines})));
+        machines.push_back(unsigned(parse_between("--machines", text, {1, max_machines})));
     }
     std::ranges::sort(machines);
     const auto same = std::ranges::unique(machines);

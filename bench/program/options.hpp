@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command/command.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 

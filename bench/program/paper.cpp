@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
 #include "paper/json.hpp"
 #include "paper/study.hpp"
@@ -73,7 +73,7 @@ int run_paper(PaperRequest request) {
 }
 
 void add_plan_options(Command& command, PaperRequest& request) {
-    constexpr unsigned most_rounds = 1000;
+    constexpr unsigned max_rounds = 1000;
     command
         .add_option(
             "--objects",
@@ -92,7 +92,7 @@ void add_plan_options(Command& command, PaperRequest& request) {
         .add_option(
             "--rounds",
             [&request](const std::string& text) {
-                request.plan.rounds = unsigned(parse_between("--rounds", text, {1, most_rounds}));
+                request.plan.rounds = unsigned(parse_between("--rounds", text, {1, max_rounds}));
             },
             "runs per measurement; the median counts (default 7)")
         .type_name("R");

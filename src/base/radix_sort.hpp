@@ -27,7 +27,7 @@ public:
     /// Sorts the array of the last take() and returns it.
     /// Requires: all keys have the same bits from `end_bit` on, and are already in the order of the bits below `first_bit`.
     std::span<const Key> sort(unsigned first_bit, unsigned end_bit) {
-        if (keys_.size() < tuning().output.radix_from) {
+        if (keys_.size() < tuning().output.min_radix_sort) {
             std::sort(keys_.span().begin(), keys_.span().end());
             return keys_.span();
         }

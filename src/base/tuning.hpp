@@ -28,86 +28,86 @@ enum class StepChoice : std::uint8_t { measured, full, incremental };
 struct Tuning {
     /// How objects are sampled when the octree is planned (octree/linear_octree.cpp, octree/space.cpp).
     struct Sampling {
-        std::size_t stride = 64;         ///< one object in this many is sampled
-        std::size_t most = 1 << 21;      ///< maximum number of sampled objects
-        std::size_t most_stride = 2048;  ///< one in this many at least, whatever `most` is: as many as crowd an octant
-        std::size_t space = 4096;  ///< maximum number of sampled objects that fit the space: enough for its quantiles
+        std::size_t stride = 64;            ///< one object in this many is sampled
+        std::size_t max_objects = 1 << 21;  ///< maximum number of sampled objects
+        std::size_t max_stride = 2048;      ///< at least one in this many is sampled, even beyond `max_objects`
+        std::size_t space_objects = 4096;   ///< maximum number of sampled objects that fit the space
     } sampling;
 
     /// When an octant is divided (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
-        double always = 2048;        ///< an octant with more is divided: more do not stay in the cache during a sweep
-        double never = 512;          ///< an octant with at most this many is never divided; at most `always`
-        double crowded_window = 40;  ///< an octant is divided if its sweep tests more objects per object
-        double most_entries = 1.6;   ///< maximum number of entries below an octant per object that begins in it
-        double handed_growth = 1.5;  ///< maximum growth of entries and handed down boxes by a division
-        std::uint64_t table_cells = 4;  ///< maximum number of cells per octant in the table from cells to leaves
+        double always_above = 2048;              ///< an octant with more is divided: a sweep of more misses the cache
+        double never_up_to = 512;                ///< an octant with at most this many stays whole; <= `always_above`
+        double max_tests_per_object = 40;        ///< an octant is divided if its sweep tests more objects per object
+        double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
+        double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a division
+        std::uint64_t max_cells_per_octant = 4;  ///< size of the table from cells to leaves
     } split;
 
     /// How the steps of a build are divided into shares (octree/linear_octree.cpp, octree/build/build_steps.cpp).
     struct Build {
         std::size_t blocks_per_thread = 2;       ///< blocks of objects; each counts the entries of every octant
-        std::size_t least_block = 2048;          ///< minimum number of objects per block
+        std::size_t min_block = 2048;            ///< minimum number of objects per block
         std::size_t counts_per_range = 1 << 16;  ///< minimum number of merged counts per share
         std::size_t batch = 256;                 ///< objects loaded at a time, so that they stay in the L1 cache
     } build;
 
     /// How the octants of a linear octree are scanned (octree/scan.cpp).
     struct Scan {
-        std::size_t large_node = 1 << 15;     ///< an octant with more entries is scanned by all threads together
-        std::size_t share_entries = 1 << 13;  ///< maximum number of entries per share, so that a stop is noticed soon
-        std::size_t shares_per_thread = 64;   ///< number of shares per thread
-        std::size_t crowded_octant = 4096;  ///< maximum number of entries of a list swept at once, along the first axis
-        std::uint64_t good_tests = 192;     ///< maximum number of tests per box in such a sweep
-        double largest_part = 0.75;         ///< maximum part of the entries in one octant of a nested octree
-        double most_growth = 4;             ///< maximum growth of entries by nesting, multiplied along its path
-        unsigned most_nesting = 8;          ///< maximum depth of nesting: octrees within octants of octrees
+        std::size_t large_octant = 1 << 15;       ///< an octant with more entries is scanned by all threads together
+        std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop is noticed soon
+        std::size_t shares_per_thread = 64;       ///< number of shares per thread
+        std::size_t max_swept_list = 4096;        ///< maximum entries of a list swept at once, along the first axis
+        std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in such a sweep
+        double max_part_in_octant = 0.75;         ///< maximum part of the entries in one octant of a nested octree
+        double max_growth = 4;                    ///< maximum growth of entries by nesting, multiplied along its path
+        unsigned max_nesting = 8;                 ///< maximum depth of nesting: octrees within octants of octrees
     } scan;
 
     /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/sweep_order.cpp, sweep kernels).
     struct Sweep {
-        std::size_t tile = 4096;               ///< boxes per tile: their arrays stay in the L2 cache
-        std::size_t small_set = 512;           ///< a set of at most this many boxes is swept whatever its windows
-        std::uint64_t cheap_tests = 64;        ///< a sweep with at most this many tests per box is always good
-        std::uint64_t tests_per_pair = 16;     ///< maximum number of tests per expected pair: two registers per pair
-        std::size_t large_join = 1 << 15;      ///< a join of more boxes is divided among threads
-        std::size_t tests_per_call = 1 << 20;  ///< blocks of rows times registers of columns: a few milliseconds
-        std::size_t hits = 1024;               ///< masks that a call of the kernel may write; at least 8
-        std::size_t pairs = 2048;              ///< pairs that are buffered before they are written
-        std::size_t most_buckets = 4096;       ///< maximum of a bucket sort, so that they stay in the L1 cache
-        std::size_t few = 24;                  ///< at most this many boxes are sorted by comparison
-        std::size_t in_cache = 1 << 13;        ///< at most this many boxes are sorted by buckets, more by a radix sort
-        std::size_t radix_block = 1 << 16;     ///< minimum number of keys per share of a radix sort
-        unsigned radix_digit_bits = 11;        ///< bits per digit of a radix sort: the counts stay in the L1 cache
-        std::size_t measured_least = 256;      ///< minimum number of boxes of a set that are sampled to measure it
-        std::size_t measured_most = 4096;      ///< maximum number of boxes of a set that are sampled to measure it
-        std::size_t tried_rows = 16;           ///< rows that are tested against the sampled columns to estimate hits
-        std::size_t measured_row_stride = 13;  ///< of a laid out set, the window of one row in this many is measured,
-        std::size_t measured_rows = 24;        ///< or about this many windows, whichever are fewer
+        std::size_t tile = 4096;                ///< boxes per tile: their arrays stay in the L2 cache
+        std::size_t small_set = 512;            ///< a set of at most this many boxes is swept whatever its windows
+        std::uint64_t cheap_tests = 64;         ///< a sweep with at most this many tests per box is always good
+        std::uint64_t tests_per_pair = 16;      ///< maximum number of tests per expected pair: two registers per pair
+        std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
+        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times registers of columns: a few milliseconds
+        std::size_t hits = 1024;                ///< masks that a call of the kernel may write; at least 8
+        std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
+        std::size_t max_buckets = 4096;         ///< maximum of a bucket sort, so that they stay in the L1 cache
+        std::size_t max_comparison_sort = 24;   ///< up to this many boxes: comparison sort
+        std::size_t max_bucket_sort = 1 << 13;  ///< up to this many boxes: bucket sort; more: radix sort
+        std::size_t radix_block = 1 << 16;      ///< minimum number of keys per share of a radix sort
+        unsigned radix_digit_bits = 11;         ///< bits per digit of a radix sort: the counts stay in the L1 cache
+        std::size_t min_measured = 256;         ///< minimum number of boxes of a set that are sampled to measure it
+        std::size_t max_measured = 4096;        ///< maximum number of boxes of a set that are sampled to measure it
+        std::size_t tried_rows = 16;            ///< rows that are tested against the sampled columns to estimate hits
+        std::size_t measured_row_stride = 13;   ///< of a laid out set, the window of one row in this many is measured,
+        std::size_t measured_rows = 24;         ///< or about this many windows, whichever are fewer
     } sweep;
 
     /// Octrees that are updated (octree/dynamic/mutable_octree.cpp, octree/dynamic/leaf_grid.cpp).
     struct Dynamic {
-        std::size_t listed_visits = 128;  ///< maximum number of units of a listed change; a larger one is made alone
-        std::size_t hits = 1 << 16;       ///< number of hits after which a run of visits stops
-        double cell_objects = 6;          ///< maximum number of objects that a cell of a grid should hold
-        double most_growth = 2.2;         ///< maximum number of entries per object when a grid cuts a leaf
-        unsigned grid_bits = 18;          ///< maximum number of bits of all axes of a grid together
+        std::size_t max_listed_visits = 128;  ///< maximum units of a listed change; a larger change is made alone
+        std::size_t hits = 1 << 16;           ///< number of hits after which a run of visits stops
+        double max_cell_objects = 6;          ///< maximum number of objects that a cell of a grid should hold
+        double max_growth = 2.2;              ///< maximum number of entries per object when a grid cuts a leaf
+        unsigned max_grid_bits = 18;          ///< maximum number of bits of all axes of a grid together
     } dynamic;
 
     /// How pairs are stored, sorted and delivered (engine/). Numbers of pairs, unless a comment says otherwise.
     struct Output {
-        std::uint64_t least_buffer = 1 << 20;  ///< bytes: minimum that Options::buffer_bytes is raised to
-        std::size_t batch = 1 << 13;           ///< smaller batches are collected before a sink receives them
-        std::size_t handed_out = 1 << 16;  ///< maximum per sink call from a list, so that progress grows in small steps
-        std::size_t list_block = 1 << 15;  ///< pairs per memory block of a PairList; at least 64 pages
-        std::size_t page = 512;            ///< pairs per page of a bucket of the ascending order
-        unsigned bucket_row_bits = 12;     ///< log2 of the number of objects per bucket
-        unsigned bucket_bits = 10;         ///< log2 of the maximum number of buckets
-        unsigned bucket_split_bits = 6;    ///< log2 of the number of parts of a bucket that is split
-        std::size_t sorted_at_once = 1 << 18;  ///< a bucket with more pairs is split
-        std::size_t radix_from = 512;          ///< keys: fewer are sorted by comparison
-        std::size_t shares_ahead = 4;          ///< shares per thread that a stream computes ahead of the sink
+        std::uint64_t min_buffer_bytes = 1 << 20;       ///< bytes: minimum that Options::buffer_bytes is raised to
+        std::size_t batch = 1 << 13;                    ///< smaller batches are collected before a sink receives them
+        std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list; limits the steps of the progress
+        std::size_t list_block = 1 << 15;               ///< pairs per memory block of a PairList; at least 64 pages
+        std::size_t page = 512;                         ///< pairs per page of a bucket of the ascending order
+        unsigned bucket_row_bits = 12;                  ///< log2 of the number of objects per bucket
+        unsigned bucket_bits = 10;                      ///< log2 of the maximum number of buckets
+        unsigned bucket_split_bits = 6;                 ///< log2 of the number of parts of a bucket that is split
+        std::size_t sorted_at_once = 1 << 18;           ///< a bucket with more pairs is split
+        std::size_t min_radix_sort = 512;               ///< keys: fewer are sorted by comparison
+        std::size_t shares_ahead = 4;                   ///< shares per thread that a stream computes ahead of the sink
     } output;
 
     /// Worker processes (engine/processes/).
@@ -138,15 +138,15 @@ struct Tuning {
     /// Scenes (scene/).
     struct Scene {
         StepChoice step = StepChoice::measured;
-        unsigned refills = 8;     ///< maximum number of refills of the octants of an earlier step
-        double log_part = 0.125;  ///< part of the objects that may change, besides `log_least`, before a full search
-        double log_least = 256;   ///< number of objects that may change in any scene
+        unsigned max_refills = 8;  ///< maximum number of refills of the octants of an earlier step
+        double log_part = 0.125;   ///< part of the objects that may change, besides `min_log`, before a full search
+        double min_log = 256;      ///< number of objects that may change in any scene
         std::uint64_t visits = 1 << 14;         ///< unit visits that a step may make besides half the number of objects
         std::uint64_t changed_pairs = 1 << 20;  ///< changed pairs that a step may find besides the number of its pairs
         std::size_t share_visits = 2048;        ///< visits per share of a thread
         std::size_t run_visits = 256;           ///< visits between checks of the limits
         std::uint64_t waiting_part = 16;        ///< one in this many pairs may wait to be merged into the list
-        std::uint64_t waiting_least = 1 << 14;  ///< number of pairs that may wait in any scene
+        std::uint64_t min_waiting = 1 << 14;    ///< number of pairs that may wait in any scene
         std::size_t share_queries = 64;         ///< queries per share
     } scene;
 };

@@ -121,7 +121,7 @@ bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> pa
     const auto origin = hn::LoadU(d, rounding.origin.data());
     const auto largest = hn::Set(d, double(std::numeric_limits<Real>::max()));
     const auto part = hn::Set(d, OutwardRounding::error_part);
-    const auto too_wide = hn::Set(d, OutwardRounding::most_widening);
+    const auto too_wide = hn::Set(d, OutwardRounding::max_widening);
     const auto everything = hn::Set(d, double(FLT_MAX));
     auto good = hn::MaskFromVec(hn::BitCast(d, hn::Set(hn::FixedTag<std::int64_t, 4>(), -1)));
     bool paddings_good = true;

@@ -42,7 +42,7 @@ struct OutwardRounding {
     /// pair rule (octopair/objects.hpp) must be covered. Each is below 2^-52 of a number that is at most the sum of the three.
     static constexpr double error_part = 0x1p-48;
     /// The sum of two larger widenings may overflow in the pair rule, which then holds for any gap.
-    static constexpr double most_widening = DBL_MAX / 4;
+    static constexpr double max_widening = DBL_MAX / 4;
 
     std::array<double, 4> origin = {0, 0, 0, 0};
     double margin = 0;
@@ -60,7 +60,7 @@ struct OutwardRounding {
 
 private:
     float outward(double sign, double bound, unsigned axis, double widening) const {
-        if (widening > most_widening) return FLT_MAX;
+        if (widening > max_widening) return FLT_MAX;
         // Each part is multiplied separately: the sum may overflow float64.
         const double error = std::abs(bound) * error_part + std::abs(origin[axis]) * error_part + widening * error_part;
         const double extra = widening > 0 ? widening + error : 0;

@@ -7,8 +7,7 @@
 #include <thread>
 
 #include "cli/command/command.hpp"
-#include "cli/command/numbers.hpp"
-#include "cli/command/words.hpp"
+#include "cli/command/option_values.hpp"
 #include "octopair/client.hpp"
 #include "octopair/error.hpp"
 #include "octopair/processes.hpp"
@@ -61,7 +60,7 @@ void parse_engine(const std::string& word, EngineChoice& choice) {
         throw Error(ErrorCode::usage, fmt::format("--engine: this octopair was built without '{}'; it has: {}", word,
                                                   fmt::join(engine_names(), ", ")));
     }
-    check_word({"--engine", engine_names(), {}}, word);
+    check_value("--engine", engine_names(), word);
     choice.kind = word == "processes" ? EngineKind::processes : word == "mpi" ? EngineKind::mpi : EngineKind::local;
 }
 

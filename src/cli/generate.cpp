@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/subcommands.hpp"
 #include "io/boxes/npy_header.hpp"

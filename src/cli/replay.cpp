@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/input_file.hpp"

@@ -48,7 +48,7 @@ public:
     /// `fillers`: number of threads or workers, each of which fills its own buckets.
     BucketPlan(const AscendingBounds& bounds, unsigned fillers);
 
-    static constexpr unsigned most_bits = default_tuning.output.bucket_bits;
+    static constexpr unsigned max_bits = default_tuning.output.bucket_bits;
     const PairKeys& keys() const { return keys_; }
     std::size_t buckets() const { return std::size_t(1) << bits_; }
     std::size_t bucket(const Pair& pair) const { return std::size_t(keys_.key(pair) >> key_bits()); }

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "base/memory.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/job_task.hpp"
@@ -17,7 +17,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
 
 void check_set(const Objects& set, const char* name) {
     if (!set.padding.empty() && set.padding.size() != set.size()) {
@@ -36,9 +36,9 @@ void detail::check_request(const detail::Request& request) {
     check_set(request.first, request.second != nullptr ? "first set" : "objects");
     if (request.second != nullptr) check_set(*request.second, "second set");
     const std::uint64_t size = request.first.size() + (request.second != nullptr ? request.second->size() : 0);
-    if (size > most_objects) {
+    if (size > max_objects) {
         throw Error(ErrorCode::resource_limit,
-                    std::to_string(size) + " objects; at most " + std::to_string(most_objects) + " fit into one call");
+                    std::to_string(size) + " objects; at most " + std::to_string(max_objects) + " fit into one call");
     }
 }
 
@@ -107,9 +107,9 @@ Job Engine::submit_stream(JobInput input, PairSink sink, Options options) {
 }
 
 std::shared_ptr<void> Engine::allocate_array(std::uint64_t count, std::size_t element_bytes) {
-    if (count > most_objects || count > std::numeric_limits<std::size_t>::max() / element_bytes) {
+    if (count > max_objects || count > std::numeric_limits<std::size_t>::max() / element_bytes) {
         throw Error(ErrorCode::resource_limit,
-                    std::to_string(count) + " boxes; at most " + std::to_string(most_objects) + " can be allocated");
+                    std::to_string(count) + " boxes; at most " + std::to_string(max_objects) + " can be allocated");
     }
     try {
         return allocate(std::size_t(count) * element_bytes);

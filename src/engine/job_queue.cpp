@@ -3,7 +3,7 @@
 #include <string>
 #include <system_error>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "engine/job_task.hpp"
 #include "octopair/error.hpp"
 

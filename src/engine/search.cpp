@@ -22,7 +22,7 @@ constexpr double progress_after_collection = 0.6;
 }  // namespace
 
 std::uint64_t Call::buffer_pairs() const {
-    return std::max(request.options.buffer_bytes, tuning().output.least_buffer) / sizeof(Pair);
+    return std::max(request.options.buffer_bytes, tuning().output.min_buffer_bytes) / sizeof(Pair);
 }
 
 namespace {
@@ -119,7 +119,7 @@ void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
     receive(call, receiver, [&] {
         for (auto chunk : detail::storage_of(held_).chunks) {
             while (!chunk.empty()) {
-                const auto some = chunk.first(std::min(chunk.size(), tuning().output.handed_out));
+                const auto some = chunk.first(std::min(chunk.size(), tuning().output.max_pairs_per_sink_call));
                 receiver.take(some);
                 call.progress.add(some.size());
                 chunk = chunk.subspan(some.size());

@@ -43,7 +43,7 @@ Summary VerifiedCall::run(unsigned threads, const Run& run) {
     if (is_stream()) output.sink = &checked;
     Summary summary = run(request_, output, {control_.stop, progress});
     summary.seconds = std::max(0.0, summary.seconds - verifier.seconds());
-    verifier.tell(part(half, 1));
+    verifier.set_progress(part(half, 1));
     if (output_.list != nullptr) {
         summary.verification = check_list(verifier, summary);
     } else {

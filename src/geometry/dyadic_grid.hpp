@@ -34,9 +34,10 @@ struct Dyadic {
 
 /// Numbers as integer multiples of their common unit, the least power of two among them.
 template <std::size_t count>
-class Grid {
+class DyadicGrid {
 public:
-    explicit Grid(const std::array<double, count>& values) : numbers_(make(values, std::make_index_sequence<count>())) {
+    explicit DyadicGrid(const std::array<double, count>& values)
+        : numbers_(make(values, std::make_index_sequence<count>())) {
         int begin = 0, end = 0;
         bool any = false;
         for (const Dyadic& number : numbers_) {

@@ -1,7 +1,7 @@
 // make_pose(): makes a pose from a position and a quaternion.
 #include <cmath>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "octopair/error.hpp"
 #include "octopair/pose.hpp"
 

@@ -9,7 +9,7 @@
 #include "io/boxes/npy.hpp"
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
-#include "io/json/json_scene_file.hpp"
+#include "io/json/json_scene.hpp"
 #include "io/meshes/mesh.hpp"
 
 namespace octopair::io {

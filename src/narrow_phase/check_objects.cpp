@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/motion/motion.hpp"
 #include "narrow_phase/prepared.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "geometry/rounding.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/mesh/mesh_tree.hpp"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "narrow_phase/mesh/contact_request.hpp"
+#include "narrow_phase/mesh/mesh_contacts.hpp"
 #include "narrow_phase/prepared.hpp"
 #include "octopair/collision.hpp"
 

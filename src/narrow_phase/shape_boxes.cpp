@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "geometry/rounding.hpp"
 #include "narrow_phase/convex/posed_plane.hpp"
 #include "narrow_phase/motion/motion.hpp"

@@ -9,7 +9,7 @@
 namespace octopair {
 
 Directory::Directory(const Space& space, const SplitFlags& shape) {
-    if (shape.size() >= most_octants) throw Error(ErrorCode::resource_limit, "octree: needs 2^26 - 1 octants or more");
+    if (shape.size() >= max_octants) throw Error(ErrorCode::resource_limit, "octree: needs 2^26 - 1 octants or more");
     octants_.reserve(shape.size());
     append({}, 0, shape);
     make_table(space);
@@ -71,9 +71,9 @@ void Directory::make_table(const Space& space) {
     unsigned depth = 0;
     for (const Octant& octant : octants_) depth = std::max(depth, octant.level);
     const auto rows = [&](unsigned level, unsigned axis) { return (space.last_cell(axis) >> (deepest - level)) + 1; };
-    const std::uint64_t most_cells = tuning().split.table_cells * octants_.size();
+    const std::uint64_t max_cells = tuning().split.max_cells_per_octant * octants_.size();
     unsigned level = 0;
-    while (level < depth && std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= most_cells) {
+    while (level < depth && std::uint64_t(rows(level + 1, 0)) * rows(level + 1, 1) * rows(level + 1, 2) <= max_cells) {
         ++level;
     }
     table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};

@@ -65,7 +65,7 @@ public:
     class Leaf {
     public:
         Leaf() = default;
-        OctantIndex octant() const { return element_ & most_octants; }
+        OctantIndex octant() const { return element_ & max_octants; }
         unsigned level() const { return element_ >> octant_bits; }
 
     private:
@@ -104,7 +104,7 @@ private:
     // position where the octant's table begins.
     static constexpr unsigned table_levels = 3;
     static constexpr unsigned octant_bits = 26;
-    static constexpr std::uint32_t most_octants = (std::uint32_t(1) << octant_bits) - 1;
+    static constexpr std::uint32_t max_octants = (std::uint32_t(1) << octant_bits) - 1;
     static constexpr std::uint32_t further = (deepest + 1) << octant_bits;
     std::uint32_t first_element(const Cell& cell) const {
         const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;

@@ -13,7 +13,7 @@ namespace octopair {
 namespace {
 
 std::vector<NumberedBlock> blocks_of(std::size_t objects, unsigned width) {
-    const std::size_t enough = std::max<std::size_t>(1, objects / tuning().build.least_block);
+    const std::size_t enough = std::max<std::size_t>(1, objects / tuning().build.min_block);
     std::vector<NumberedBlock> blocks(
         std::min<std::size_t>(width == 1 ? 1 : width * tuning().build.blocks_per_thread, enough));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -52,7 +52,7 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 Sample octant_sample(std::uint64_t objects) {
     const Tuning::Sampling& sampling = tuning().sampling;
     return {std::size_t(objects), sampling.stride,
-            std::max(sampling.most, std::size_t(objects) / sampling.most_stride)};
+            std::max(sampling.max_objects, std::size_t(objects) / sampling.max_stride)};
 }
 
 SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop) {

@@ -171,7 +171,7 @@ private:
 
     /// Returns false, with nothing done, if the list is too large.
     bool try_lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-        if (list.size() > tuning().scan.crowded_octant) return false;
+        if (list.size() > tuning().scan.max_swept_list) return false;
         order_.lay_out(list, axis, set);
         return true;
     }
@@ -188,7 +188,7 @@ private:
             tests += sampled_tests(sweep);
             rows += sweep.rows.size();
         }
-        if (tests > tuning().scan.good_tests * rows) return false;
+        if (tests > tuning().scan.max_tests_per_box * rows) return false;
         executor_.for_each_writing(1, [&](std::size_t, ShareWriter& writer) {
             PairMaker maker(context_, writer);
             for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
@@ -237,7 +237,7 @@ private:
     /// Scans a nested octree of the join's entries. Returns false, with no pairs written, if the nesting is too deep or the
     /// octree does not thin the entries.
     bool try_nested_scan(const SweepInput& join) {
-        if (context_.nesting >= tuning().scan.most_nesting) {
+        if (context_.nesting >= tuning().scan.max_nesting) {
             count_path(Path::not_nested_depth);
             return false;
         }
@@ -263,9 +263,9 @@ private:
         for (OctantIndex octant = 0; octant < octree.octants().size(); ++octant) {
             largest = std::max(largest, octree.entries(octant).size());
         }
-        const bool thinner = double(largest) <= tuning().scan.largest_part * double(entries);
+        const bool thinner = double(largest) <= tuning().scan.max_part_in_octant * double(entries);
         const double growth = context_.growth * double(octree.entry_count()) / double(entries);
-        const bool bounded = growth <= tuning().scan.most_growth;
+        const bool bounded = growth <= tuning().scan.max_growth;
         if (!thinner) count_path(Path::not_nested_largest);
         if (thinner && !bounded) count_path(Path::not_nested_growth);
         return thinner && bounded;
@@ -290,12 +290,12 @@ std::vector<Share> shares_of(const OctreeRange& octants, unsigned width) {
     const LinearOctree& octree = octants.octree;
     const std::uint64_t even =
         octree.entry_count(octants.begin, octants.end) / (std::uint64_t(width) * tuning().scan.shares_per_thread) + 1;
-    const std::uint64_t most = std::min<std::uint64_t>(even, tuning().scan.share_entries);
+    const std::uint64_t most = std::min<std::uint64_t>(even, tuning().scan.max_share_entries);
     std::vector<Share> shares;
     std::uint64_t held = 0;
     for (OctantIndex octant = octants.begin; octant < octants.end; ++octant) {
         const std::size_t size = octree.entries(octant).size();
-        const bool large = size > tuning().scan.large_node;
+        const bool large = size > tuning().scan.large_octant;
         if (shares.empty() || large || shares.back().large || held + size > most) {
             shares.push_back({octant, octant, large});
             held = 0;

@@ -31,7 +31,7 @@ AxisFit fit_axis(std::span<const SpaceSample::Measured, SpaceSample::measures> m
 
 }  // namespace
 
-SpaceSample::SpaceSample(std::size_t sampled) : stride_(sampled / tuning().sampling.space + 1) {}
+SpaceSample::SpaceSample(std::size_t sampled) : stride_(sampled / tuning().sampling.space_objects + 1) {}
 
 SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, Measure what) {
     std::vector<double> values;
@@ -96,19 +96,19 @@ Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects
 
     // An octant has the shape of one object with the free space around it.
     std::array<double, 3> shape{};
-    double most_octants = 0;
+    double max_octants = 0;
     Space space;
     for (unsigned axis = 0; axis < 3; ++axis) {
         shape[axis] = neighbour + axes[axis].typical;
         const double octants = axes[axis].extent() / shape[axis];
-        if (octants > most_octants) {
-            most_octants = octants;
+        if (octants > max_octants) {
+            max_octants = octants;
             space.long_axis_ = axis;
         }
     }
     shape[space.long_axis_] *= 4;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        const double length = shape[axis] * most_octants;
+        const double length = shape[axis] * max_octants;
         const double scale = length > 0 ? double(cells_per_axis) / length : 1.0;
         space.map_.origin[axis] = float(axes[axis].begin);
         space.map_.scale[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));

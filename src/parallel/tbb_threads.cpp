@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "octopair/error.hpp"
 #include "parallel/team.hpp"
 

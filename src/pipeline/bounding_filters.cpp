@@ -10,7 +10,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "narrow_phase/convex/posed_plane.hpp"
 #include "narrow_phase/motion/motion.hpp"
 #include "narrow_phase/prepared.hpp"
@@ -53,10 +53,11 @@ Ball ball_of(const detail::PreparedShape& shape, const Pose& pose) {
 std::array<Point3d, 3> half_edges(const detail::PreparedShape& shape, const Pose& pose) {
     const Box3d& box = shape.bounds.box;
     // Poses do not scale radii. A pose may deviate from a rotation by 1e-6, which must not shrink the radius.
-    constexpr double off_turn = 4e-6;
+    constexpr double max_rotation_error = 4e-6;
     std::array<Point3d, 3> edges;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double half = (box.max[k] / 2 - box.min[k] / 2) * (1 + 4 * rounding) + off_turn * shape.convex.radius;
+        const double half =
+            (box.max[k] / 2 - box.min[k] / 2) * (1 + 4 * rounding) + max_rotation_error * shape.convex.radius;
         edges[k] = vector::times(vector::column(pose, k), half);
     }
     return edges;

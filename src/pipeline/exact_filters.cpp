@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "narrow_phase/motion/object_impact.hpp"
 #include "narrow_phase/object_pair.hpp"
 #include "octopair/error.hpp"

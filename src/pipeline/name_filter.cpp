@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "octopair/filters.hpp"
-#include "pipeline/name_pattern.hpp"
+#include "pipeline/name_filter.hpp"
 #include "pipeline/per_object.hpp"
 
 namespace octopair {

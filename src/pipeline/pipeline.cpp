@@ -9,11 +9,11 @@
 #include <thread>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "octopair/error.hpp"
 #include "pipeline/batch_access.hpp"
-#include "pipeline/block_row.hpp"
+#include "pipeline/block_ring.hpp"
 
 namespace octopair {
 
@@ -74,7 +74,7 @@ public:
 
     /// Returns the maximum number of pairs in all blocks. They use at most a quarter of Options::buffer_bytes, or 256 KiB.
     static std::uint64_t held_pairs(const Setup& setup) {
-        return max_block_pairs(setup) * BlockRow::length(setup.threads);
+        return max_block_pairs(setup) * BlockRing::length(setup.threads);
     }
 
     void take(std::span<const Pair> pairs) {
@@ -108,7 +108,7 @@ private:
 
     static std::size_t max_block_pairs(const Setup& setup) {
         const std::uint64_t pairs = std::max<std::uint64_t>(setup.options.buffer_bytes, 1 << 20) / sizeof(Pair) / 4;
-        return std::size_t(std::clamp<std::uint64_t>(pairs / BlockRow::length(setup.threads), 1, 4096));
+        return std::size_t(std::clamp<std::uint64_t>(pairs / BlockRing::length(setup.threads), 1, 4096));
     }
 
     void begin_block() {
@@ -173,7 +173,7 @@ private:
     std::size_t goal_ = 0;  // number of pairs at which the current block is full
     std::stop_source abandon_;
     std::stop_callback<Forward> forward_;
-    BlockRow row_;  // last, so that its helpers end before the members that they use are destroyed
+    BlockRing row_;  // last, so that its helpers end before the members that they use are destroyed
 };
 
 /// Passes the pairs of a list to `take` in parts, and reports progress after each. With an empty `take`, only counts pairs.

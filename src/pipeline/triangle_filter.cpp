@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "boxes/box_kernel.hpp"
-#include "narrow_phase/exact/contact_of_triangles.hpp"
+#include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/exact/triangle_prefilter.hpp"

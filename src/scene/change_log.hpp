@@ -58,7 +58,7 @@ public:
 
 private:
     static double most(const ObjectTable& table) {
-        return tuning().scene.log_part * double(table.indices()) + tuning().scene.log_least;
+        return tuning().scene.log_part * double(table.indices()) + tuning().scene.min_log;
     }
 
     void overflow(ObjectTable& table) {

@@ -190,7 +190,7 @@ void PairHistory::take_over(PairChanges& changes) {
 
 void PairHistory::prepare(bool little) {
     const std::uint64_t waiting = began_.size() + ended_.size();
-    if (waiting > std::max(tuning().scene.waiting_least, size_ / tuning().scene.waiting_part)) {
+    if (waiting > std::max(tuning().scene.min_waiting, size_ / tuning().scene.waiting_part)) {
         count_path(Path::pairs_merged);
         merge();
     } else if (waiting > 0) {

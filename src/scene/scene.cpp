@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "octopair/error.hpp"
 #include "scene/queries/query_rules.hpp"
 #include "scene/scene_state.hpp"

@@ -62,7 +62,7 @@ private:
     LinearOctree linear_;
     MutableOctree octree_;
     /// Number of refills of linear_ since its octants were chosen. At the maximum, the next build chooses them anew.
-    unsigned refills_ = tuning().scene.refills;
+    unsigned refills_ = tuning().scene.max_refills;
     EntryRounding rounding_;
     bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
     bool octree_matches_now_ = false;        // octree_ holds the current objects

@@ -26,7 +26,7 @@ constexpr double abort_seconds = 0.02;    // allowance for other programs that u
 constexpr double initial_change_cost = 10;
 
 /// Returns the choice that measured seconds suggest, unless tuning forces another one.
-bool is_wanted_incremental(bool measured) {
+bool chooses_incremental(bool measured) {
     const StepChoice choice = tuning().scene.step;
     return choice == StepChoice::measured ? measured : choice == StepChoice::incremental;
 }
@@ -57,7 +57,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const std::uint64_t before = history_.size();
     // Exact entries were not widened by paddings.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
-    const bool cheap = is_wanted_incremental(expected <= max_search_cost * full_seconds_);
+    const bool cheap = chooses_incremental(expected <= max_search_cost * full_seconds_);
     bool full =
         !octree_matches_last_step_ || unlike || objects_.log().overflowed() || !cheap || history_.is_inconsistent();
     try {
@@ -82,7 +82,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
 /// Discards both octrees after a search with wrong results. The next step builds all from the objects.
 void Scene::State::drop_octrees() {
     octree_matches_last_step_ = octree_matches_now_ = linear_matches_now_ = false;
-    refills_ = tuning().scene.refills;
+    refills_ = tuning().scene.max_refills;
 }
 
 void Scene::State::find_all(const std::stop_token& stop) {
@@ -103,12 +103,12 @@ void Scene::State::find_all(const std::stop_token& stop) {
     // The measured estimate decays, so that an incremental step is tried again later.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
     const bool build_octree =
-        is_wanted_incremental(double(objects_.moved()) * seconds_a_change_ <= max_rebuild_cost * full_seconds_);
+        chooses_incremental(double(objects_.moved()) * seconds_a_change_ <= max_rebuild_cost * full_seconds_);
     if (build_octree) {
         count_path(Path::octree_rebuilt);
         octree_.build(linear_, stop);
         linear_ = {};
-        refills_ = tuning().scene.refills;
+        refills_ = tuning().scene.max_refills;
         linear_matches_now_ = false;
     }
     history_.take_over(found_);  // last, so that a failure before has changed nothing
@@ -119,9 +119,9 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
     TeamExecutor executor(team_);
     const EntryRounding rounding{source.boxes().exact(), source.boxes().rounding()};
     // Rounded boxes are relative to an origin that is chosen anew for each build, so old octants do not fit new entries.
-    const bool refill = refills_ < tuning().scene.refills && rounding.exact && rounding_.exact;
+    const bool refill = refills_ < tuning().scene.max_refills && rounding.exact && rounding_.exact;
     const unsigned refills = refill ? refills_ + 1 : 0;
-    refills_ = tuning().scene.refills;
+    refills_ = tuning().scene.max_refills;
     linear_matches_now_ = false;
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;

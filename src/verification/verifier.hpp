@@ -36,7 +36,7 @@ public:
     Verification finish(const CallEnd& end);
 
     /// Sets a function that receives the progress of the check from now on, 0 to 1. May be empty.
-    void tell(ProgressSink progress) { progress_ = std::move(progress); }
+    void set_progress(ProgressSink progress) { progress_ = std::move(progress); }
     /// Returns the wall-clock time spent in take() and finish().
     double seconds() const { return seconds_; }
 

@@ -8,7 +8,7 @@ namespace {
 
 class Bench : public ProgramTest {};
 
-TEST_F(Bench, PaperSaysItInTextAndInJson) {
+TEST_F(Bench, PaperWritesTextAndJson) {
     const Outcome outcome = run("paper --objects 2000 1000 --rounds 3 --threads 2 --json f");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");

@@ -40,7 +40,7 @@ protected:
     }
 };
 
-TEST_P(Assemblies, NodesAndTrianglesTellTheSame) {
+TEST_P(Assemblies, NodesAndTrianglesGiveEqualPairs) {
     std::set<Pairing> by_node, by_triangle;
     for (const auto& row : rows("")) {
         if (row["class"] != "contained") by_node.insert(pairing(row));

@@ -175,7 +175,7 @@ TEST_F(Engines, SameEvents) {
     EXPECT_EQ(stats["ended"], expected["ended"]);
 }
 
-TEST_F(Engines, WhatGoesTogether) {
+TEST_F(Engines, RefusesOptionsThatConflict) {
     save_boxes("a.npy", {0});
     for (const auto& [arguments, message] : std::map<std::string, std::string>{
              {"--engine processes --threads 2",
@@ -193,7 +193,7 @@ TEST_F(Engines, WhatGoesTogether) {
     }
 }
 
-TEST_F(Engines, BadBoxesAreTold) {
+TEST_F(Engines, ReportsBadBoxes) {
     auto rows = rows_of(std::vector<float>(30'000, 1));
     rows[6 * 29'000 + 4] = -7;
     write_file(file("bad.npy"), npy_of(io::NpyType::float32, {30'000, 6}, rows));
@@ -203,7 +203,7 @@ TEST_F(Engines, BadBoxesAreTold) {
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"bad.npy"});
 }
 
-TEST_F(Engines, AProgramOfWorkersThatIsNone) {
+TEST_F(Engines, RefusesAnInvalidWorkerProgram) {
     save_boxes("a.npy", {0, 0.5});
     const Outcome missing = shell("OCTOPAIR_WORKER=/nonexistent \"$P\" detect a.npy --engine processes --output p.npy");
     EXPECT_EQ(missing.status, 6);

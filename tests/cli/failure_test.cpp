@@ -24,7 +24,7 @@ protected:
     }
 };
 
-TEST_F(Failure, BoxesThatAreNone) {
+TEST_F(Failure, RefusesInvalidBoxes) {
     save_boxes("good.npy", {0, 1, 2});
     auto rows = rows_of({0, 1, 2});
     rows[6 + 1] = NAN;
@@ -62,7 +62,7 @@ TEST_F(Failure, ABadFrameLeavesNoFramesBefore) {
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"m.npy"});
 }
 
-TEST_F(Failure, FilesThatAreNone) {
+TEST_F(Failure, RefusesInvalidFiles) {
     write_file(file("text.npy"), "hello");
     write_file(file("short.csv"), "0,0,0,1,1,1\n1,2\n");
     save_boxes("a.npy", {0, 1});

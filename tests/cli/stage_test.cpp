@@ -144,7 +144,7 @@ TEST_F(Stages, TrianglesMeetBeyondWhatTheyShare) {
     EXPECT_EQ(met["b_triangle"], 3);
 }
 
-TEST_F(Stages, FiltersAreTold) {
+TEST_F(Stages, StatsListTheFilters) {
     rules(R"({"exclude": [{"a": "*flat", "b": "*through"}]})");
     const nlohmann::json told = stats("t.obj --exclude r.json");
     EXPECT_EQ(told["pairs"], 0);

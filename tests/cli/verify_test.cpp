@@ -48,7 +48,7 @@ TEST_F(DetectVerify, GivesTheSameBytes) {
     EXPECT_EQ(checked.out, plain);
 }
 
-TEST_F(DetectVerify, StatsTell) {
+TEST_F(DetectVerify, StatsHaveTheVerification) {
     EXPECT_EQ(run("detect a.npy --verify --order octal --quiet --output p.npy --stats s.json").status, 0);
     const auto stats = nlohmann::json::parse(content("s.json"));
     EXPECT_EQ(stats.at("verified"), true);

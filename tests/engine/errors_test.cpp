@@ -128,7 +128,7 @@ TEST_P(EngineErrors, PaddingOfAnotherLength) {
     }
 }
 
-TEST_P(EngineErrors, PaddingThatIsNone) {
+TEST_P(EngineErrors, RefusesInvalidPadding) {
     for (const double value : {-0.25, nan_value, infinity, -infinity}) {
         const std::vector<double> padding = {0.5, value};
         expect_all_refuse(Objects{std::span<const Box3f>(good_), padding}, {}, {"1", "padding"});

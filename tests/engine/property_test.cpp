@@ -18,7 +18,7 @@ using test::same_bytes;
 using test::same_pairs;
 
 constexpr std::uint64_t cases_a_kind = test::scaled(300, 10);
-constexpr std::uint64_t least_buffer = 1 << 20;  // smaller values of Options::buffer_bytes are raised to this
+constexpr std::uint64_t min_buffer = 1 << 20;  // smaller values of Options::buffer_bytes are raised to this
 
 /// Returns the engine for a number of threads. All cases reuse the engine, so that state left by a call would show in
 /// the next case.
@@ -61,7 +61,7 @@ public:
 
     Summary stream(unsigned threads, const Options& options, std::vector<Pair>& found) {
         Engine& engine = engine_of(threads);
-        const std::uint64_t bound = std::max(options.buffer_bytes, least_buffer);
+        const std::uint64_t bound = std::max(options.buffer_bytes, min_buffer);
         const PairSink sink = [&](std::span<const Pair> batch) {
             EXPECT_LE(batch.size_bytes(), bound);
             found.insert(found.end(), batch.begin(), batch.end());

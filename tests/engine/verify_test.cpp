@@ -164,7 +164,7 @@ TEST(Verified, ShortFormAndProgress) {
     }
 }
 
-TEST(Verified, ABadBoxIsRefusedAsEver) {
+TEST(Verified, RefusesABadBox) {
     std::vector<Box3f> boxes = test::make_boxes("uniform", 3000, 1);
     boxes[7].min[0] = 1e9f;
     Options options;

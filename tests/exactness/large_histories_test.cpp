@@ -12,13 +12,12 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t least_history_objects = test::scaled(40'000, 10),
-                        most_history_objects = test::scaled(200'000, 10);
+constexpr std::uint64_t min_history_objects = test::scaled(40'000, 10), max_history_objects = test::scaled(200'000, 10);
 
 std::uint64_t object_count(std::uint64_t seed) {
     samples::RandomStream random(seed, 4);
-    return std::uint64_t(double(least_history_objects) *
-                         std::pow(double(most_history_objects) / double(least_history_objects), random.uniform()));
+    return std::uint64_t(double(min_history_objects) *
+                         std::pow(double(max_history_objects) / double(min_history_objects), random.uniform()));
 }
 
 TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
@@ -28,9 +27,9 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     const auto families = test::family_names();
     // By default a fifth of the number of large scenes. The environment can set another number of cases.
     const std::uint64_t count = test::case_count(test::scene_range(test::SceneSize::large, 20).size() / 5);
-    const std::uint64_t most_tried = 4 * count;
+    const std::uint64_t max_tried = 4 * count;
     std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
-    for (std::uint64_t i = 0; i < most_tried && done < count; ++i) {
+    for (std::uint64_t i = 0; i < max_tried && done < count; ++i) {
         const std::uint64_t seed = test::case_seed("large histories", i);
         const std::string& family = families[seed % families.size()];
         test::LargeHistory history(family, object_count(seed), seed);

@@ -20,7 +20,7 @@ using test::Case;
 
 constexpr std::uint64_t usual_scenes = test::scaled(20, 10);
 constexpr std::uint64_t large_parts = 4;  // the scenes are split, so that several processes can share them
-constexpr std::uint64_t least_objects = test::scaled(9'000, 3);
+constexpr std::uint64_t min_objects = test::scaled(9'000, 3);
 
 class LargeScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
@@ -29,7 +29,7 @@ TEST_P(LargeScenes, AgreeWithTheSecondAlgorithm) {
     const test::SceneRange scenes =
         test::scene_range(test::SceneSize::large, usual_scenes).part(GetParam(), large_parts);
     for (std::uint64_t i = scenes.begin; i < scenes.end; ++i) {
-        const Case a_case = test::large_case(i, least_objects);
+        const Case a_case = test::large_case(i, min_objects);
         const auto finding = test::check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
         ASSERT_FALSE(finding) << "large case " << i << ", " << a_case.describe() << ": " << finding->check << ": "
                               << finding->text;

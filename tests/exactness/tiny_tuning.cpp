@@ -28,37 +28,37 @@ private:
 
 void shrink(Tuning::Sampling& sampling, Shrinker& to) {
     to.one_of<std::size_t>(sampling.stride, {1, 1, 2, 3, 7});
-    to.one_of<std::size_t>(sampling.most, {8, 20, 1000});
-    to.one_of<std::size_t>(sampling.most_stride, {1, 2, 5});
-    to.one_of<std::size_t>(sampling.space, {1, 5, 60});
+    to.one_of<std::size_t>(sampling.max_objects, {8, 20, 1000});
+    to.one_of<std::size_t>(sampling.max_stride, {1, 2, 5});
+    to.one_of<std::size_t>(sampling.space_objects, {1, 5, 60});
 }
 
 void shrink(Tuning::Split& split, Shrinker& to) {
-    to.one_of<double>(split.always, {1, 2, 5, 12});
-    to.one_of<double>(split.never, {0, 1, 3});
-    split.never = std::min(split.never, split.always);
-    to.one_of<double>(split.crowded_window, {0, 0.5, 3});
-    to.one_of<double>(split.most_entries, {1.6, 3, 8});
-    to.one_of<double>(split.handed_growth, {1.5, 3, 8});
-    to.one_of<std::uint64_t>(split.table_cells, {1, 2});
+    to.one_of<double>(split.always_above, {1, 2, 5, 12});
+    to.one_of<double>(split.never_up_to, {0, 1, 3});
+    split.never_up_to = std::min(split.never_up_to, split.always_above);
+    to.one_of<double>(split.max_tests_per_object, {0, 0.5, 3});
+    to.one_of<double>(split.max_entries_per_object, {1.6, 3, 8});
+    to.one_of<double>(split.max_handed_growth, {1.5, 3, 8});
+    to.one_of<std::uint64_t>(split.max_cells_per_octant, {1, 2});
 }
 
 void shrink(Tuning::Build& build, Shrinker& to) {
     to.one_of<std::size_t>(build.blocks_per_thread, {1, 3});
-    to.one_of<std::size_t>(build.least_block, {1, 3, 17});
+    to.one_of<std::size_t>(build.min_block, {1, 3, 17});
     to.one_of<std::size_t>(build.counts_per_range, {1, 8, 50});
     to.one_of<std::size_t>(build.batch, {1, 3, 16});
 }
 
 void shrink(Tuning::Scan& scan, Shrinker& to) {
-    to.one_of<std::size_t>(scan.large_node, {1, 4, 20, 60});
-    to.one_of<std::size_t>(scan.share_entries, {1, 5, 30});
+    to.one_of<std::size_t>(scan.large_octant, {1, 4, 20, 60});
+    to.one_of<std::size_t>(scan.max_share_entries, {1, 5, 30});
     to.one_of<std::size_t>(scan.shares_per_thread, {1, 3});
-    to.one_of<std::size_t>(scan.crowded_octant, {1, 4, 16, 50});
-    to.one_of<std::uint64_t>(scan.good_tests, {0, 1, 3, 8});
-    to.one_of<double>(scan.largest_part, {0.6, 0.8, 0.95, 1});
-    to.one_of<double>(scan.most_growth, {1.5, 4, 16});
-    to.one_of<unsigned>(scan.most_nesting, {1, 2, 3, 5, 8});
+    to.one_of<std::size_t>(scan.max_swept_list, {1, 4, 16, 50});
+    to.one_of<std::uint64_t>(scan.max_tests_per_box, {0, 1, 3, 8});
+    to.one_of<double>(scan.max_part_in_octant, {0.6, 0.8, 0.95, 1});
+    to.one_of<double>(scan.max_growth, {1.5, 4, 16});
+    to.one_of<unsigned>(scan.max_nesting, {1, 2, 3, 5, 8});
 }
 
 void shrink(Tuning::Sweep& sweep, Shrinker& to) {
@@ -70,37 +70,37 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.tests_per_call, {1, 2, 7});
     to.one_of<std::size_t>(sweep.hits, {8, 9, 20});
     to.one_of<std::size_t>(sweep.pairs, {1, 9, 30});
-    to.one_of<std::size_t>(sweep.most_buckets, {2, 4, 16});
-    to.one_of<std::size_t>(sweep.few, {1, 2, 5});
-    to.one_of<std::size_t>(sweep.in_cache, {1, 4, 20});
+    to.one_of<std::size_t>(sweep.max_buckets, {2, 4, 16});
+    to.one_of<std::size_t>(sweep.max_comparison_sort, {1, 2, 5});
+    to.one_of<std::size_t>(sweep.max_bucket_sort, {1, 4, 20});
     to.one_of<std::size_t>(sweep.radix_block, {1, 5});
     to.one_of<unsigned>(sweep.radix_digit_bits, {3, 5});
-    to.one_of<std::size_t>(sweep.measured_least, {1, 4, 16});
-    to.one_of<std::size_t>(sweep.measured_most, {16, 40});
+    to.one_of<std::size_t>(sweep.min_measured, {1, 4, 16});
+    to.one_of<std::size_t>(sweep.max_measured, {16, 40});
     to.one_of<std::size_t>(sweep.tried_rows, {1, 5});
     to.one_of<std::size_t>(sweep.measured_row_stride, {1, 3});
     to.one_of<std::size_t>(sweep.measured_rows, {1, 5});
 }
 
 void shrink(Tuning::Dynamic& dynamic, Shrinker& to) {
-    to.one_of<std::size_t>(dynamic.listed_visits, {1, 2, 5, 20});
+    to.one_of<std::size_t>(dynamic.max_listed_visits, {1, 2, 5, 20});
     to.one_of<std::size_t>(dynamic.hits, {1, 3, 10});
-    to.one_of<double>(dynamic.cell_objects, {1, 2});
-    to.one_of<double>(dynamic.most_growth, {1.1, 3, 8});
-    to.one_of<unsigned>(dynamic.grid_bits, {0, 1, 4});
+    to.one_of<double>(dynamic.max_cell_objects, {1, 2});
+    to.one_of<double>(dynamic.max_growth, {1.1, 3, 8});
+    to.one_of<unsigned>(dynamic.max_grid_bits, {0, 1, 4});
 }
 
 void shrink(Tuning::Output& output, Shrinker& to) {
-    to.one_of<std::uint64_t>(output.least_buffer, {8, 64, 1000, 10000});
+    to.one_of<std::uint64_t>(output.min_buffer_bytes, {8, 64, 1000, 10000});
     to.one_of<std::size_t>(output.batch, {1, 3, 50});
-    to.one_of<std::size_t>(output.handed_out, {1, 4, 100});
+    to.one_of<std::size_t>(output.max_pairs_per_sink_call, {1, 4, 100});
     to.one_of<std::size_t>(output.list_block, {1, 5, 100});
     to.one_of<std::size_t>(output.page, {1, 2, 8});
     to.one_of<unsigned>(output.bucket_row_bits, {0, 1, 3});
     to.one_of<unsigned>(output.bucket_bits, {1, 2, 4});
     to.one_of<unsigned>(output.bucket_split_bits, {1, 2});
     to.one_of<std::size_t>(output.sorted_at_once, {1, 3, 20});
-    to.one_of<std::size_t>(output.radix_from, {1, 4});
+    to.one_of<std::size_t>(output.min_radix_sort, {1, 4});
     to.one_of<std::size_t>(output.shares_ahead, {1, 2});
 }
 
@@ -126,25 +126,25 @@ void shrink(Tuning::Ranks& ranks, Shrinker& to) {
 
 void shrink(Tuning::Scene& scene, Shrinker& to) {
     to.one_of<StepChoice>(scene.step, {StepChoice::full, StepChoice::incremental, StepChoice::incremental});
-    to.one_of<unsigned>(scene.refills, {0, 1, 3});
+    to.one_of<unsigned>(scene.max_refills, {0, 1, 3});
     to.one_of<double>(scene.log_part, {0, 0.5});
-    to.one_of<double>(scene.log_least, {1, 10, 1000});
+    to.one_of<double>(scene.min_log, {1, 10, 1000});
     to.one_of<std::uint64_t>(scene.visits, {1, 20, 100000});
     to.one_of<std::uint64_t>(scene.changed_pairs, {1, 30, 100000});
     to.one_of<std::size_t>(scene.share_visits, {1, 7});
     to.one_of<std::size_t>(scene.run_visits, {1, 3});
     to.one_of<std::uint64_t>(scene.waiting_part, {1, 100});
-    to.one_of<std::uint64_t>(scene.waiting_least, {1, 10});
+    to.one_of<std::uint64_t>(scene.min_waiting, {1, 10});
     to.one_of<std::size_t>(scene.share_queries, {1, 2});
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
-    tuning.scan.crowded_octant = 1;
-    tuning.scan.good_tests = 0;
-    tuning.scan.largest_part = 0.9;
-    tuning.scan.most_growth = 16;
+    tuning.scan.max_swept_list = 1;
+    tuning.scan.max_tests_per_box = 0;
+    tuning.scan.max_part_in_octant = 0.9;
+    tuning.scan.max_growth = 16;
     tuning.sweep.small_set = 2;
     tuning.sweep.cheap_tests = 0;
     tuning.sweep.tests_per_pair = 1;

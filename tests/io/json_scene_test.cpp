@@ -84,9 +84,9 @@ TEST(JsonScene, ObjectsShareShapesAndSayWhatTheyAre) {
     EXPECT_NE(loaded.parents[3], loaded.parents[1]);
 }
 
-TEST(JsonScene, AnEmptySceneIsOne) { EXPECT_EQ(parsed_scene(R"({"objects": []})").objects, 0u); }
+TEST(JsonScene, AcceptsAnEmptyScene) { EXPECT_EQ(parsed_scene(R"({"objects": []})").objects, 0u); }
 
-TEST(JsonScene, RefusesInClearWords) {
+TEST(JsonScene, RefusesWithAClearMessage) {
     const std::string ball = R"("shape":{"type":"sphere","radius":1})";
     const std::pair<std::string, std::string> cases[] = {
         {"[]", "f.json: an array, not an object"},

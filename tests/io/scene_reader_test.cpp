@@ -160,7 +160,7 @@ TEST(SceneReader, RefusesFramesThatDoNotAgree) {
               "b: has 1 frames, but a has 2; the files of one set must have the same number");
 }
 
-TEST(SceneReader, FindsWhatIsNoBox) {
+TEST(SceneReader, FindsInvalidBoxes) {
     EXPECT_FALSE(io::find_fault(scene_of<float>({box_at(0), box_at(1)})));
     EXPECT_FALSE(io::find_fault(scene_of<float>({})));
     auto bad = box_at(0);

@@ -65,7 +65,7 @@ TEST_F(RankJobs, AreCancelledByTheEndOfTheEngine) {
     for (const Job& job : waiting) EXPECT_EQ(int(job.state()), int(JobState::cancelled));
 }
 
-TEST_F(RankJobs, TellTheSameErrorOnAllRanks) {
+TEST_F(RankJobs, ReportTheSameErrorOnAllRanks) {
     std::vector<Box3f> bad = own_;
     if (last()) bad.back().max[2] = -1;
     Job job = engine_->submit(borrowed({std::span<const Box3f>(bad), {}}));

@@ -114,7 +114,7 @@ TEST_F(RankLeading, HasThreadsInEachRank) {
     lead([&](Engine& engine) { expect_usable(engine); }, 2);
 }
 
-TEST_F(RankLeading, TellsErrorsInTheWordsOfThreads) {
+TEST_F(RankLeading, ReportsErrorsLikeTheLocalEngine) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const auto expect_same = [&](ErrorCode code, const auto& call) {
@@ -220,7 +220,7 @@ TEST_F(RankLeading, IsFollowedAgainAndByNobodyElse) {
     for (int i = 0; i < 3; ++i) lead([&](Engine& engine) { expect_usable(engine); });
 }
 
-TEST(RankHeartbeat, TellsWhoIsSilent) {
+TEST(RankHeartbeat, NamesTheSilentRank) {
     if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
     const bool first = test::own_rank() == 0, last = test::own_rank() + 1 == test::rank_count();
     constexpr std::chrono::milliseconds silence(2000);  // longer than the stalls of a busy machine

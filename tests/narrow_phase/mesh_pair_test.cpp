@@ -62,7 +62,7 @@ struct Couple {
         return meeting;
     }
 
-    double least_gap() const {
+    double min_gap() const {
         double least = std::numeric_limits<double>::infinity();
         for (std::uint32_t i = 0; i < mesh_a.triangles.size(); ++i) {
             for (std::uint32_t j = 0; j < mesh_b.triangles.size(); ++j) {
@@ -121,7 +121,7 @@ TEST(MeshPair, GapIsTheLeastOfAllTriangles) {
         couple.pose_a = random_pose(random, 3);
         couple.pose_b = random_pose(random, 3);
         if (round % 3 == 1) scale(couple.pose_b, {1, -2, 0.25});
-        const double least = couple.least_gap();
+        const double least = couple.min_gap();
         const auto gap = surface_gap(couple.a(), couple.b(), 100);
         ASSERT_TRUE(gap);
         EXPECT_EQ(gap->distance, least);
@@ -238,7 +238,7 @@ TEST(MeshInside, CornersOfTriangleSoupsCloseThem) {
     for (const double y : {-0.5, 0.0, 1.0, 1.5}) EXPECT_FALSE(encloses({*tree, Pose{}}, {-0.5, y, y})) << y;
 }
 
-TEST(MeshInside, WhatIsHeldIsWhole) {
+TEST(MeshInside, InsideMeansWhollyInside) {
     const auto cube = [](double half) { return box_mesh({-half, -half, -half}, {half, half, half}); };
     Couple boxes(cube(2), cube(1));
     EXPECT_TRUE(contains_mesh(boxes.a(), boxes.b()));

@@ -181,7 +181,7 @@ const std::array<KnownPair, 20> known_pairs = {{
     {"corner in an edge", {{flat, {{{2, 2, 0}, {5, 5, 0}, {5, 5, 1}}}}}, 0, true, true},
 }};
 
-TEST(TrianglePair, KnowsTheseByHand) {
+TEST(TrianglePair, DecidesPairsMadeByHand) {
     for (const KnownPair& known : known_pairs) {
         const auto& [a, b] = known.pair;
         EXPECT_EQ(triangles_meet(a, b), known.meet) << known.name;

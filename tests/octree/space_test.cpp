@@ -60,7 +60,7 @@ TEST(Space, TheKernelFollowsTheMap) {
     }
 }
 
-TEST(Space, WhatIsNoBoxHasCellsInOrder) {
+TEST(Space, InvalidBoxesHaveOrderedCells) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const std::array<float, 5> numbers = {nan, -infinity, infinity, 0.2f, 0.7f};

@@ -94,7 +94,7 @@ TEST(Sweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
         for (const SweepKind kind : {SweepKind::self, SweepKind::cross, SweepKind::cross_strict}) {
             const SweepSet& others = kind == SweepKind::self ? rows : columns;
             const Hits expected = brute(rows, others, kind);
-            for (const std::size_t room : {most_columns, most_columns + 3, std::size_t(1000)}) {
+            for (const std::size_t room : {max_columns, max_columns + 3, std::size_t(1000)}) {
                 ASSERT_EQ(run(sweep_rows_scalar, {rows, others, kind}, room), expected) << "round " << round;
                 ASSERT_EQ(run(sweep_rows, {rows, others, kind}, room), expected) << "round " << round;
             }
@@ -112,7 +112,7 @@ TEST(Sweep, HitsBecomePairsInOrder) {
         SweepCursor cursor;
         hits.resize(sweep_rows(sweep, cursor, hits));
         ASSERT_GE(cursor.row, rows.size());
-        std::vector<Pair> expected, found(hits.size() * most_hits);
+        std::vector<Pair> expected, found(hits.size() * max_hits);
         for (const HitMask& hit : hits) {
             for_each_bit(hit, [&](std::uint32_t row) {
                 expected.push_back({rows.object()[row], columns.object()[hit.column()] - second_begin});

@@ -52,7 +52,7 @@ std::vector<Pair> left_by(std::unique_ptr<Filter> filter, const Crowd& crowd) {
     return outcome.pairs;
 }
 
-void expect_sound(const Crowd& crowd, double margin, const std::vector<Pair>& left, double most_left) {
+void expect_sound(const Crowd& crowd, double margin, const std::vector<Pair>& left, double max_left) {
     std::vector<std::vector<bool>> kept(crowd.poses.size(), std::vector<bool>(crowd.poses.size()));
     for (const Pair& pair : left) kept[pair.a][pair.b] = true;
     std::size_t pairs = 0;
@@ -64,7 +64,7 @@ void expect_sound(const Crowd& crowd, double margin, const std::vector<Pair>& le
             EXPECT_FALSE(convex_within({crowd.solid(a), crowd.poses[a]}, {crowd.solid(b), crowd.poses[b]}, reach));
         }
     }
-    EXPECT_LT(double(left.size()), most_left * double(pairs));
+    EXPECT_LT(double(left.size()), max_left * double(pairs));
 }
 
 TEST(BoundingFilters, LeaveOutNothingThatCounts) {

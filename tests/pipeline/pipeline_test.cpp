@@ -131,7 +131,7 @@ TEST_P(AnyPipeline, JoinsTwoSets) {
     expect_same(found, expected);
 }
 
-TEST_P(AnyPipeline, TellsItsProgress) {
+TEST_P(AnyPipeline, ReportsItsProgress) {
     const auto boxes = samples::make_scene("dense", 20'000, 1);
     Options asked = options();
     std::vector<double> told;

@@ -9,7 +9,7 @@
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
 #include "pipeline/batch_access.hpp"
-#include "pipeline/name_pattern.hpp"
+#include "pipeline/name_filter.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::test {
@@ -72,7 +72,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(, SimpleFilters, ::testing::Bool(),
                          [](const auto& drawn) { return drawn.param ? "Join" : "Within"; });
 
-TEST_P(SimpleFilters, GroupsWantEachOther) {
+TEST_P(SimpleFilters, GroupsSelectEachOther) {
     for (int round = 0; round < rounds; ++round) {
         const Numbers groups = numbers(8), masks = numbers(8);
         const Numbers groups_b = join() ? numbers(8) : groups, masks_b = join() ? numbers(8) : masks;

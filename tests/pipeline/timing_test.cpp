@@ -50,7 +50,7 @@ std::unique_ptr<Filter> slow_filter(Clock::duration of_a_pair) {
 class PipelineTiming : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, PipelineTiming, ::testing::Values(1u, 2u, 7u));
 
-TEST_P(PipelineTiming, StopRequestsAreHeardInTime) {
+TEST_P(PipelineTiming, StopsInTime) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 20'000, 1);
     const auto engine = make_local_engine(2);
     for (const Order order : {Order::octal, Order::ascending}) {

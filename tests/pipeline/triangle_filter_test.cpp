@@ -96,7 +96,7 @@ TEST(TriangleFilter, FindsWhatAllPairsHold) {
     }
 }
 
-TEST(TriangleFilter, JoinsKnowNoNeighbours) {
+TEST(TriangleFilter, JoinsHaveNoNeighbours) {
     const Soup first(300, 2), second(500, 3);
     std::vector<Pair> expected;
     for (std::uint32_t i = 0; i < first.triangles.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(TriangleFilter, JoinsKnowNoNeighbours) {
     EXPECT_GT(expected.size(), 300U);
 }
 
-TEST(TriangleFilter, LearnsHowTheyMeetOrHowFarTheyAreApart) {
+TEST(TriangleFilter, ReportsHowTheyMeetOrTheirDistance) {
     const Soup soup(700, 4);
     TriangleOptions options;
     options.margin = 0.2;

@@ -16,7 +16,7 @@ namespace octopair::test {
 namespace {
 
 /// Returns the address of the control block in this process.
-std::byte* find_desk() {
+std::byte* find_control_block() {
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         if (line.find("memfd:octopair") == std::string::npos) continue;
@@ -42,7 +42,7 @@ public:
 private:
     void perhaps(std::uint64_t one_in) {
         if (random_.below(one_in) != 0) return;
-        if (control_block_ == nullptr) control_block_ = find_desk();
+        if (control_block_ == nullptr) control_block_ = find_control_block();
         if (control_block_ != nullptr) write();
     }
 
@@ -57,10 +57,10 @@ private:
                 return scribble(ControlBlockLayout::runs + random_.below(shares) * sizeof(Run), sizeof(Run));
             case 3:
                 return scribble(
-                    ControlBlockLayout::rings + (slot_ * most_ring_blocks + random_.below(8)) * sizeof(RingEntry),
+                    ControlBlockLayout::rings + (slot_ * max_ring_blocks + random_.below(8)) * sizeof(RingEntry),
                     sizeof(RingEntry));
             case 4:
-                return scribble(ControlBlockLayout::logs + slot_ * most_logged * sizeof(LoggedPage), 64);
+                return scribble(ControlBlockLayout::logs + slot_ * max_logged * sizeof(LoggedPage), 64);
             default:
                 return scribble(ControlBlockLayout::commits + 2 * slot_ * sizeof(Commit), 256);
         }

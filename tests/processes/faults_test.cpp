@@ -26,8 +26,8 @@ using test::Moment;
 
 constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
 constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
-constexpr unsigned most_of_a_step = 2;  // per call: a third fault in one share would end the call
-constexpr unsigned most_tries = 20;
+constexpr unsigned max_faults_per_call = 2;  // per call: a third fault in one share would end the call
+constexpr unsigned max_tries = 20;
 
 /// The calls and objects of a case.
 struct FaultCase {
@@ -57,7 +57,7 @@ std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
     std::vector<Fault> faults;
     for (const Step step : fault_steps) {
         if (step == Step::order && !ordered) continue;
-        for (auto i = random.below(most_of_a_step + 1); i > 0; --i) faults.push_back(random_fault(step, random));
+        for (auto i = random.below(max_faults_per_call + 1); i > 0; --i) faults.push_back(random_fault(step, random));
     }
     return faults;
 }
@@ -69,7 +69,7 @@ protected:
         const auto local = make_local_engine(2);
         const Answer expected = test::ask(*local, scene_, asked);
         plan_.set(faults);
-        for (unsigned tries = 0; !plan_.empty() && tries < most_tries; ++tries) {
+        for (unsigned tries = 0; !plan_.empty() && tries < max_tries; ++tries) {
             test::expect_same(test::ask(engine, scene_, asked), expected);
         }
         plan_.set({});

@@ -84,7 +84,7 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     }
 }
 
-TEST_F(WorkerLosses, FailuresWithoutWordsAreStillDescribed) {
+TEST_F(WorkerLosses, FailuresWithoutAMessageAreDescribed) {
     const Scene scene("clustered", 6'000, 1);
     test::MappedPlan plan;
     const auto engine = test::make_faulty_engine(2);

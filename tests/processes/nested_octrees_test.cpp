@@ -28,9 +28,9 @@ using test::Moment;
 using test::Scene;
 
 constexpr std::uint64_t objects = 60'000;
-constexpr std::uint64_t most_pairs = 2'000'000;
-constexpr unsigned crew_size = 2;
-constexpr std::uint32_t octree_blocks = 2 * crew_size;  // shares of encode, and of scatter, of the outermost octree
+constexpr std::uint64_t max_pairs = 2'000'000;
+constexpr unsigned worker_count = 2;
+constexpr std::uint32_t octree_blocks = 2 * worker_count;  // shares of encode, and of scatter, of the outermost octree
 
 class NestedOctrees : public test::Processes {};
 
@@ -64,7 +64,7 @@ TEST_F(NestedOctrees, OfClustersWithinClustersAreThoseOfThreads) {
     for (std::uint64_t seed = first; seed < first + test::scaled(10, 5); ++seed) {
         const test::Case a_case = test::make_family_case("nested", objects, seed);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        if (test::AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > most_pairs) continue;
+        if (test::AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > max_pairs) continue;
         for (const Order order : {Order::octal, Order::ascending}) {
             const test::AnyCall call{a_case, order, false, false};
             const auto expected = call.made_by(*local);
@@ -92,7 +92,7 @@ std::vector<Fault> nested_faults() {
 TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
     const Scene scene("speck", objects, 3);
     test::MappedPlan plan;
-    const auto local = make_local_engine(1), engine = test::make_faulty_engine(crew_size);
+    const auto local = make_local_engine(1), engine = test::make_faulty_engine(worker_count);
     constexpr std::array calls = {
         Asked{.how = How::list, .order = Order::octal}, Asked{.how = How::list, .order = Order::ascending},
         Asked{.how = How::stream, .order = Order::octal},

@@ -62,7 +62,7 @@ TEST(WorkerProperty, AgreesWithThreads) {
     EXPECT_TRUE(held);
 }
 
-constexpr std::uint64_t most_counted_pairs = test::scaled(1'000'000, 8);
+constexpr std::uint64_t max_counted_pairs = test::scaled(1'000'000, 8);
 
 /// Tests the kinds with more objects, so that several workers take part.
 TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
@@ -74,7 +74,7 @@ TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
         Case a_case;
         a_case.first.boxes = test::make_double_boxes(kind, 13'000, seed++);
         const AnyCall count{a_case, Order::octal, false, false};
-        if (count.counted_by(engines.local()) > most_counted_pairs) continue;
+        if (count.counted_by(engines.local()) > max_counted_pairs) continue;
         Engine& engine = engines.workers(3, Arrangement::shared);
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const bool streamed : {false, true}) {

@@ -138,7 +138,7 @@ struct Application {
     std::vector<pid_t> workers;
 };
 
-class WorkersOfTheDead : public WorkerTiming {
+class WorkersOfADeadClient : public WorkerTiming {
 protected:
     void expect_gone(const Application& application) {
         EXPECT_EQ(application.workers.size(), 3u);
@@ -152,7 +152,7 @@ protected:
     }
 };
 
-TEST_F(WorkersOfTheDead, EndWhenItIsKilled) {
+TEST_F(WorkersOfADeadClient, EndWhenItIsKilled) {
     for (const char* how : {"idle", "busy"}) {
         const Application application(how);
         std::this_thread::sleep_for(milliseconds(50));
@@ -162,13 +162,13 @@ TEST_F(WorkersOfTheDead, EndWhenItIsKilled) {
     }
 }
 
-TEST_F(WorkersOfTheDead, EndWhenItExits) {
+TEST_F(WorkersOfADeadClient, EndWhenItExits) {
     const Application application("exit");
     (void)::waitpid(application.id, nullptr, 0);
     expect_gone(application);
 }
 
-TEST_F(WorkersOfTheDead, EndThoughTheyAreStopped) {
+TEST_F(WorkersOfADeadClient, EndThoughTheyAreStopped) {
     for (const char* how : {"idle", "fork"}) {
         const Application application(how);
         (void)::kill(application.workers.at(1), SIGSTOP);
@@ -178,7 +178,7 @@ TEST_F(WorkersOfTheDead, EndThoughTheyAreStopped) {
     }
 }
 
-TEST_F(WorkersOfTheDead, EndThoughAChildOfItHasTheirSockets) {
+TEST_F(WorkersOfADeadClient, EndThoughAChildOfItHasTheirSockets) {
     const Application application("fork");
     std::this_thread::sleep_for(milliseconds(50));
     kill(application);

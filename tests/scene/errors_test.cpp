@@ -86,7 +86,7 @@ TEST_F(SceneErrors, OneIdTwiceInARemoval) {
     expect_refused([&] { scene_.remove(std::vector{ids_[0], ids_[0]}); }, "twice");
 }
 
-TEST_F(SceneErrors, BoxesThatAreNone) {
+TEST_F(SceneErrors, RefusesInvalidBoxes) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     for (const float wrong : {nan, infinity, 3.0f}) {
         const std::vector<Box3f> boxes = {unit, {{0, wrong, 0}, {1, 1, 1}}};

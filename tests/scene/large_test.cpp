@@ -39,9 +39,9 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
     std::mt19937 random(33);
     // A scene decides by measured times whether a step is partial. If no usual step of a large scene was partial,
     // further steps follow until a step is partial. Few objects move in these further steps.
-    constexpr int usual_steps = 6, most_steps = 100;
+    constexpr int usual_steps = 6, max_steps = 100;
     int partial = 0;
-    for (int step = 0; step < usual_steps || (objects > 1000 && partial == 0 && step < most_steps); ++step) {
+    for (int step = 0; step < usual_steps || (objects > 1000 && partial == 0 && step < max_steps); ++step) {
         const std::vector<Pair> expected = find_pairs(boxes);
         for (Scene& scene : scenes) {
             partial += scene.step().full ? 0 : 1;

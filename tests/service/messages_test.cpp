@@ -198,7 +198,7 @@ TEST_F(ServedMessages, Garbage) {
         expect_bad(send({upload_of(&spec_, {}), buffer_of(message)}), "");
         expect_bad(test::call_small(channel_, buffer_of(message)), "");
     }
-    const auto large = buffer_of(std::string(service::most_message_bytes + 1, 'x'));
+    const auto large = buffer_of(std::string(service::max_message_bytes + 1, 'x'));
     EXPECT_EQ(test::call_small(channel_, large).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
     EXPECT_FALSE(send({large}).ok());
 }

@@ -9,7 +9,7 @@
 namespace octopair::test {
 namespace {
 
-using service::most_small_objects;
+using service::max_small_objects;
 using service::piece_bytes;
 using test::Served;
 
@@ -46,7 +46,7 @@ TEST(ServedSizes, OfInputsAtTheBordersOfPieces) {
     const auto remote = served.client();
     constexpr std::uint64_t in_a_piece = piece_bytes / sizeof(Box3f);
     for (const std::uint64_t objects :
-         {std::uint64_t(0), std::uint64_t(1), std::uint64_t(2), most_small_objects, most_small_objects + 1,
+         {std::uint64_t(0), std::uint64_t(1), std::uint64_t(2), max_small_objects, max_small_objects + 1,
           in_a_piece - 1, in_a_piece, in_a_piece + 1, 2 * in_a_piece, 2 * in_a_piece + 1, 3 * in_a_piece + 2}) {
         SCOPED_TRACE(objects);
         const std::vector<Box3f> boxes = boxes_with(objects, 7);

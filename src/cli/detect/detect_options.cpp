@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "cli/command/command.hpp"
-#include "cli/command/numbers.hpp"
-#include "cli/command/words.hpp"
+#include "cli/command/option_values.hpp"
 #include "cli/detect/event_detection.hpp"
 #include "cli/engine_choice.hpp"
 #include "io/formats.hpp"
@@ -28,7 +27,7 @@ void add_scene_options(Command& command, DetectRequest& request) {
         .add_option(
             "--objects",
             [&request](const std::string& word) {
-                check_word({"--objects", {"node", "triangle"}, {}}, word);
+                check_value("--objects", {"node", "triangle"}, word);
                 request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
             },
             "objects of a mesh file: node (default; nodes with meshes) or triangle")
@@ -47,7 +46,7 @@ void add_order_options(Command& command, DetectRequest& request, const std::stri
         .add_option(
             "--order",
             [&request](const std::string& word) {
-                check_word({"--order", {"ascending", "octal"}, {}}, word);
+                check_value("--order", {"ascending", "octal"}, word);
                 request.order = word == "octal" ? Order::octal : Order::ascending;
             },
             "order of the pairs: ascending (default) or octal")
@@ -77,7 +76,7 @@ void add_outcome(Command& command, DetectRequest& request) {
         .add_option(
             "--index-type",
             [&request](const std::string& word) {
-                check_word({"--index-type", {"uint32", "uint64"}, {}}, word);
+                check_value("--index-type", {"uint32", "uint64"}, word);
                 request.wide_indices = word == "uint64";
             },
             "type of indices in .npy: uint32 (default), or uint64 with --engine mpi (default for more than 2^32 - 1 "

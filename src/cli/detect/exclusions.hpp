@@ -1,7 +1,7 @@
 // Adds filters that leave out pairs by attributes of the objects: names, parents and groups.
 #pragma once
 
-#include "cli/detect/filter_row.hpp"
+#include "cli/detect/filter_chain.hpp"
 
 namespace octopair::cli {
 

@@ -25,7 +25,7 @@ struct Work {
 RankFilters::RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets,
                          const std::stop_token& stop)
     : cluster_(cluster) {
-    cluster_.together([&] { row_ = make_filter_row(request, sets, stop); });
+    cluster_.together([&] { row_ = make_filter_chain(request, sets, stop); });
 }
 
 PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, CollisionPiece* kept) {

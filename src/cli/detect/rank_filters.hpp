@@ -4,7 +4,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "cli/detect/filter_row.hpp"
+#include "cli/detect/filter_chain.hpp"
 #include "cli/output/collision_piece.hpp"
 #include "cli/ranks/cluster.hpp"
 
@@ -25,7 +25,7 @@ private:
     std::uint64_t join(PipelineSummary& summary, const Options& options);
 
     Cluster& cluster_;
-    std::unique_ptr<FilterRow> row_;
+    std::unique_ptr<FilterChain> row_;
 };
 
 }  // namespace octopair::cli

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
 #include "cli/input/join.hpp"

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "cli/command/command.hpp"
-#include "cli/command/numbers.hpp"
-#include "cli/command/words.hpp"
+#include "cli/command/option_values.hpp"
 #include "cli/detect/detection.hpp"
 #include "io/formats.hpp"
 #include "octopair/error.hpp"
@@ -27,12 +26,12 @@ Stage parse_stage(const std::string& word) {
     if (!with_pipeline && (word == "objects" || word == "features")) {
         refuse("--stage: this octopair was built without '" + word + "'; it has: pairs");
     }
-    check_word({"--stage", stage_names(), {}}, word);
+    check_value("--stage", stage_names(), word);
     return word == "pairs" ? Stage::pairs : word == "objects" ? Stage::objects : Stage::features;
 }
 
 AdjacentTriangles parse_adjacent(const std::string& word) {
-    check_word({"--adjacent", {"beyond-shared", "exclude", "include"}, {}}, word);
+    check_value("--adjacent", {"beyond-shared", "exclude", "include"}, word);
     return word == "exclude"   ? AdjacentTriangles::exclude
            : word == "include" ? AdjacentTriangles::include
                                : AdjacentTriangles::beyond_shared;
@@ -89,7 +88,7 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
         .add_option(
             "--same-parent",
             [&request](const std::string& word) {
-                check_word({"--same-parent", {"include", "exclude"}, {}}, word);
+                check_value("--same-parent", {"include", "exclude"}, word);
                 request.same_parent = word == "exclude";
             },
             "pairs of objects with the same parent: include (default) or exclude")

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/timed.hpp"
-#include "cli/detect/filter_row.hpp"
+#include "cli/detect/filter_chain.hpp"
 #include "cli/detect/frame_search.hpp"
 #include "cli/output/found_writer.hpp"
 
@@ -21,8 +21,8 @@ public:
         if (has_filters(run_.request)) {
             const Timed timed(run_.report.seconds.prepare);
             run_.progress.show("preparing", 0);
-            row_ = make_filter_row(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
-                                   run_.stop);
+            row_ = make_filter_chain(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
+                                     run_.stop);
         }
 #endif
         if (run_.request.count_only) return;
@@ -77,7 +77,7 @@ private:
 
     DetectRun& run_;
     std::unique_ptr<Engine> engine_;
-    std::unique_ptr<FilterRow> row_;       // none: pairs as they are
+    std::unique_ptr<FilterChain> row_;     // none: pairs as they are
     std::unique_ptr<FoundWriter> writer_;  // none: pairs are only counted
 };
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 
 namespace octopair::cli {
 

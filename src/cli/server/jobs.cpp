@@ -8,7 +8,7 @@
 
 #include "base/error_codes.hpp"
 #include "cli/command/interrupt.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/subcommands.hpp"

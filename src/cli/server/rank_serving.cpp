@@ -1,4 +1,5 @@
-#include "cli/server/rank_serving.hpp"
+// octopair serve --engine mpi: serves clients on rank 0 with an engine of all ranks.
+#include "cli/server/serving.hpp"
 
 #include <mpi.h>
 #include <unistd.h>
@@ -15,7 +16,6 @@
 #include "cli/command/failure.hpp"
 #include "cli/command/interrupt.hpp"
 #include "cli/ranks/cluster.hpp"
-#include "cli/server/serving.hpp"
 #include "engine/mpi/leading/leading.hpp"
 
 namespace octopair::cli {
@@ -34,7 +34,7 @@ public:
     FirstRank(const ServeRequest& request, unsigned ranks)
         : log_(make_log(request)), options_(server_options_of(request)), ranks_(ranks) {
         LeadingOptions leading = leading_options_of(request);
-        leading.lost = [this](const std::string& what) { lose(what); };
+        leading.on_silent_rank = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
         options_.engine = [this](unsigned) { return std::move(engine_); };
         // Small jobs and scenes run on threads of this process.

@@ -8,10 +8,6 @@
 #include "cli/server/serving.hpp"
 #include "cli/subcommands.hpp"
 
-#ifdef OCTOPAIR_WITH_MPI
-#include "cli/server/rank_serving.hpp"
-#endif
-
 namespace octopair::cli {
 
 namespace {

@@ -5,8 +5,7 @@
 
 #include "cli/command/command.hpp"
 #include "cli/command/config_file.hpp"
-#include "cli/command/numbers.hpp"
-#include "cli/command/words.hpp"
+#include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -110,7 +109,7 @@ void add_watching(Command& command, ServeRequest& request) {
         .add_option(
             "--log",
             [&request](const std::string& word) {
-                check_word({"--log", {"text", "json"}, {}}, word);
+                check_value("--log", {"text", "json"}, word);
                 request.log_form = word == "json" ? service::LogForm::json : service::LogForm::text;
             },
             "format of log lines on standard error: text (default) or json")
@@ -119,7 +118,7 @@ void add_watching(Command& command, ServeRequest& request) {
         .add_option(
             "--log-level",
             [&request](const std::string& word) {
-                check_word({"--log-level", {"debug", "info", "warn", "error"}, {}}, word);
+                check_value("--log-level", {"debug", "info", "warn", "error"}, word);
                 request.log_level = word;
             },
             "lowest level to log: debug, info (default), warn or error")

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "cli/command/command.hpp"
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/private_file.hpp"
 

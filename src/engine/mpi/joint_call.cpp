@@ -111,7 +111,7 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
 }
 
 JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
-                    std::uint64_t most_objects) {
+                    std::uint64_t max_objects) {
     Agreement(comm).together([&] { detail::check_request(request); });
     const std::vector<CallParameters> all = comm.all_gather(parameters_of(request, output_kind));
     check_parameters_agree(all);
@@ -129,9 +129,9 @@ JointCall join_call(Communicator& comm, const detail::Request& request, OutputKi
             call.totals[set] += all[rank].slices[set].size;
         }
     }
-    if (call.objects() > most_objects) {
+    if (call.objects() > max_objects) {
         throw Error(ErrorCode::resource_limit, std::to_string(call.objects()) + " objects on all ranks; at most " +
-                                                   std::to_string(most_objects) + " fit into one call");
+                                                   std::to_string(max_objects) + " fit into one call");
     }
     if (!call.form.exact) choose_origin(comm, request, call);
     return call;

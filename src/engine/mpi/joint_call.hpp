@@ -59,10 +59,10 @@ private:
     }
 };
 
-/// Collective. Combines the calls of all ranks into one. `most_objects`: maximum number of objects of all ranks together.
+/// Collective. Combines the calls of all ranks into one. `max_objects`: maximum number of objects of all ranks together.
 /// Throws: the same Error on all ranks if the options or sizes of a rank are invalid, or if the ranks' calls differ.
 JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
-                    std::uint64_t most_objects);
+                    std::uint64_t max_objects);
 
 /// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank.
 /// Requires: `sample` has size() and ascending elements.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/rank_search.hpp"

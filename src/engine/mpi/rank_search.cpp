@@ -27,7 +27,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();  // their indices fit into a Pair
+constexpr std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();  // their indices fit into a Pair
 
 }  // namespace
 
@@ -99,7 +99,7 @@ void RankSearch::join(Task& task) {
     const Metered metered(comm_, costs_.join);
     const detail::Request& asked = task.request;
     const OutputKind output_kind = task.indexed != nullptr ? OutputKind::list : output_kind_of(task.output);
-    const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : most_objects;
+    const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : max_objects;
     task.joint = join_call(comm_, asked, output_kind, most);
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
@@ -195,7 +195,7 @@ void RankSearch::exchange_objects(Task& task, const Routing& routing) {
         const Exchange counts = comm_.plan_exchange(routing.counts(set));
         incoming += counts.incoming();
         task.agreement.together([&] {
-            if (incoming > most_objects)
+            if (incoming > max_objects)
                 throw Error(ErrorCode::resource_limit, "more than 2^32 - 1 objects on one rank");
             received_[set].resize(counts.incoming());
         });

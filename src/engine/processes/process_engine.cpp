@@ -4,7 +4,7 @@
 #include <memory>
 #include <thread>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/processes/client/process_passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
@@ -20,10 +20,10 @@ namespace octopair {
 namespace {
 
 unsigned worker_count(unsigned requested) {
-    if (requested > most_workers) {
-        throw Error(ErrorCode::usage, std::to_string(requested) + " workers; at most " + std::to_string(most_workers));
+    if (requested > max_workers) {
+        throw Error(ErrorCode::usage, std::to_string(requested) + " workers; at most " + std::to_string(max_workers));
     }
-    return requested > 0 ? requested : std::clamp(std::thread::hardware_concurrency(), 1u, most_workers);
+    return requested > 0 ? requested : std::clamp(std::thread::hardware_concurrency(), 1u, max_workers);
 }
 
 std::unique_ptr<Passes> make_passes(Arrangement arrangement, WorkerPool& pool, const SharedArrays& arrays) {

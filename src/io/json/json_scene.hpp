@@ -1,9 +1,10 @@
-// Parses JSON scenes: objects with shapes and poses (docs/formats.md).
+// Reads JSON scenes, objects with shapes and poses (docs/formats.md), and the mesh files that they name.
 //
 // The loaded scene has no boxes. boxes_of() (octopair/shapes.hpp) computes the boxes from the shapes.
 #pragma once
 
 #include <stop_token>
+#include <string>
 #include <string_view>
 
 #include "io/json/json_shape.hpp"
@@ -16,5 +17,10 @@ namespace octopair::io {
 /// request.
 LoadedScene parse_json_scene(std::string_view text, std::string_view file, const MeshLoader& load_mesh,
                              const std::stop_token& stop = {});
+
+/// Reads a JSON scene. Names of mesh files are relative to the scene's directory. All triangles of a mesh file become one
+/// mesh.
+/// Throws: what parse_json_scene() throws; Error{io_failed}.
+LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace octopair::io

@@ -162,7 +162,7 @@ Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     const LocalConvexPair pair(a, b);
-    const CoreGap core = core_gap(pair);
+    const CoreGap core = gjk_distance(pair);
     LeastOverlap least(pair);
     const Point3d way = vector::minus(core.on_b, core.on_a);
     // A gap close to the rounding error has no reliable direction.

@@ -13,12 +13,12 @@ bool convex_meet(const PosedConvex& a, const PosedConvex& b) { return convex_wit
 bool convex_within(const PosedConvex& a, const PosedConvex& b, double margin) {
     const LocalConvexPair pair(a, b);
     const double enough = pair.radii() + margin;
-    return core_gap(pair, enough).at_least <= enough;
+    return gjk_distance(pair, enough).at_least <= enough;
 }
 
 ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b) {
     const LocalConvexPair pair(a, b);
-    const CoreGap core = core_gap(pair);
+    const CoreGap core = gjk_distance(pair);
     ConvexGap gap;
     gap.at_least = std::max(0.0, core.at_least - pair.radii());
     // A pair within the tolerance counts as touching: its distance stays 0.

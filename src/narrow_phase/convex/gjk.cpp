@@ -1,4 +1,4 @@
-// core_gap(): distance of two convex cores by GJK, on the Minkowski difference of the cores.
+// gjk_distance(): distance of two convex cores by GJK, on the Minkowski difference of the cores.
 //
 // Source    Gilbert, Johnson, Keerthi 1988; lower bound by van den Bergen.
 // Simplex   The nearest point of a simplex is the nearest among candidates on all its faces. Each candidate is a sum with
@@ -194,7 +194,7 @@ CoreGap gap_of(const Simplex& simplex, double at_least) {
 
 }  // namespace
 
-CoreGap core_gap(const LocalConvexPair& pair, std::optional<double> enough) {
+CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough) {
     constexpr int max_steps = 256;
     constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
     const double slack = pair.slack();

@@ -72,6 +72,6 @@ struct CoreGap {
 
 /// Returns the distance of the two cores. With `enough`, the search ends once the bounds decide whether the distance is
 /// larger than `enough`.
-CoreGap core_gap(const LocalConvexPair& pair, std::optional<double> enough = {});
+CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough = {});
 
 }  // namespace octopair

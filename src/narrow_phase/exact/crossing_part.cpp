@@ -77,7 +77,7 @@ private:
         return numbers;
     }
 
-    Grid<3 * count> grid_;
+    DyadicGrid<3 * count> grid_;
 };
 
 Integer cross(const IntegerPoint& a, const IntegerPoint& b, std::size_t axis) {

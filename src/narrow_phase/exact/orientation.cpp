@@ -19,7 +19,7 @@ using Unbounded = mp::number<mp::cpp_int_backend<>, mp::et_off>;
 
 /// Returns the sign of the determinant of the rows b - a, c - a, d - a. The grid holds the rows a, b, c, d.
 template <typename Integer>
-int plane_sign(const Grid<12>& grid) {
+int plane_sign(const DyadicGrid<12>& grid) {
     std::array<Integer, 9> m;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto origin = grid.at<Integer>(axis);
@@ -33,7 +33,7 @@ int plane_sign(const Grid<12>& grid) {
 }
 
 template <typename Integer>
-int line_sign(const Grid<6>& grid) {
+int line_sign(const DyadicGrid<6>& grid) {
     const auto au = grid.at<Integer>(0), av = grid.at<Integer>(1);
     const Integer left = (grid.at<Integer>(2) - au) * (grid.at<Integer>(5) - av);
     const Integer right = (grid.at<Integer>(3) - av) * (grid.at<Integer>(4) - au);
@@ -49,7 +49,7 @@ int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const
         if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == d[axis]) return 0;
     }
     if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
-    const Grid<12> grid({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]});
+    const DyadicGrid<12> grid({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]});
     // Six products of three differences: 3 * (bits + 1) + 3 bits.
     if (grid.bits() <= 40) return plane_sign<Fixed<128>>(grid);
     if (grid.bits() <= 83) return plane_sign<Fixed<256>>(grid);
@@ -62,7 +62,7 @@ int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsign
     for (const unsigned across : {u, v}) {
         if (a[across] == b[across] && a[across] == c[across]) return 0;
     }
-    const Grid<6> grid({a[u], a[v], b[u], b[v], c[u], c[v]});
+    const DyadicGrid<6> grid({a[u], a[v], b[u], b[v], c[u], c[v]});
     // Products of two differences: 2 * (bits + 1) bits.
     if (grid.bits() <= 62) return sign_of(line_sign<Fixed<128>>(grid));
     if (grid.bits() <= 126) return sign_of(line_sign<Fixed<256>>(grid));

@@ -243,4 +243,15 @@ TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b) {
     return least.out();
 }
 
+Contact contact_of(const Triangle3d& a, const Triangle3d& b, const TriangleContact& common) {
+    Contact contact = {};
+    for (unsigned i = 0; i < common.count; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) contact.point[axis] += common.points[i][axis] / common.count;
+    }
+    const TriangleDepth way_out = triangle_depth(a, b);
+    contact.normal = way_out.normal;
+    contact.depth = way_out.depth;
+    return contact;
+}
+
 }  // namespace octopair

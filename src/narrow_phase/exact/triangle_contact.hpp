@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "octopair/collision.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair {
@@ -32,5 +33,9 @@ struct TriangleDepth {
 };
 /// Requires: the triangles meet.
 TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b);
+
+/// Returns the contact: the mean of the common points, with the shortest translation that separates the triangles. The
+/// features are left unset. Requires: the triangles meet; `common` is triangle_contact(a, b).
+Contact contact_of(const Triangle3d& a, const Triangle3d& b, const TriangleContact& common);
 
 }  // namespace octopair

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/exact/contact_of_triangles.hpp"
 #include "narrow_phase/exact/orientation.hpp"
+#include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/mesh/mesh_leaves.hpp"
+#include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
-#include "narrow_phase/mesh/mirror.hpp"
 
 namespace octopair {
 

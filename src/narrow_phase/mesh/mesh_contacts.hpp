@@ -10,13 +10,20 @@
 //           these two triangles alone. Sorted by descending depth, then by the numbers of the triangles.
 #pragma once
 
+#include <cstdint>
 #include <stop_token>
 
-#include "narrow_phase/mesh/contact_request.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "octopair/collision.hpp"
 
 namespace octopair {
+
+/// Limits of the search for contacts of two objects that meet.
+struct ContactRequest {
+    std::uint32_t max_contacts;  ///< maximum number of contacts in the result
+    /// After a stop request the search ends soon; its result is then unspecified. Borrowed.
+    const std::stop_token& stop;
+};
 
 /// Sets class, depth and contacts of `finding`. Requires: the surfaces of the meshes meet.
 void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding);

@@ -54,7 +54,7 @@ private:
     };
 
     Waiting with_bound(const NodePair& nodes) const {
-        return {nodes, separation_.least_distance(a_.tree.nodes[nodes.a], b_.tree.nodes[nodes.b])};
+        return {nodes, separation_.min_distance(a_.tree.nodes[nodes.a], b_.tree.nodes[nodes.b])};
     }
 
     void test_leaves(const MeshNode& node_a, const MeshNode& node_b) {

@@ -9,6 +9,8 @@
 #include <functional>
 #include <optional>
 
+#include "geometry/vector.hpp"
+#include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/mesh/mesh_tree.hpp"
 
 namespace octopair {
@@ -17,6 +19,12 @@ struct PosedMesh {
     const MeshTree& tree;
     const Pose& pose;
 };
+
+/// Returns true if the determinant of the pose's linear part is negative. A pose that flattens does not mirror.
+/// Triangles that are counterclockwise from outside are clockwise in the world if the pose mirrors.
+inline bool mirrors(const Pose& pose) {
+    return plane_side({0, 0, 0}, vector::column(pose, 0), vector::column(pose, 1), vector::column(pose, 2)) < 0;
+}
 
 /// Returns true if some triangle of a meets some triangle of b. Only the surfaces count, not the enclosed space.
 bool surfaces_meet(const PosedMesh& a, const PosedMesh& b);

@@ -6,8 +6,8 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/convex_plane.hpp"
+#include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
-#include "narrow_phase/mesh/mirror.hpp"
 
 namespace octopair {
 

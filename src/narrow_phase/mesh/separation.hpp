@@ -30,7 +30,7 @@ public:
     Separation(const PosedBoxes& a, const PosedBoxes& b);
 
     /// Returns a lower bound on the distance of the contents of two boxes; 0 if they may meet.
-    float least_distance(const MeshNode& a, const MeshNode& b) const {
+    float min_distance(const MeshNode& a, const MeshNode& b) const {
         if (world_) return std::max(0.0F, greatest(world_->gaps_between(a, b)));
         return std::max({0.0F, greatest(of_a_.gaps_to(a, b)), greatest(of_b_.gaps_to(b, a))});
     }

@@ -15,7 +15,7 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t check_interval = 1 << 15;  // objects between checks for a stop request
-constexpr std::size_t most_batch = default_tuning.build.batch;
+constexpr std::size_t max_batch = default_tuning.build.batch;
 constexpr std::size_t prefetched = 32;           // objects: distance at which their places are prefetched
 constexpr std::size_t prefetched_ghosts = 8;     // ghosts: the same distance
 constexpr std::size_t ghosts_at_once = 1 << 14;  // ghosts committed at a time; more than a batch can have
@@ -24,11 +24,11 @@ constexpr std::size_t ghosts_at_once = 1 << 14;  // ghosts committed at a time; 
 class GhostList {
 public:
     GhostList(BuildMemory& memory, const ObjectBlock& block)
-        : ghosts_(memory.ghosts), begin_(most_ghosts * block.begin), end_(most_ghosts * block.end) {}
+        : ghosts_(memory.ghosts), begin_(max_ghosts * block.begin), end_(max_ghosts * block.end) {}
 
     /// Makes room for the ghosts of one batch.
     void prepare() {
-        if (size_ + most_ghosts * most_batch <= committed_) return;
+        if (size_ + max_ghosts * max_batch <= committed_) return;
         const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
         ghosts_.commit(begin_ + committed_, more);
         committed_ += more;
@@ -49,7 +49,7 @@ private:
 void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t octant_count, std::size_t octant_ranges) {
     octants = octant_count;
     homes.resize_discard(objects);
-    ghosts.reserve_discard(most_ghosts * objects);
+    ghosts.reserve_discard(max_ghosts * objects);
     ghost_counts.resize_discard(blocks);
     counts.resize_discard(2 * blocks * octants);
     places.resize_discard(2 * blocks * octants);
@@ -65,10 +65,10 @@ void BuildSteps::encode(const NumberedBlock& block) const {
     std::vector<std::uint64_t> ghost_counts(above, 0);
     GhostList ghosts(memory, objects);
     const std::size_t batch_size = tuning().build.batch;
-    std::array<Entry, most_batch> batch;
-    std::array<CellBox, most_batch> cells;
-    std::array<Directory::Leaf, most_batch> leaves;
-    std::array<std::uint32_t, most_batch> crossers;
+    std::array<Entry, max_batch> batch;
+    std::array<CellBox, max_batch> cells;
+    std::array<Directory::Leaf, max_batch> leaves;
+    std::array<std::uint32_t, max_batch> crossers;
     for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
         if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
         const std::size_t count = std::min(batch_size, objects.end - begin);
@@ -145,10 +145,10 @@ void BuildSteps::scatter(const NumberedBlock& block, const ScatterTarget& target
     home_at.push_back(target.spare);
     auto ghost_at = places_of(memory.ghost_part(memory.places, block.number), target);
     const std::span<const Ghost> ghosts =
-        std::as_const(memory.ghosts).span().subspan(most_ghosts * objects.begin, memory.ghost_counts[block.number]);
+        std::as_const(memory.ghosts).span().subspan(max_ghosts * objects.begin, memory.ghost_counts[block.number]);
     const std::size_t batch_size = tuning().build.batch;
-    std::array<Entry, most_batch> batch;
-    std::array<std::uint32_t, most_batch> crossers;
+    std::array<Entry, max_batch> batch;
+    std::array<std::uint32_t, max_batch> crossers;
     std::size_t ghost = 0;
     memory.valid[block.number] = 0;
     for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {

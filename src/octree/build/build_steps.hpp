@@ -54,7 +54,7 @@ private:
     static constexpr std::uint32_t last_bit = 8;
     std::uint32_t packed_;
 };
-inline constexpr std::size_t most_ghosts = 8;  ///< maximum number of ghosts of a box
+inline constexpr std::size_t max_ghosts = 8;  ///< maximum number of ghosts of a box
 
 /// Objects [begin, end).
 struct ObjectBlock {
@@ -78,7 +78,7 @@ struct BuildMemory {
     void resize(std::size_t objects, std::size_t blocks, std::size_t octants, std::size_t octant_ranges);
 
     Buffer<Home> homes;                  // by object
-    Buffer<Ghost> ghosts;                // by block, from most_ghosts * its first object on; committed as needed
+    Buffer<Ghost> ghosts;                // by block, from max_ghosts * its first object on; committed as needed
     Buffer<std::uint64_t> ghost_counts;  // by block
     Buffer<std::uint64_t> counts;        // by block: home entries of each octant, then ghosts of each octant
     Buffer<std::uint64_t> places;        // laid out as `counts`: place of the first entry, relative to the range

@@ -60,12 +60,12 @@ OctantCounts OctantCounts::of(const SampledOctant& sampled, const std::array<Sam
     return counts;
 }
 
-bool SplitRule::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > tuning().split.always; }
+bool SplitRule::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > tuning().split.always_above; }
 
 bool SplitRule::crowded(const SampledOctant& sampled) const {
     const OctantCube& octant = sampled.octant;
     const double objects = double(sampled.inside.size()) * weight_;
-    if (objects <= tuning().split.never) {
+    if (objects <= tuning().split.never_up_to) {
         count_path(Path::octant_too_small);
         return false;
     }
@@ -85,15 +85,15 @@ bool SplitRule::crowded(const SampledOctant& sampled) const {
         const double extent = double(extents) / double(sampled.inside.size());
         window = std::min(window, objects * extent / (double(last - first) + extent));
     }
-    const bool wide = window > tuning().split.crowded_window;
+    const bool wide = window > tuning().split.max_tests_per_object;
     if (!wide) count_path(Path::octant_well_swept);
     return wide;
 }
 
 bool SplitRule::worth_dividing(const OctantCounts& counts) {
-    return double(counts.inside_below) <= tuning().split.most_entries * double(counts.beginning) &&
+    return double(counts.inside_below) <= tuning().split.max_entries_per_object * double(counts.beginning) &&
            double(counts.inside_below + counts.kept_below) <=
-               tuning().split.handed_growth * double(counts.inside + counts.kept);
+               tuning().split.max_handed_growth * double(counts.inside + counts.kept);
 }
 
 void SplitRule::grow(SampledOctant sampled, SplitFlags& shape) const {

@@ -67,7 +67,8 @@ LeafGrid LeafGrid::cut(const Octant& octant, std::uint32_t begin, std::span<cons
         sides[axis] = double(cells_per_axis >> octant.level);
     }
     double objects = double(boxes.size());
-    for (unsigned bits = 0; bits < tuning().dynamic.grid_bits && objects > tuning().dynamic.cell_objects; ++bits) {
+    for (unsigned bits = 0; bits < tuning().dynamic.max_grid_bits && objects > tuning().dynamic.max_cell_objects;
+         ++bits) {
         unsigned longest = 0;
         for (unsigned axis = 1; axis < 3; ++axis) {
             if (sides[axis] * extents[longest] > sides[longest] * extents[axis]) longest = axis;
@@ -75,7 +76,7 @@ LeafGrid LeafGrid::cut(const Octant& octant, std::uint32_t begin, std::span<cons
         sides[longest] /= 2;
         double growth = 1;
         for (unsigned axis = 0; axis < 3; ++axis) growth *= 1 + extents[axis] / sides[axis];
-        if (growth > tuning().dynamic.most_growth || sides[longest] < 1) break;
+        if (growth > tuning().dynamic.max_growth || sides[longest] < 1) break;
         ++grid.bits[longest];
         objects /= 2;
     }

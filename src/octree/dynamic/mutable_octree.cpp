@@ -267,8 +267,8 @@ void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& ou
     if (put.own && !grid.used) out.first_used.push_back(octant);
     if (grid.inner) return;
     const GridRange range = grid.range_of(work.wanted);
-    if (range.count() > tuning().dynamic.listed_visits) {
-        out.visits.resize(out.visits.size() + tuning().dynamic.listed_visits + 1);  // marks too many visits
+    if (range.count() > tuning().dynamic.max_listed_visits) {
+        out.visits.resize(out.visits.size() + tuning().dynamic.max_listed_visits + 1);  // marks too many visits
         return;
     }
     grid.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
@@ -278,7 +278,7 @@ void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& ou
 
 bool MutableOctree::list(const Work& work, Visits& out) const {
     const std::size_t visits = out.visits.size(), first_used = out.first_used.size();
-    const auto too_many = [&] { return out.visits.size() > visits + tuning().dynamic.listed_visits; };
+    const auto too_many = [&] { return out.visits.size() > visits + tuning().dynamic.max_listed_visits; };
     for_each_touched_octant(work.wanted, [&](OctantIndex octant) {
         if (!too_many()) list_octant(octant, work, out);
     });

@@ -21,9 +21,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "octopair/objects.hpp"
 #include "octree/directory.hpp"
 #include "octree/dynamic/leaf_grid.hpp"
-#include "octree/dynamic/nearest_visitor.hpp"
 #include "octree/dynamic/small_block.hpp"
 #include "octree/dynamic/unit_blocks.hpp"
 #include "octree/space.hpp"
@@ -58,6 +58,19 @@ struct Hit {
     std::uint32_t change;
     std::uint32_t object;
     std::uint8_t around;
+};
+
+/// A search for near objects, nearest regions first.
+class NearestVisitor {
+public:
+    virtual ~NearestVisitor() = default;
+    /// Returns a lower bound on the distance to every object whose box reaches into `region`; a value above limit() if none
+    /// of them is wanted. The region is in the octree's coordinates and may be infinite.
+    virtual double at_least(const Box3d& region) const = 0;
+    /// Returns the distance beyond which objects are not wanted. May shrink during the search.
+    virtual double limit() const = 0;
+    /// Receives an object that may be near enough. May be called more than once for an object.
+    virtual void take(std::uint32_t object) = 0;
 };
 
 class MutableOctree {

@@ -106,7 +106,7 @@ void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
         return;
     }
     while (!hits.empty()) {
-        const std::size_t room = (tuning().sweep.pairs + most_hits - held_) / most_hits;
+        const std::size_t room = (tuning().sweep.pairs + max_hits - held_) / max_hits;
         const auto some = hits.first(std::min(hits.size(), room));
         held_ += pairs_of_hits(sweep, some, context_.rule.second_begin(), pairs_.data() + held_);
         hits = hits.subspan(some.size());

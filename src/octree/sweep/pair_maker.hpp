@@ -69,7 +69,7 @@ private:
     ShareWriter& writer_;
     std::array<HitMask, default_tuning.sweep.hits> hits_;
     std::array<HitMask, default_tuning.sweep.hits> certain_;
-    std::array<Pair, default_tuning.sweep.pairs + most_hits> pairs_;
+    std::array<Pair, default_tuning.sweep.pairs + max_hits> pairs_;
     std::size_t held_ = 0;
 };
 

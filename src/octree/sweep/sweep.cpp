@@ -66,7 +66,7 @@ void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor) {
     const float* lows = columns.low(0);
     std::size_t& first = cursor.first_column;
     while (first < columns.size() && (kind == SweepKind::cross ? lows[first] < begin : lows[first] <= begin)) ++first;
-    cursor.column = first / most_columns * most_columns;  // registers are loaded from multiples of most_columns
+    cursor.column = first / max_columns * max_columns;  // registers are loaded from multiples of max_columns
 }
 
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {

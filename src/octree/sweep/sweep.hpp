@@ -102,21 +102,21 @@ struct Sweep {
 };
 
 /// Maximum number of columns that are tested together.
-inline constexpr std::size_t most_columns = 8;
+inline constexpr std::size_t max_columns = 8;
 
 /// Continues a sweep at `cursor` and writes hits to `hits`. Returns the number of masks written. Stops early if `hits` is full
 /// or after a bounded number of tests, with `cursor` at the next test. The sweep is done when cursor.row is not below the
 /// number of rows.
-/// Requires: `hits` has room for at least most_columns masks.
+/// Requires: `hits` has room for at least max_columns masks.
 std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
 /// Specification of sweep_rows(): tests one column at a time.
 std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits);
 
 /// Writes the pairs of hits, in order, as (lower object, higher object - `second_begin`). Returns the number of pairs.
-/// Requires: `pairs` has room for most_hits pairs of each mask.
+/// Requires: `pairs` has room for max_hits pairs of each mask.
 std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
-inline constexpr std::size_t most_hits = block_size;  ///< maximum number of hits of a HitMask
+inline constexpr std::size_t max_hits = block_size;  ///< maximum number of hits of a HitMask
 
 /// Returns depths of overlap, by axis. Rounding cannot have caused a hit of the sweep that is deeper on all axes.
 Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack);

@@ -161,12 +161,12 @@ constexpr std::array<std::uint32_t, block_size> rows_before = {0x00, 0x01, 0x03,
 template <SweepKind kind>
 std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
     if (cursor.row >= sweep.rows.size()) return 0;
-    const hn::CappedTag<float, most_columns> d;
+    const hn::CappedTag<float, max_columns> d;
     const hn::RebindToUnsigned<decltype(d)> words;
     const float* const low0 = sweep.columns.low(0);
     const auto lane_numbers = hn::Iota(words, 0);
     HitMask* hit_at = hits.data();
-    HitMask* const hits_end = hits.data() + (hits.size() - most_columns);
+    HitMask* const hits_end = hits.data() + (hits.size() - max_columns);
     std::size_t tests_left = tuning().sweep.tests_per_call;
     Reach next = reach_of(d, Bounds(sweep.rows, cursor.row));
     for (; cursor.row < sweep.rows.size(); cursor.row += block_size, cursor.in_row = false) {

@@ -28,7 +28,7 @@ SweepOrder::Buckets SweepOrder::buckets_for(const EntryList& list, unsigned axis
         last = std::max(last, list[i].min[axis]);
     }
     const std::size_t count =
-        std::min(tuning().sweep.most_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
+        std::min(tuning().sweep.max_buckets, std::bit_ceil(std::max<std::size_t>(list.size(), 2)));
     Buckets buckets;
     buckets.begin = first;
     buckets.last = std::uint32_t(count - 1);
@@ -53,7 +53,7 @@ std::uint64_t SweepOrder::tests(const EntryList& rows, const EntryList& columns,
 }
 
 std::span<const SortKey> SweepOrder::sort(const EntryList& list, unsigned axis, Executor& executor) {
-    if (list.size() <= tuning().sweep.in_cache) {
+    if (list.size() <= tuning().sweep.max_bucket_sort) {
         sort_in_cache(list, axis);
     } else {
         count_path(Path::sort_radix);
@@ -77,7 +77,7 @@ void SweepOrder::make_keys(const EntryList& list, unsigned axis) {
 /// If a bucket is crowded, sorts by comparison instead.
 void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
     make_keys(list, axis);
-    if (list.size() <= tuning().sweep.few) {
+    if (list.size() <= tuning().sweep.max_comparison_sort) {
         count_path(Path::sort_few);
         return std::sort(keys_.data(), keys_.data() + keys_.size());
     }
@@ -90,7 +90,7 @@ void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
         most = std::max(most, counts_[i]);
         counts_[i] += counts_[i - 1];
     }
-    if (most > tuning().sweep.few) {
+    if (most > tuning().sweep.max_comparison_sort) {
         count_path(Path::sort_full_bucket);
         return std::sort(keys_.data(), keys_.data() + keys_.size());
     }

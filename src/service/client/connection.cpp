@@ -55,8 +55,8 @@ std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address,
 
 grpc::ChannelArguments arguments() {
     grpc::ChannelArguments arguments;
-    arguments.SetMaxReceiveMessageSize(int(most_message_bytes));
-    arguments.SetMaxSendMessageSize(int(most_message_bytes));
+    arguments.SetMaxReceiveMessageSize(int(max_message_bytes));
+    arguments.SetMaxSendMessageSize(int(max_message_bytes));
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // each engine has its own connection
     arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
     arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);

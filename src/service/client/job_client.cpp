@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
 #include "service/client/connection.hpp"

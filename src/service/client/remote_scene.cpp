@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "base/stop.hpp"
 #include "engine/pair_list.hpp"
 #include "scene/pair_history.hpp"

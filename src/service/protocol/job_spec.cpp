@@ -16,7 +16,7 @@ namespace octopair::service {
 
 namespace {
 
-constexpr std::uint64_t most_objects = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
 
 v1::ObjectSet set_of(const Objects& objects) {
     v1::ObjectSet set;
@@ -68,9 +68,9 @@ void check(const v1::JobSpec& spec) {
         throw Error(ErrorCode::bad_input, "margin is " + std::to_string(spec.margin()) + ", not a finite number >= 0");
     }
     const std::uint64_t first = spec.first().objects(), second = spec.second().objects();
-    if (first > most_objects || second > most_objects - first) {
-        throw LimitError("objects", most_objects,
-                         "more than " + std::to_string(most_objects) + " objects do not fit into one job");
+    if (first > max_objects || second > max_objects - first) {
+        throw LimitError("objects", max_objects,
+                         "more than " + std::to_string(max_objects) + " objects do not fit into one job");
     }
 }
 

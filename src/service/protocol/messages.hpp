@@ -21,7 +21,7 @@ namespace octopair::service {
 inline constexpr int large_field = 15;
 
 /// Maximum size of a message. Client and server refuse larger ones.
-inline constexpr std::size_t most_message_bytes = std::size_t(4) << 20;
+inline constexpr std::size_t max_message_bytes = std::size_t(4) << 20;
 /// Maximum size of a large field in messages that this program writes.
 inline constexpr std::size_t piece_bytes = std::size_t(1) << 20;
 

@@ -36,8 +36,8 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
     grpc::ResourceQuota quota("octopair");
     quota.Resize(transport_bytes);
     builder.SetResourceQuota(quota);
-    builder.SetMaxReceiveMessageSize(int(most_message_bytes));
-    builder.SetMaxSendMessageSize(int(most_message_bytes));
+    builder.SetMaxReceiveMessageSize(int(max_message_bytes));
+    builder.SetMaxSendMessageSize(int(max_message_bytes));
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, int(greeting.count()));
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 300'000);

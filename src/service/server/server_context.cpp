@@ -21,7 +21,7 @@ constexpr std::uint64_t working_bytes = 80;
 
 /// Returns Options::buffer_bytes of a search. The memory budget does not count this buffer, which each engine keeps.
 std::uint64_t buffer_of(const v1::JobSpec& spec, std::uint64_t memory_bytes) {
-    const std::uint64_t most = std::uint64_t(object_count(spec) <= most_small_objects ? 64 : 256) << 20;
+    const std::uint64_t most = std::uint64_t(object_count(spec) <= max_small_objects ? 64 : 256) << 20;
     return memory_bytes == 0 ? most : std::min(most, memory_bytes / 8);
 }
 
@@ -103,7 +103,7 @@ std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::Jo
 }
 
 std::shared_ptr<ServerJob> ServerContext::make_job(ServerJob::Parts parts) {
-    parts.most_seconds = options.limits.job_seconds;
+    parts.max_seconds = options.limits.job_seconds;
     parts.buffer_bytes = buffer_of(parts.spec, options.limits.memory_bytes);
     parts.on_state_change = [this](const ServerJob& job, v1::JobState from, v1::JobState to) {
         server_log.job_state_changed(job, from, to);

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/status.hpp"
 #include "support/compare.hpp"
@@ -48,7 +48,7 @@ protected:
         return id;
     }
 
-    ServerContext server_;
+    DetachedServer server_;
     std::unique_ptr<JobClient> client_ = server_.client();
     std::unique_ptr<v1::Octopair::Stub> stub_ =
         v1::Octopair::NewStub(grpc::CreateChannel(server_.address(), grpc::InsecureChannelCredentials()));

@@ -1,7 +1,7 @@
 // Tests damaged files of the state folder: the affected job reports the file, and all other jobs are served.
 #include <fstream>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
@@ -40,7 +40,7 @@ protected:
 
     void forget_result() { std::filesystem::remove(server_.files(".result").at(0)); }
 
-    ServerContext server_;
+    DetachedServer server_;
     std::unique_ptr<JobClient> client_ = server_.client();
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 2000, 1);
     const Work work_{Objects{std::span(boxes_), {}}};

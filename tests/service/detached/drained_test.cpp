@@ -1,7 +1,7 @@
 // Tests detached jobs during shutdown: the server waits for running jobs and leaves queued jobs for the next server.
 #include <thread>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "service/server/jobs/job_scheduler.hpp"
 #include "service/server/jobs/server_job.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
@@ -10,35 +10,35 @@ namespace octopair::test {
 namespace {
 
 TEST(Drained, WaitsForWhatRuns) {
-    ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::hours(1); });
-    const auto client = host.client();
+    DetachedServer server([](service::ServerOptions& options) { options.grace = std::chrono::hours(1); });
+    const auto client = server.client();
     const auto boxes = make_boxes("dense", 600000, 1);
     const std::string id = client->submit({std::span(boxes), {}});
     ASSERT_TRUE(comes_true([&] { return client->status(id).state != JobState::queued; }));
-    host.drain();
-    EXPECT_EQ(host.files(".result").size(), 1u);
-    host.restart();
+    server.drain();
+    EXPECT_EQ(server.files(".result").size(), 1u);
+    server.restart();
     EXPECT_EQ(int(client->status(id).state), int(JobState::done));
 }
 
 TEST(Drained, LeavesWhatOutlastsItsGrace) {
-    ServerContext host([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
-    const auto client = host.client();
+    DetachedServer server([](service::ServerOptions& options) { options.grace = std::chrono::seconds(0); });
+    const auto client = server.client();
     // Counting all pairs of a million equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     Work work(Objects{std::span(same), {}});
     work.terms.count_only = true;
     const std::string id = submit(*client, work);
     ASSERT_TRUE(comes_true([&] { return client->status(id).state == JobState::running; }));
-    host.drain();
-    host.stop();
-    EXPECT_EQ(host.files(".job").size(), 1u);
-    EXPECT_EQ(host.files().size(), 1u);
-    EXPECT_EQ(host.log().find("cancelled"), std::string::npos) << host.log();
-    host.start();
+    server.drain();
+    server.stop();
+    EXPECT_EQ(server.files(".job").size(), 1u);
+    EXPECT_EQ(server.files().size(), 1u);
+    EXPECT_EQ(server.log().find("cancelled"), std::string::npos) << server.log();
+    server.start();
     EXPECT_TRUE(comes_true([&] { return client->status(id).state == JobState::running; }));
     EXPECT_EQ(int(client->cancel(id).state), int(JobState::cancelled));
-    EXPECT_EQ(host.files(".result").size(), 1u);
+    EXPECT_EQ(server.files(".result").size(), 1u);
 }
 
 class NoRecord final : public service::JobRecord {

@@ -3,19 +3,19 @@
 
 #include <fstream>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
 
 TEST(Folder, IsItsOwnersAndOneServers) {
-    const ServerContext host;
+    const DetachedServer server;
     struct stat status {};
-    ASSERT_EQ(::stat(host.state().c_str(), &status), 0);
+    ASSERT_EQ(::stat(server.state().c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777, 0700u);
     const std::string words = test::error_of(ErrorCode::io_failed, [&] {
-        const ServerContext other([&](service::ServerOptions& options) { options.state_folder = host.state(); });
+        const DetachedServer other([&](service::ServerOptions& options) { options.state_folder = server.state(); });
     });
     EXPECT_NE(words.find("another server"), std::string::npos) << words;
 }
@@ -26,7 +26,7 @@ TEST(Folder, IsNotOneThatOthersMayUse) {
     std::filesystem::create_directory(open);
     ASSERT_EQ(::chmod(open.c_str(), 0755), 0);
     (void)test::error_of(ErrorCode::usage, [&] {
-        const ServerContext host([&](service::ServerOptions& options) { options.state_folder = open; });
+        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = open; });
     });
     struct stat status {};
     ASSERT_EQ(::stat(open.c_str(), &status), 0);
@@ -34,16 +34,16 @@ TEST(Folder, IsNotOneThatOthersMayUse) {
 }
 
 TEST(Folder, KeepsJobsBeyondTheLimitsOfToday) {
-    ServerContext host;
-    const auto client = host.client();
+    DetachedServer server;
+    const auto client = server.client();
     const std::vector<Box3f> crowd(60'000);  // seconds of work
     const auto boxes = make_boxes("uniform", 30'000, 1);
     const Work work(Objects{std::span(boxes), {}});
     const std::string running = client->submit({std::span(crowd), {}}, {}, {.count_only = true});
     const std::string queued = submit(*client, work);
-    host.stop();
-    host.options().limits.memory_bytes = 1 << 20;
-    host.start();
+    server.stop();
+    server.options().limits.memory_bytes = 1 << 20;
+    server.start();
     for (const std::string& id : {running, queued}) {
         const JobStatus status = client->status(id);
         ASSERT_EQ(int(status.state), int(JobState::failed));
@@ -52,16 +52,16 @@ TEST(Folder, KeepsJobsBeyondTheLimitsOfToday) {
     const std::string small = client->submit({std::span(boxes).first(1000), {}});
     EXPECT_EQ(int(client->wait(small, std::chrono::minutes(1)).state), int(JobState::done));
     client->release(running);
-    host.stop();
-    host.options().limits.memory_bytes = 0;
-    host.start();
+    server.stop();
+    server.options().limits.memory_bytes = 0;
+    server.start();
     EXPECT_TRUE(same_bytes(pairs_there(*client, queued), pairs_here(work)));
 }
 
 TEST(Folder, HoldsNoMoreThanItMay) {
     constexpr std::uint64_t most = 1 << 20;
-    const ServerContext host([](service::ServerOptions& options) { options.limits.state_bytes = most; });
-    const auto client = host.client();
+    const DetachedServer server([](service::ServerOptions& options) { options.limits.state_bytes = most; });
+    const auto client = server.client();
     const auto boxes = make_boxes("uniform", 20000, 1), many = make_boxes("uniform", 50000, 1);
     const auto refused = [&](const std::vector<Box3f>& objects) {
         const std::string words = test::error_of(ErrorCode::resource_limit, [&] {
@@ -81,14 +81,14 @@ TEST(Folder, HoldsNoMoreThanItMay) {
 }
 
 TEST(Folder, HasNoRoomForAResult) {
-    const ServerContext host([](service::ServerOptions& options) { options.limits.state_bytes = 600 << 10; });
-    const auto client = host.client();
+    const DetachedServer server([](service::ServerOptions& options) { options.limits.state_bytes = 600 << 10; });
+    const auto client = server.client();
     const auto boxes = make_boxes("coincident", 2000, 1);
     const std::string id = client->submit({std::span(boxes), {}});
     const JobStatus status = client->wait(id, std::chrono::minutes(1));
     ASSERT_EQ(int(status.state), int(JobState::failed));
     EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::resource_limit));
-    EXPECT_TRUE(host.files(".part").empty());
+    EXPECT_TRUE(server.files(".part").empty());
 }
 
 /// Fixture with a finished job. The server has ended.
@@ -103,7 +103,7 @@ protected:
         EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
     }
 
-    ServerContext server_;
+    DetachedServer server_;
     const std::unique_ptr<JobClient> client_ = server_.client();
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 1000, 1);
     const Work work_{Objects{std::span(boxes_), {}}};

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
@@ -27,8 +27,8 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
     const std::string disk = folder.file("disk");
     if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
     {
-        const ServerContext host([&](service::ServerOptions& options) { options.state_folder = disk; });
-        const auto client = host.client();
+        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
+        const auto client = server.client();
         const auto boxes = make_boxes("uniform", 50'000, 1), many = make_boxes("uniform", 200'000, 1);
         const Work work(Objects{std::span(boxes), {}});
         const auto refused = [&](const std::vector<Box3f>& objects) {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/test_hooks.hpp"
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 

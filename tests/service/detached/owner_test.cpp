@@ -1,7 +1,7 @@
 // Tests that only the owner of a job has access to the job.
 #include <sys/stat.h>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 
 namespace octopair::test {
 namespace {
@@ -10,8 +10,8 @@ TEST(Owner, AloneSeesAJob) {
     const test::TemporaryDirectory files;
     test::write_file(files.file("tokens"), "anna annas-secret-token\nbert berts-secret-token\n");
     ASSERT_EQ(::chmod(files.file("tokens").c_str(), 0600), 0);
-    ServerContext host([&](service::ServerOptions& options) { options.token_file = files.file("tokens"); });
-    const auto anna = host.client("annas-secret-token"), bert = host.client("berts-secret-token");
+    DetachedServer server([&](service::ServerOptions& options) { options.token_file = files.file("tokens"); });
+    const auto anna = server.client("annas-secret-token"), bert = server.client("berts-secret-token");
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
     Work work(Objects{std::span(boxes), {}});
     work.terms.id = some_id;
@@ -29,7 +29,7 @@ TEST(Owner, AloneSeesAJob) {
         EXPECT_TRUE(bert->list().empty());
         EXPECT_EQ(anna->list().size(), 1u);
         EXPECT_EQ(pairs_there(*anna, some_id), pairs_here(work));
-        host.restart();
+        server.restart();
     }
     (void)submit(*bert, work);
     anna->release(some_id);

@@ -1,5 +1,5 @@
 // Tests that the server's log reports detached jobs in the same way as other jobs.
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "service/metrics_page.hpp"
 #include "service/raw_call.hpp"
 
@@ -9,41 +9,41 @@ namespace {
 void show_metrics(service::ServerOptions& options) { options.metrics = service::parse_address("localhost:0"); }
 
 TEST(DetachedServerLog, CountsJobs) {
-    const ServerContext host(show_metrics);
-    const auto client = host.client();
+    const DetachedServer server(show_metrics);
+    const auto client = server.client();
     const auto boxes = make_boxes("uniform", 1000, 1);
     const std::string id = client->submit({std::span(boxes), {}});
     EXPECT_EQ(pairs_there(*client, id), pairs_here(Work(Objects{std::span(boxes), {}})));
-    EXPECT_TRUE(test::page_has(host.words(), "octopair_jobs_ended_total{outcome=\"done\"} 1"));
+    EXPECT_TRUE(test::page_has(server.words(), "octopair_jobs_ended_total{outcome=\"done\"} 1"));
     for (const std::string state : {"uploading", "queued", "running"}) {
-        EXPECT_TRUE(test::page_has(host.words(), "octopair_jobs{state=\"" + state + "\"} 0"));
+        EXPECT_TRUE(test::page_has(server.words(), "octopair_jobs{state=\"" + state + "\"} 0"));
     }
-    EXPECT_TRUE(test::page_has(host.words(), "octopair_memory_bytes 0"));
-    const std::string page = test::metrics_page(host.log());
+    EXPECT_TRUE(test::page_has(server.words(), "octopair_memory_bytes 0"));
+    const std::string page = test::metrics_page(server.log());
     for (const std::string direction : {"received", "sent"}) {
         EXPECT_EQ(page.find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page;
     }
-    EXPECT_NE(host.log().find("job ended"), std::string::npos) << host.log();
+    EXPECT_NE(server.log().find("job ended"), std::string::npos) << server.log();
 }
 
 TEST(DetachedServerLog, CountsRefusals) {
-    const ServerContext host([](service::ServerOptions& options) {
+    const DetachedServer server([](service::ServerOptions& options) {
         show_metrics(options);
         options.limits.objects = 2;
     });
     const auto boxes = make_boxes("uniform", 3, 1);
-    EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { host.client()->submit({std::span(boxes), {}}); }), "");
-    EXPECT_TRUE(test::page_has(host.words(), "octopair_refusals_total{limit=\"objects\"} 1"));
+    EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { server.client()->submit({std::span(boxes), {}}); }), "");
+    EXPECT_TRUE(test::page_has(server.words(), "octopair_refusals_total{limit=\"objects\"} 1"));
 }
 
 /// Complete messages that hold almost no data.
 TEST(DetachedServerLog, CountsUploadsThatStall) {
-    const ServerContext host([](service::ServerOptions& options) {
+    const DetachedServer server([](service::ServerOptions& options) {
         show_metrics(options);
         options.stall = std::chrono::seconds(1);
     });
     const auto spec = spec_of(100'000);
-    RawCall call(open_channel(host.address()), "Submit");
+    RawCall call(open_channel(server.address()), "Submit");
     ASSERT_TRUE(call.write(upload_of(&spec, {})));
     EXPECT_TRUE(comes_true([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -51,8 +51,8 @@ TEST(DetachedServerLog, CountsUploadsThatStall) {
     }));
     const grpc::Status status = call.finish();
     EXPECT_EQ(failure_in(status).limit(), "stall_seconds") << status.error_message();
-    EXPECT_TRUE(test::page_has(host.words(), "octopair_refusals_total{limit=\"stall_seconds\"} 1"));
-    EXPECT_TRUE(comes_true([&] { return host.files().empty(); }));
+    EXPECT_TRUE(test::page_has(server.words(), "octopair_refusals_total{limit=\"stall_seconds\"} 1"));
+    EXPECT_TRUE(comes_true([&] { return server.files().empty(); }));
 }
 
 }  // namespace

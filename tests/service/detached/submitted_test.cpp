@@ -1,14 +1,14 @@
 // Tests jobs that are submitted and collected. Every call finds the pairs of the local engine, and each id runs only
 // one job.
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
 
 TEST(Submitted, FindsWhatTheLocalEngineFinds) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const auto boxes = make_boxes("clustered", 30000, 1), others = make_boxes("clustered", 500, 2);
     const auto wide = make_double_boxes("uniform", 3000, 3);
     const std::vector<double> padding(3000, 0.01);
@@ -24,8 +24,8 @@ TEST(Submitted, FindsWhatTheLocalEngineFinds) {
 }
 
 TEST(Submitted, CountsAlone) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const auto boxes = make_boxes("dense", 5000, 1);
     Work work(Objects{std::span(boxes), {}});
     work.terms.count_only = true;
@@ -37,8 +37,8 @@ TEST(Submitted, CountsAlone) {
 }
 
 TEST(Submitted, IsTheSameJobUnderItsName) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const auto boxes = make_boxes("uniform", 5000, 1);
     Work work(Objects{std::span(boxes), {}});
     work.terms.id = some_id;
@@ -47,23 +47,25 @@ TEST(Submitted, IsTheSameJobUnderItsName) {
     (void)client->wait(some_id, std::chrono::minutes(1));
     EXPECT_EQ(submit(*client, work), some_id);
     EXPECT_EQ(client->list().size(), 1u);
-    EXPECT_EQ(host.files(".job").size(), 1u);
+    EXPECT_EQ(server.files(".job").size(), 1u);
     work.options.margin = 1;
     EXPECT_NE(test::error_of(ErrorCode::bad_input, [&] { submit(*client, work); }).find("other input"),
               std::string::npos);
-    EXPECT_TRUE(comes_true([&] { return host.files(".part").empty(); }));
+    EXPECT_TRUE(comes_true([&] { return server.files(".part").empty(); }));
 }
 
 TEST(Submitted, NeedsAStateFolder) {
-    const ServerContext host([](service::ServerOptions& options) { options.state_folder.clear(); });
+    const DetachedServer server([](service::ServerOptions& options) { options.state_folder.clear(); });
     const std::vector<Box3f> boxes(3);
-    const std::string words = test::error_of(ErrorCode::usage, [&] { host.client()->submit({std::span(boxes), {}}); });
+    const std::string words = test::error_of(ErrorCode::usage, [&] {
+        server.client()->submit({std::span(boxes), {}});
+    });
     EXPECT_NE(words.find("state folder"), std::string::npos) << words;
 }
 
 TEST(Submitted, RefusesWhatIsNoJob) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const std::vector<Box3f> boxes(3);
     const std::vector<double> padding(2);
     EXPECT_NE(test::error_of(ErrorCode::bad_input,
@@ -76,9 +78,9 @@ TEST(Submitted, RefusesWhatIsNoJob) {
     EXPECT_TRUE(client->list().empty());
 }
 
-TEST(Submitted, FailsForWhatIsNoBox) {
-    const ServerContext host;
-    const auto client = host.client();
+TEST(Submitted, FailsForInvalidBoxes) {
+    const DetachedServer server;
+    const auto client = server.client();
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {0, 1, 1}}};
     const std::string id = client->submit({std::span(boxes), {}});
     const JobStatus status = client->wait(id, std::chrono::minutes(1));

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-#include "service/detached/host.hpp"
+#include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
@@ -15,8 +15,8 @@ std::vector<Box3f> many_boxes() { return make_boxes("dense", 1500000, 1); }
 
 TEST(Waiting, IsForMemory) {
     const std::uint64_t one = 15000 * (24 + 80);
-    const ServerContext host([&](service::ServerOptions& options) { options.limits.memory_bytes = one + one / 2; });
-    const auto client = host.client();
+    const DetachedServer server([&](service::ServerOptions& options) { options.limits.memory_bytes = one + one / 2; });
+    const auto client = server.client();
     const auto boxes = make_boxes("uniform", 15000, 1), more = make_boxes("uniform", 25000, 2);
     std::vector<std::string> ids;
     ids.reserve(8);
@@ -27,8 +27,8 @@ TEST(Waiting, IsForMemory) {
 }
 
 TEST(Waiting, EndsWithTheTimeOrTheJob) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const auto boxes = many_boxes();
     const std::string id = client->submit({std::span(boxes), {}});
     EXPECT_FALSE(client->wait(id, std::chrono::milliseconds(1)).ended());
@@ -37,8 +37,8 @@ TEST(Waiting, EndsWithTheTimeOrTheJob) {
 }
 
 TEST(Waiting, CanBeCancelled) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     // Counting all pairs of a million equal boxes takes hours.
     const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     const JobTerms count{.count_only = true};
@@ -51,34 +51,34 @@ TEST(Waiting, CanBeCancelled) {
     for (const auto& id : {queued, running}) EXPECT_EQ(int(client->cancel(id).state), int(JobState::cancelled));
     PairList pairs;
     (void)test::error_of(ErrorCode::cancelled, [&] { client->result(running, pairs); });
-    EXPECT_EQ(host.files(".result").size(), 2u);
+    EXPECT_EQ(server.files(".result").size(), 2u);
     client->release(queued);
-    EXPECT_EQ(host.files().size(), 2u);
+    EXPECT_EQ(server.files().size(), 2u);
 }
 
 TEST(Waiting, GoesOnWithTheNextServer) {
-    ServerContext host;
-    const auto client = host.client();
+    DetachedServer server;
+    const auto client = server.client();
     const auto boxes = many_boxes();
     const Work work(Objects{std::span(boxes), {}});
     const std::string running = submit(*client, work);
     ASSERT_TRUE(comes_true([&] { return client->status(running).state != JobState::queued; }));
     const std::string queued = submit(*client, work), gone = submit(*client, work);
     EXPECT_EQ(int(client->cancel(gone).state), int(JobState::cancelled));
-    host.restart();
+    server.restart();
     EXPECT_EQ(int(client->status(gone).state), int(JobState::cancelled));
     const auto expected = pairs_here(work);
     for (const auto& id : {running, queued}) EXPECT_TRUE(same_bytes(pairs_there(*client, id), expected));
 }
 
 TEST(Waiting, AttachedJobsAreSeen) {
-    const ServerContext host;
-    const auto client = host.client();
+    const DetachedServer server;
+    const auto client = server.client();
     const auto boxes = many_boxes();
     std::atomic<bool> ended = false;
     std::thread caller([&] {
         (void)test::error_of(ErrorCode::cancelled, [&] {
-            (void)connect(host.address())->stream_pairs({std::span(boxes), {}}, [](std::span<const Pair>) {});
+            (void)connect(server.address())->stream_pairs({std::span(boxes), {}}, [](std::span<const Pair>) {});
         });
         ended = true;
     });
@@ -103,15 +103,15 @@ TEST(WaitingAtNobody, EndsWithTheTimeForConnecting) {
 }
 
 TEST(WaitingAtFirst, IsPatientWithAServerThatWasThere) {
-    ServerContext host;
+    DetachedServer server;
     const std::vector<Box3f> crowd(scaled(60'000, 6));  // a second of work
-    const std::string id = host.client()->submit({std::span(crowd), {}}, {}, {.count_only = true});
-    JobClient client(host.address(), {.connect_timeout = std::chrono::milliseconds(100)});
+    const std::string id = server.client()->submit({std::span(crowd), {}}, {}, {.count_only = true});
+    JobClient client(server.address(), {.connect_timeout = std::chrono::milliseconds(100)});
     std::thread away([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        host.stop();
+        server.stop();
         std::this_thread::sleep_for(std::chrono::seconds(1));
-        host.start();
+        server.start();
     });
     EXPECT_EQ(int(client.wait(id, std::chrono::minutes(5)).state), int(JobState::done));
     away.join();

@@ -65,7 +65,7 @@ TEST_F(RemoteSceneErrors, IdsOfNoObject) {
     expect_same_refusal([](auto& scene) { (void)scene.id(2); });
 }
 
-TEST_F(RemoteSceneErrors, BoxesThatAreNone) {
+TEST_F(RemoteSceneErrors, RefusesInvalidBoxes) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<ObjectId> ids(2);
     expect_same_refusal([&](auto& scene) { scene.add(Objects{boxes_of({far_away, {{0, nan, 0}, {1, 1, 1}}})}, ids); });

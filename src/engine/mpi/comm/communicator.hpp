@@ -3,7 +3,7 @@
 // Calls      functions that send or receive are collective, unless their comment says otherwise: all ranks call them, in the
 //            same order.
 // Data       bytes of trivially copyable values, so all ranks must run on machines of one kind. Counts are 64 bit. A part that
-//            is longer than `most_message_bytes` is sent as several messages.
+//            is longer than `max_message_bytes` is sent as several messages.
 // Errors     a failure of MPI throws Error{engine_failed}.
 #pragma once
 
@@ -52,11 +52,11 @@ struct Gathered {
 
 class Communicator {
 public:
-    static constexpr std::size_t most_message_bytes = std::size_t(1) << 30;
+    static constexpr std::size_t max_message_bytes = std::size_t(1) << 30;
 
     /// Works on a duplicate of `comm`, so its messages do not mix with those of the caller.
     /// Throws: Error{usage} before MPI_Init, after MPI_Finalize, and for MPI_COMM_NULL.
-    explicit Communicator(MPI_Comm comm, std::size_t message_bytes = most_message_bytes);
+    explicit Communicator(MPI_Comm comm, std::size_t message_bytes = max_message_bytes);
     Communicator(const Communicator&) = delete;
     Communicator& operator=(const Communicator&) = delete;
     ~Communicator();

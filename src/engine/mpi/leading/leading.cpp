@@ -95,7 +95,8 @@ private:
 
 class Leader {
 public:
-    Leader(MPI_Comm comm, const LeadingOptions& options) : group_(comm, options), lost_(options.lost) {}
+    Leader(MPI_Comm comm, const LeadingOptions& options)
+        : group_(comm, options), on_silent_rank_(options.on_silent_rank) {}
     Leader(const Leader&) = delete;
     Leader& operator=(const Leader&) = delete;
     ~Leader();
@@ -106,7 +107,7 @@ private:
     void report_lost_rank();
 
     RankGroup group_;
-    std::function<void(const std::string&)> lost_;
+    std::function<void(const std::string&)> on_silent_rank_;
 };
 
 /// Ends follow() on the other ranks.
@@ -123,7 +124,7 @@ Leader::~Leader() {
 }
 
 void Leader::report_lost_rank() {
-    if (group_.heartbeat().lost() && lost_) lost_(*group_.heartbeat().lost());
+    if (group_.heartbeat().lost() && on_silent_rank_) on_silent_rank_(*group_.heartbeat().lost());
 }
 
 Summary Leader::run(const detail::Request& request, const detail::Output& output, const detail::Control& control) {

@@ -24,7 +24,7 @@ struct LeadingOptions {
     /// Receives a message on rank 0 when a rank was silent for longer, before the current call throws Error{engine_failed}.
     /// Runs on the thread of that call, or of the engine's destructor. Later calls only wait for their stop request, so the
     /// program must end by MPI_Abort.
-    std::function<void(const std::string& what)> lost = {};
+    std::function<void(const std::string& what)> on_silent_rank = {};
 };
 
 /// Throws: Error{engine_failed} unless MPI was started with MPI_THREAD_SERIALIZED or more, which a leading engine requires.

@@ -14,8 +14,8 @@ namespace octopair {
 class RowBins {
 public:
     explicit RowBins(std::uint64_t rows) : rows_(rows) {
-        const unsigned bits = unsigned(std::bit_width(rows)), most_bits = tuning().ranks.row_bin_bits;
-        shift_ = bits > most_bits ? bits - most_bits : 0;
+        const unsigned bits = unsigned(std::bit_width(rows)), max_bits = tuning().ranks.row_bin_bits;
+        shift_ = bits > max_bits ? bits - max_bits : 0;
     }
 
     std::size_t size() const { return std::size_t(rows_ >> shift_) + 1; }

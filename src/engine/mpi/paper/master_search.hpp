@@ -3,9 +3,9 @@
 //   gather      all ranks send their objects to the master, rank 0
 //   plan        the master chooses the octants of the octree and broadcasts them
 //   distribute  the master sends each rank an equal run of the objects
-//   list        each rank encodes and sorts its run                                           (list_maker.hpp)
+//   list        each rank encodes and sorts its run                                           (rank_lists.hpp)
 //   merge       the first rank of each machine merges the lists of the machine's ranks; the
-//               master merges the results                                                     (list_exchange.hpp)
+//               master merges the results                                                     (rank_lists.hpp)
 //   scan        the master scans alone, like the local engine                                 (master_passes.hpp)
 //
 // Result     the octree is that of the local engine, so the master finds the same pairs. The pieces of other ranks are empty.
@@ -20,9 +20,8 @@
 
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/joint_call.hpp"
-#include "engine/mpi/paper/list_exchange.hpp"
-#include "engine/mpi/paper/list_maker.hpp"
 #include "engine/mpi/paper/master_passes.hpp"
+#include "engine/mpi/paper/rank_lists.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/search.hpp"
 

@@ -13,7 +13,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t most_batch = default_tuning.ranks.batch;
+constexpr std::size_t max_batch = default_tuning.ranks.batch;
 constexpr std::size_t check_interval = 1 << 15;  // number of objects between two checks for a stop request
 
 }  // namespace
@@ -67,7 +67,7 @@ bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, 
         space.cells(boxes, cells);
         return are_boxes(boxes);
     }
-    std::array<Entry, most_batch> entries;
+    std::array<Entry, max_batch> entries;
     const std::span<Entry> loaded = std::span(entries).first(cells.size());
     const bool good = source.load(begin, loaded);
     space.cells(loaded, cells);
@@ -79,9 +79,9 @@ bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, 
 void Routing::find_homes(Block& block, std::span<OctantLoad> loads) {
     const Directory& directory = layout_.directory;
     const std::size_t batch_size = tuning().ranks.batch;
-    std::array<CellBox, most_batch> cells, ends;
-    std::array<Directory::Leaf, most_batch> homes, end_leaves;
-    std::array<std::uint32_t, most_batch> crossers;
+    std::array<CellBox, max_batch> cells, ends;
+    std::array<Directory::Leaf, max_batch> homes, end_leaves;
+    std::array<std::uint32_t, max_batch> crossers;
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);

@@ -19,7 +19,7 @@ namespace {
 RingSize ring_size(std::uint64_t pairs, unsigned slots) {
     const std::uint64_t a_slot = std::max<std::uint64_t>(2, pairs / slots);
     const std::uint64_t block = std::clamp<std::uint64_t>(a_slot / 16, 1, tuning().processes.ring_block);
-    return {std::clamp<std::uint64_t>(a_slot / block, 2, most_ring_blocks), block};
+    return {std::clamp<std::uint64_t>(a_slot / block, 2, max_ring_blocks), block};
 }
 
 bool RingReader::take() {
@@ -36,7 +36,7 @@ bool RingReader::take() {
 
 bool RingReader::take_next() {
     // A share that has not begun has another pass's number in its state.
-    for (unsigned blocks = 0; share_ < most_shares;) {
+    for (unsigned blocks = 0; share_ < max_shares;) {
         const Share& share = pool_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
         if (state.pass != pool_.number() || state.slot >= pass_.workers) return false;

@@ -266,7 +266,7 @@ void WorkerPool::count_death(unsigned slot) {
     const Slot& part = view_.slot(slot);
     std::uint64_t share = part.share.load();
     Step step = Step::prepare;
-    if (share > 0 && share <= most_shares) {
+    if (share > 0 && share <= max_shares) {
         const Share& record = view_.shares(share - 1, 1)[0];
         const ShareState state = ShareState::of(record.state.load());
         const bool is_running = state.is(number_, ShareStatus::claimed) && state.slot == slot;

@@ -14,7 +14,7 @@ SortedLists::SortedLists(const EntrySource& source, Arena& arena, std::size_t li
     for (std::size_t i = 0; i < lists; ++i) {
         blocks_.push_back({i, {source.size() * i / lists, source.size() * (i + 1) / lists}});
         entries_.emplace_back(arena).reserve_discard(
-            (most_ghosts + 1) * (blocks_[i].objects.end - blocks_[i].objects.begin) + 1);
+            (max_ghosts + 1) * (blocks_[i].objects.end - blocks_[i].objects.begin) + 1);
     }
 }
 

@@ -45,25 +45,25 @@ ControlBlockView::ControlBlockView(SharedMemory& memory)
     : memory_(memory), control_block_(memory.array<ControlBlock>(0, 1)) {
     slot_count_ = control_block_->slots.load();
     const bool fits = control_block_->mark == control_mark && control_block_->layout == layout_version &&
-                      control_block_->version == version_text() && slot_count_ >= 1 && slot_count_ <= most_workers &&
+                      control_block_->version == version_text() && slot_count_ >= 1 && slot_count_ <= max_workers &&
                       memory.size() >= ControlBlockLayout::bytes(slot_count_);
     if (!fits) throw Error(ErrorCode::engine_failed, "the worker's program is of another version than the library");
     slots_ = memory.array<Slot>(ControlBlockLayout::slots, slot_count_);
 }
 
 std::span<Share> ControlBlockView::shares(std::uint64_t begin, std::uint64_t count) const {
-    check_range(begin, count, most_shares);
+    check_range(begin, count, max_shares);
     return {memory_.array<Share>(ControlBlockLayout::shares + begin * sizeof(Share), count), count};
 }
 
 std::span<Run> ControlBlockView::runs(std::uint64_t begin, std::uint64_t count) const {
-    check_range(begin, count, most_runs);
+    check_range(begin, count, max_runs);
     return {memory_.array<Run>(ControlBlockLayout::runs + begin * sizeof(Run), count), count};
 }
 
 std::span<LoggedPage> ControlBlockView::log(unsigned slot, std::uint64_t size) const {
-    check_range(0, size, most_logged);
-    return {memory_.array<LoggedPage>(ControlBlockLayout::logs + slot * most_logged * sizeof(LoggedPage), size), size};
+    check_range(0, size, max_logged);
+    return {memory_.array<LoggedPage>(ControlBlockLayout::logs + slot * max_logged * sizeof(LoggedPage), size), size};
 }
 
 Commit& ControlBlockView::commit(unsigned slot, std::uint64_t number) const {
@@ -71,7 +71,7 @@ Commit& ControlBlockView::commit(unsigned slot, std::uint64_t number) const {
 }
 
 RingEntry& ControlBlockView::ring_entry(unsigned slot, std::uint64_t number) const {
-    const std::uint64_t place = slot * most_ring_blocks + number % most_ring_blocks;
+    const std::uint64_t place = slot * max_ring_blocks + number % max_ring_blocks;
     return *memory_.array<RingEntry>(ControlBlockLayout::rings + place * sizeof(RingEntry), 1);
 }
 

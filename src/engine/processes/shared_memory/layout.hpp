@@ -31,7 +31,7 @@
 
 namespace octopair {
 
-inline constexpr unsigned most_workers = 256;
+inline constexpr unsigned max_workers = 256;
 inline constexpr std::uint64_t control_mark = 0x6f63746f70616972;  // "octopair"
 inline constexpr std::uint32_t layout_version = 4;                 // raised with every change of the layout
 
@@ -139,7 +139,7 @@ struct Run {
 /// Committed content of a slot's buckets. Pages and pairs beyond `log_size` and `sizes` belong to an unfinished share.
 struct Commit {
     std::uint64_t log_size, pages_taken;
-    std::array<std::uint64_t, std::size_t(1) << BucketPlan::most_bits> sizes;
+    std::array<std::uint64_t, std::size_t(1) << BucketPlan::max_bits> sizes;
 };
 
 /// A page of a bucket: page number in the region `pairs`, and bucket number.
@@ -153,10 +153,10 @@ struct RingEntry {
     std::uint64_t last;  ///< 1: last block of the share
 };
 
-inline constexpr std::uint64_t most_shares = std::uint64_t(1) << 24;
-inline constexpr std::uint64_t most_runs = std::uint64_t(1) << 26;
-inline constexpr std::uint64_t most_logged = std::uint64_t(1) << 26;  // pages of one slot; at 512 pairs a page, 256 GiB
-inline constexpr std::uint64_t most_ring_blocks = 64;
+inline constexpr std::uint64_t max_shares = std::uint64_t(1) << 24;
+inline constexpr std::uint64_t max_runs = std::uint64_t(1) << 26;
+inline constexpr std::uint64_t max_logged = std::uint64_t(1) << 26;  // pages of one slot; at 512 pairs a page, 256 GiB
+inline constexpr std::uint64_t max_ring_blocks = 64;
 inline constexpr std::uint64_t list_block_pairs = 1 << 15;
 
 constexpr std::uint64_t whole_pages(std::uint64_t bytes) {
@@ -167,14 +167,14 @@ constexpr std::uint64_t whole_pages(std::uint64_t bytes) {
 /// Byte offsets of the tables in the control block's file.
 struct ControlBlockLayout {
     static constexpr std::uint64_t slots = whole_pages(sizeof(ControlBlock));
-    static constexpr std::uint64_t shares = slots + whole_pages(most_workers * sizeof(Slot));
-    static constexpr std::uint64_t runs = shares + whole_pages(most_shares * sizeof(Share));
-    static constexpr std::uint64_t commits = runs + whole_pages(most_runs * sizeof(Run));
-    static constexpr std::uint64_t rings = commits + whole_pages(most_workers * 2 * sizeof(Commit));
-    static constexpr std::uint64_t logs = rings + whole_pages(most_workers * most_ring_blocks * sizeof(RingEntry));
+    static constexpr std::uint64_t shares = slots + whole_pages(max_workers * sizeof(Slot));
+    static constexpr std::uint64_t runs = shares + whole_pages(max_shares * sizeof(Share));
+    static constexpr std::uint64_t commits = runs + whole_pages(max_runs * sizeof(Run));
+    static constexpr std::uint64_t rings = commits + whole_pages(max_workers * 2 * sizeof(Commit));
+    static constexpr std::uint64_t logs = rings + whole_pages(max_workers * max_ring_blocks * sizeof(RingEntry));
     /// Returns the size of the file. The logs of all `workers` slots are its last part.
     static constexpr std::uint64_t bytes(unsigned workers) {
-        return logs + std::uint64_t(workers) * most_logged * sizeof(LoggedPage);
+        return logs + std::uint64_t(workers) * max_logged * sizeof(LoggedPage);
     }
 };
 

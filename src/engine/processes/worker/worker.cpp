@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 #include "engine/processes/shared_memory/control_messages.hpp"
 #include "engine/processes/worker/worker_pass.hpp"
 #include "engine/processes/worker_limits.hpp"

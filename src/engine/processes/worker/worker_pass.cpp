@@ -172,7 +172,7 @@ private:
     /// Returns true if the workers should build a nested octree together, in the arena. All workers of the pass get the same
     /// answer: they have the same arguments and have reserved the same memory.
     bool worth_sharing(std::size_t entries) const {
-        const bool several_blocks = width_ > 1 && entries / tuning().build.least_block > 1;
+        const bool several_blocks = width_ > 1 && entries / tuning().build.min_block > 1;
         return several_blocks && entries <= arena_.left() / tuning().processes.nested_bytes;
     }
 

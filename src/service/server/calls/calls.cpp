@@ -6,11 +6,7 @@
 #include "service/protocol/job_hash.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
-#include "service/server/calls/detect_call.hpp"
-#include "service/server/calls/job_calls.hpp"
-#include "service/server/calls/result_call.hpp"
-#include "service/server/calls/scene_call.hpp"
-#include "service/server/calls/submit_call.hpp"
+#include "service/server/calls/call_handlers.hpp"
 #include "service/server/server_context.hpp"
 
 namespace octopair::service {
@@ -96,7 +92,7 @@ private:
         described.set_job_seconds(limits.job_seconds);
         described.set_memory_bytes(limits.memory_bytes);
         described.set_state_bytes(limits.state_bytes);
-        described.set_message_bytes(most_message_bytes);
+        described.set_message_bytes(max_message_bytes);
     }
 
     ServerContext& server_;

@@ -1,4 +1,5 @@
-#include "service/server/calls/detect_call.hpp"
+// The calls Detect and DetectSmall: run one attached job.
+#include "service/server/calls/call_handlers.hpp"
 
 #include <memory>
 #include <mutex>
@@ -150,7 +151,7 @@ public:
 
 private:
     static grpc::Status too_large() {
-        return status_of(LimitError("message_bytes", most_message_bytes,
+        return status_of(LimitError("message_bytes", max_message_bytes,
                                     "the result is too large for one message; ask for it in a stream"));
     }
 

@@ -1,4 +1,5 @@
-#include "service/server/calls/job_calls.hpp"
+// The calls about existing jobs: Status, Wait, Cancel, Release, List.
+#include "service/server/calls/call_handlers.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,5 @@
-#include "service/server/calls/result_call.hpp"
+// The call Result: streams the pairs of a detached job.
+#include "service/server/calls/call_handlers.hpp"
 
 #include <memory>
 

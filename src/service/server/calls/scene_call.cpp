@@ -1,4 +1,5 @@
-#include "service/server/calls/scene_call.hpp"
+// The call Scene: runs a scene of a client.
+#include "service/server/calls/call_handlers.hpp"
 
 #include <grpcpp/server_context.h>
 
@@ -223,7 +224,7 @@ private:
     /// locked.
     bool is_late(Clock::time_point now) const {
         const auto took = now - since_;
-        const double most_seconds = server_.options.limits.job_seconds;
+        const double max_seconds = server_.options.limits.job_seconds;
         switch (doing_) {
             case Doing::working:
                 return false;
@@ -233,7 +234,7 @@ private:
             case Doing::writing:
                 return took > server_.options.stall;
             case Doing::stepping:
-                return most_seconds > 0 && std::chrono::duration<double>(took).count() > most_seconds;
+                return max_seconds > 0 && std::chrono::duration<double>(took).count() > max_seconds;
         }
         return false;
     }

@@ -1,4 +1,5 @@
-#include "service/server/calls/submit_call.hpp"
+// The call Submit: stores a detached job.
+#include "service/server/calls/call_handlers.hpp"
 
 #include <memory>
 #include <mutex>

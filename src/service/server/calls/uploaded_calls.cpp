@@ -26,9 +26,9 @@ bool UploadedCalls::next(RecordedCall& call) {
     reader_->grow(end_);
     const std::uint64_t begin = reader_->position();
     const bool complete = reader_->next(call);
-    if ((complete ? reader_->position() : end_) - begin > most_record_bytes) {
+    if ((complete ? reader_->position() : end_) - begin > max_record_bytes) {
         reader_->refuse(begin,
-                        "a record of more than " + std::to_string(most_record_bytes) + " bytes; send smaller calls");
+                        "a record of more than " + std::to_string(max_record_bytes) + " bytes; send smaller calls");
     }
     return complete;
 }

@@ -15,7 +15,7 @@ namespace octopair::service {
 class UploadedCalls {
 public:
     /// Maximum size of a record, with its head and checksum.
-    static constexpr std::uint64_t most_record_bytes = std::uint64_t(2) << 20;
+    static constexpr std::uint64_t max_record_bytes = std::uint64_t(2) << 20;
 
     UploadedCalls() = default;
     UploadedCalls(const UploadedCalls&) = delete;

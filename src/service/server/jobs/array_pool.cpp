@@ -8,9 +8,9 @@ namespace octopair::service {
 namespace {
 
 /// Minimum size of a pooled array. The allocator reuses smaller ones well enough.
-constexpr std::uint64_t least_spare_bytes = std::uint64_t(1) << 20;
+constexpr std::uint64_t min_spare_bytes = std::uint64_t(1) << 20;
 /// Maximum size of all pooled arrays together.
-constexpr std::uint64_t most_spare_bytes = std::uint64_t(128) << 20;
+constexpr std::uint64_t max_spare_bytes = std::uint64_t(128) << 20;
 
 std::uint64_t size_of(const AnyBoxes& boxes) {
     return std::visit([](const auto& array) { return array.size(); }, boxes);
@@ -39,9 +39,9 @@ AnyBoxes ArrayPool::find(const Engine& engine, std::size_t kind, std::uint64_t c
 
 void ArrayPool::give(const Engine& engine, AnyBoxes boxes) noexcept {
     const std::uint64_t bytes = bytes_of(boxes);
-    if (bytes < least_spare_bytes || bytes > most_spare_bytes) return;
+    if (bytes < min_spare_bytes || bytes > max_spare_bytes) return;
     const std::lock_guard lock(mutex_);
-    while (bytes_ + bytes > most_spare_bytes) {
+    while (bytes_ + bytes > max_spare_bytes) {
         bytes_ -= bytes_of(spares_.front().boxes);
         spares_.erase(spares_.begin());
     }

@@ -53,7 +53,7 @@ JobScheduler::Queue::Items::iterator JobScheduler::first_ready(Queue::Items& job
     return jobs.end();
 }
 
-Engine& JobScheduler::engine_for(std::uint64_t objects) { return *engines_[objects <= most_small_objects ? 1 : 0]; }
+Engine& JobScheduler::engine_for(std::uint64_t objects) { return *engines_[objects <= max_small_objects ? 1 : 0]; }
 
 bool JobScheduler::run_at_once(ServerJob& job) {
     for (Instant& instant : instant_) {
@@ -67,7 +67,7 @@ bool JobScheduler::run_at_once(ServerJob& job) {
 
 void JobScheduler::add(std::shared_ptr<ServerJob> job) {
     const std::uint64_t objects = object_count(job->spec());
-    if (objects <= most_instant_objects && !job->detached() && run_at_once(*job)) return;
+    if (objects <= max_instant_objects && !job->detached() && run_at_once(*job)) return;
     queue_of(objects).add(std::move(job), [](const auto& waiting) { return waiting->ended(); });
 }
 

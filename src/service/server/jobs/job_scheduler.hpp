@@ -1,11 +1,11 @@
 // JobScheduler: the engines of a server, the threads that drive them, and the jobs that wait for them.
 //
 // Invariants
-//   Jobs of at most `most_small_objects` objects have engines of one thread each, so they never wait for large jobs. Large
+//   Jobs of at most `max_small_objects` objects have engines of one thread each, so they never wait for large jobs. Large
 //   jobs share one engine with all threads.
 //   In each of the two queues, jobs run in the order in which they were added. A detached job that waits for memory lets
 //   attached jobs pass, but no other detached one.
-//   An attached job of at most `most_instant_objects` objects runs on the calling thread if an instant engine is free.
+//   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.
 #pragma once
 
@@ -28,8 +28,8 @@ class ServerJob;
 using EngineMaker = std::function<std::unique_ptr<Engine>(unsigned width)>;
 
 /// Up to here one thread is as fast as several, and starts sooner.
-inline constexpr std::uint64_t most_small_objects = 20000;
-inline constexpr std::uint64_t most_instant_objects = 2000;
+inline constexpr std::uint64_t max_small_objects = 20000;
+inline constexpr std::uint64_t max_instant_objects = 2000;
 
 /// Thread safety: all functions but the destructor may be called from any thread.
 class JobScheduler {
@@ -68,7 +68,7 @@ private:
         std::unique_ptr<Engine> engine;
     };
     bool run_at_once(ServerJob& job);
-    Queue& queue_of(std::uint64_t objects) { return objects <= most_small_objects ? small_ : large_; }
+    Queue& queue_of(std::uint64_t objects) { return objects <= max_small_objects ? small_ : large_; }
     void stop();
     void start(Queue& queue, const EngineMaker& maker, unsigned width);
     Queue::Items::iterator first_ready(Queue::Items& jobs) const;

@@ -5,8 +5,7 @@
 
 namespace octopair::service {
 
-JobQuota::JobQuota(std::uint64_t most, std::uint64_t most_each)
-    : all_("jobs", "job slots", most), most_each_(most_each) {}
+JobQuota::JobQuota(std::uint64_t most, std::uint64_t max_each) : all_("jobs", "job slots", most), max_each_(max_each) {}
 
 JobQuota::Slot JobQuota::take_slot(const std::string& owner) {
     auto reservation = std::make_shared<Budget::Reservation>(all_.take(1));
@@ -24,10 +23,10 @@ JobQuota::Slot JobQuota::take_slot(const std::string& owner) {
 void JobQuota::add_client_slot(const std::string& owner) {
     const std::lock_guard lock(mutex_);
     std::uint64_t& count = each_[owner];
-    if (most_each_ > 0 && count >= most_each_) {
-        throw LimitError("jobs_per_client", most_each_,
+    if (max_each_ > 0 && count >= max_each_) {
+        throw LimitError("jobs_per_client", max_each_,
                          "jobs_per_client: the client has " + std::to_string(count) + " jobs on the server; at most " +
-                             std::to_string(most_each_) + " each");
+                             std::to_string(max_each_) + " each");
     }
     ++count;
 }

@@ -30,8 +30,8 @@ public:
         std::shared_ptr<void> counted_;
     };
 
-    /// `most`: limit of all clients together. `most_each`: limit of each client. 0: no limit.
-    JobQuota(std::uint64_t most, std::uint64_t most_each);
+    /// `most`: limit of all clients together. `max_each`: limit of each client. 0: no limit.
+    JobQuota(std::uint64_t most, std::uint64_t max_each);
 
     /// Throws: LimitError if no slot is free. Thread safety: safe.
     Slot take_slot(const std::string& owner);
@@ -42,7 +42,7 @@ private:
     void add_client_slot(const std::string& owner);
 
     Budget all_;
-    const std::uint64_t most_each_;
+    const std::uint64_t max_each_;
     std::mutex mutex_;
     std::map<std::string, std::uint64_t> each_;
 };

@@ -240,9 +240,9 @@ void ServerJob::check_deadline(Clock::time_point now) {
     {
         const std::lock_guard lock(mutex_);
         const std::chrono::duration<double> ran = now - began_;
-        if (state_ != v1::RUNNING || parts_.most_seconds <= 0 || ran.count() <= parts_.most_seconds) return;
+        if (state_ != v1::RUNNING || parts_.max_seconds <= 0 || ran.count() <= parts_.max_seconds) return;
     }
-    fail(failure_of(ran_too_long("the job", parts_.most_seconds)));
+    fail(failure_of(ran_too_long("the job", parts_.max_seconds)));
 }
 
 std::optional<ServerJob::Clock::time_point> ServerJob::ended_at() const {

@@ -51,7 +51,7 @@ public:
         std::shared_ptr<KeptPairs> pairs;
         Budget::Reservation memory;                            ///< for the input and the search
         JobQuota::Slot slot;                                   ///< held until the job ends
-        double most_seconds = 0;                               ///< maximum run time; 0: no limit
+        double max_seconds = 0;                                ///< maximum run time; 0: no limit
         std::uint64_t buffer_bytes = std::uint64_t(64) << 20;  ///< Options::buffer_bytes of the search
         /// Called after each change of state, with no lock held; may be null.
         std::function<void(const ServerJob&, v1::JobState from, v1::JobState to)> on_state_change;
@@ -89,7 +89,7 @@ public:
     v1::JobReport report() const;
     /// Returns the hash of input and options; empty while the job is uploading.
     std::string input_hash() const;
-    /// Fails the job if it has run longer than `most_seconds`.
+    /// Fails the job if it has run longer than `max_seconds`.
     void check_deadline(Clock::time_point now) override;
     bool is_over() const override { return ended(); }
     std::optional<Clock::time_point> ended_at() const;

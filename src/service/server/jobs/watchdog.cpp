@@ -43,11 +43,11 @@ void Watchdog::poll_watched() {
     }
 }
 
-LimitError ran_too_long(const std::string& what, double most_seconds) {
+LimitError ran_too_long(const std::string& what, double max_seconds) {
     std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), most_seconds).ptr;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), max_seconds).ptr;
     return {
-        "job_seconds", std::uint64_t(std::ceil(most_seconds)),
+        "job_seconds", std::uint64_t(std::ceil(max_seconds)),
         "job_seconds: " + what + " ran longer than " + std::string(text.data(), end) + " s, the limit of the server"};
 }
 

@@ -44,6 +44,6 @@ private:
 };
 
 /// Returns the error for exceeding `job_seconds`. `what`: subject of the message, as in "the job".
-LimitError ran_too_long(const std::string& what, double most_seconds);
+LimitError ran_too_long(const std::string& what, double max_seconds);
 
 }  // namespace octopair::service

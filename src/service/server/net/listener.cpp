@@ -30,8 +30,8 @@ namespace {
 constexpr int backlog = 1024;
 constexpr std::chrono::seconds check_interval(1);        // between checks for closed connections, and between log lines
 constexpr std::chrono::milliseconds refusal_delay(250);  // to sending the reason, and from there to closing
-constexpr std::size_t most_refused_open = 64;            // refused connections that are not closed yet
-constexpr std::size_t most_spares = 8;                   // descriptors reserved for refusing connections
+constexpr std::size_t max_refused_open = 64;             // refused connections that are not closed yet
+constexpr std::size_t max_spares = 8;                    // descriptors reserved for refusing connections
 
 ino_t socket_of(int descriptor) {
     struct stat found {};
@@ -180,7 +180,7 @@ void Listener::refuse_one_more() {
 }
 
 void Listener::refill_spares() {
-    while (spares_.size() < most_spares) {
+    while (spares_.size() < max_spares) {
         Descriptor spare(::open("/dev/null", O_RDONLY | O_CLOEXEC));
         if (!spare.open()) return;
         spares_.push_back(std::move(spare));
@@ -189,7 +189,7 @@ void Listener::refill_spares() {
 
 void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
-    const std::uint64_t most = terms_.most_connections;
+    const std::uint64_t most = terms_.max_connections;
     if (accepted_.size() >= forget_from_ || (most > 0 && accepted_.size() >= most)) forget_closed();
     if (most > 0 && accepted_.size() >= most) {
         refuse(std::move(connection), "at most " + std::to_string(most) + " connections");
@@ -230,7 +230,7 @@ void Listener::refuse(Descriptor connection, std::string why) {
     }
     if (!terms_.encrypted) send(connection, empty_settings);
     refused_connections_.push_back({std::move(connection), std::move(why), now});
-    if (refused_connections_.size() > most_refused_open) {
+    if (refused_connections_.size() > max_refused_open) {
         send_refusal(refused_connections_.front());
         refused_connections_.pop_front();
     }

@@ -37,7 +37,7 @@ public:
     const Address& address() const { return address_; }
 
     struct Terms {
-        std::uint64_t most_connections = 0;      ///< 0: no limit
+        std::uint64_t max_connections = 0;       ///< 0: no limit
         bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
         std::function<void(Descriptor)> accept;  ///< receives each accepted connection
         std::function<void()> refused;           ///< called after refusals, at most once a second

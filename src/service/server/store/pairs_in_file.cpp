@@ -18,7 +18,7 @@ PairsInFile::~PairsInFile() { discard(); }
 
 void PairsInFile::append(std::span<const Pair> pairs) {
     size_ += pairs.size();
-    check_pair_limit(size_, target_.most_pairs);
+    check_pair_limit(size_, target_.max_pairs);
     if (piece_.size() == 0) piece_.resize_discard(stored_piece_pairs);
     while (!pairs.empty()) {
         const std::size_t count = std::min(piece_.size() - used_, pairs.size());

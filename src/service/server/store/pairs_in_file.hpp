@@ -26,7 +26,7 @@ public:
         std::string path;
         std::string hash;  ///< hash of the job
         Budget& disk;
-        std::uint64_t most_pairs = 0;  ///< 0: no limit
+        std::uint64_t max_pairs = 0;  ///< 0: no limit
     };
 
     /// For a job that has not ended.

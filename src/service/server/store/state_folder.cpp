@@ -38,8 +38,8 @@ FileBytes bytes_of(const File& file) {
 
 }  // namespace
 
-StateFolder::StateFolder(std::string path, std::uint64_t most_bytes, std::shared_ptr<spdlog::logger> log)
-    : path_(std::move(path)), log_(std::move(log)), disk_("state_bytes", "bytes of state on its disk", most_bytes) {
+StateFolder::StateFolder(std::string path, std::uint64_t max_bytes, std::shared_ptr<spdlog::logger> log)
+    : path_(std::move(path)), log_(std::move(log)), disk_("state_bytes", "bytes of state on its disk", max_bytes) {
     const bool made = ::mkdir(path_.c_str(), 0700) == 0;
     if (!made && errno != EEXIST) fail_io(path_, "cannot create", errno);
     if (made && !sync_folder_of(path_)) fail_io(path_, "cannot sync its folder", errno);

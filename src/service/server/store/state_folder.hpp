@@ -33,7 +33,7 @@ public:
 
     /// Creates the folder, private to its owner, if it does not exist, and locks it. Throws: Error{usage} if other users may
     /// access it; Error{io_failed} on failure, or if another server uses it.
-    StateFolder(std::string path, std::uint64_t most_bytes, std::shared_ptr<spdlog::logger> log);
+    StateFolder(std::string path, std::uint64_t max_bytes, std::shared_ptr<spdlog::logger> log);
 
     /// A job that was found in the folder.
     struct Found {

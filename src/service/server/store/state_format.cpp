@@ -18,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are written i
 namespace {
 
 constexpr std::uint32_t newest_version = 1;
-constexpr std::uint64_t most_text = 1 << 16;  // maximum bytes of an owner, a spec or an ending
+constexpr std::uint64_t max_text = 1 << 16;  // maximum bytes of an owner, a spec or an ending
 constexpr std::size_t hash_bytes = 16;
 
 struct BlockHead {
@@ -95,7 +95,7 @@ StoredSpec block_at(const FileBytes& file, std::uint64_t offset) {
     if (head.magic != BlockHead::right_magic)
         fail_damaged(file.name, "the job's block does not begin with its magic bytes");
     check_version(file, head.version);
-    if (head.owner_bytes > most_text || head.spec_bytes > most_text) fail_damaged(file.name, "wrong lengths");
+    if (head.owner_bytes > max_text || head.spec_bytes > max_text) fail_damaged(file.name, "wrong lengths");
     const std::string block = text_at(file, offset, bytes_of(head));
     std::uint64_t checksum = 0;
     const std::string_view covered = std::string_view(block).substr(0, block.size() - sizeof checksum);
@@ -149,9 +149,8 @@ void fail_damaged(std::string_view file, std::string_view how) {
 
 std::string encode_block(const StoredSpec& stored) {
     const std::string spec = stored.spec.SerializeAsString();
-    if (stored.owner.size() > most_text)
-        throw Error(ErrorCode::usage, "the client's name is too long for a state file");
-    if (spec.size() > most_text) throw Error(ErrorCode::bad_input, "the job spec is too long for a state file");
+    if (stored.owner.size() > max_text) throw Error(ErrorCode::usage, "the client's name is too long for a state file");
+    if (spec.size() > max_text) throw Error(ErrorCode::bad_input, "the job spec is too long for a state file");
     BlockHead head;
     head.algorithm = stored.algorithm;
     head.owner_bytes = std::uint32_t(stored.owner.size());
@@ -227,7 +226,7 @@ StoredResult read_result(const FileBytes& file) {
     if (file.size < sizeof head + sizeof(ResultTail)) fail_damaged(file.name, "the file is too short");
     const std::uint64_t inner = file.size - sizeof head - sizeof(ResultTail);
     const auto tail = plain_at<ResultTail>(file, file.size - sizeof(ResultTail));
-    const bool fits = tail.pairs <= inner / sizeof(Pair) && tail.ending_bytes <= most_text;
+    const bool fits = tail.pairs <= inner / sizeof(Pair) && tail.ending_bytes <= max_text;
     const std::uint64_t sums_bytes = fits ? pieces_of(tail.pairs) * sizeof(std::uint64_t) : 0;
     if (!fits || tail.pairs * sizeof(Pair) + sums_bytes + tail.ending_bytes != inner) {
         fail_damaged(file.name, "wrong lengths");

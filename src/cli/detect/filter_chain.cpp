@@ -1,4 +1,4 @@
-#include "cli/detect/filter_row.hpp"
+#include "cli/detect/filter_chain.hpp"
 
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace octopair::cli {
 
 namespace {
 
-class Row final : public FilterRow {
+class Row final : public FilterChain {
 public:
     Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
         : sets_(sets), stop_(stop), pipeline_(local_threads(request.engine)) {
@@ -67,8 +67,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<FilterRow> make_filter_row(const DetectRequest& request, const SetPair& sets,
-                                           const std::stop_token& stop) {
+std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
+                                               const std::stop_token& stop) {
     return std::make_unique<Row>(request, sets, stop);
 }
 

@@ -1,4 +1,4 @@
-// FilterRow: the filters of a run. They are made once, from the request and the scene files, and run on each frame.
+// FilterChain: the filters of a run. They are made once, from the request and the scene files, and run on each frame.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,9 @@ struct SetPair {
     const InputSet* second = nullptr;
 };
 
-class FilterRow {
+class FilterChain {
 public:
-    virtual ~FilterRow() = default;
+    virtual ~FilterChain() = default;
     /// Finds the pairs of a frame, filters them, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                                 const Options& options) = 0;
@@ -30,7 +30,7 @@ public:
 
 /// Makes the filters. Borrows from the sets.
 /// Throws: Error for invalid exclusion rules, and for objects that do not fit their shapes.
-std::unique_ptr<FilterRow> make_filter_row(const DetectRequest& request, const SetPair& sets,
-                                           const std::stop_token& stop);
+std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
+                                               const std::stop_token& stop);
 
 }  // namespace octopair::cli

@@ -1,18 +1,34 @@
-// ListExchange: sends sorted lists of several ranks to the rank that merges them.
+// Sorted lists of the ranks in the paper's arrangement. ListMaker makes the list of a rank's objects. ListExchange sends lists
+// of several ranks to the rank that merges them.
 //
 // A list is sent as its entries and two counts for each octant: the number of home entries and the number of ghosts.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "base/memory.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "octopair/mpi.hpp"
 #include "octree/build/sorted_list.hpp"
+#include "octree/linear_octree.hpp"
 
 namespace octopair {
+
+class ListMaker {
+public:
+    /// Encodes and sorts the objects of a source. Returns their list, whose memory stays valid until the next call.
+    /// `first_object`: number of the first object among the objects of all ranks.
+    /// Throws: Error{cancelled}; LinearOctree::Invalid.
+    SortedList make(const EntrySource& source, const OctreeLayout& layout, std::uint32_t first_object,
+                    const std::stop_token& stop);
+
+private:
+    BuildMemory memory_{own_pages(), own_pages()};
+    Buffer<Entry> entries_;
+};
 
 class ListExchange {
 public:

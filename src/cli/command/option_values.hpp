@@ -1,15 +1,19 @@
-// Parses and formats numbers of the command line. Numbers are decimal. Parsing does not depend on the locale, and the whole
-// text must be a number.
+// Checks and parses values of options. Numbers are decimal. Parsing does not depend on the locale, and the whole text must be a
+// number.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace octopair::cli {
 
 inline constexpr unsigned max_threads = 1024;  ///< largest value of --threads
+
+/// Throws: Error{usage} that names `option` and lists the valid values, unless `value` is one of them.
+void check_value(std::string_view option, const std::vector<std::string_view>& valid, const std::string& value);
 
 /// Returns a whole number from 0 to `most`. Throws: Error{usage} that names `option`.
 std::uint64_t parse_count(std::string_view option, const std::string& text,

@@ -1,7 +1,8 @@
-#include "cli/command/numbers.hpp"
+#include "cli/command/option_values.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -19,6 +20,12 @@ bool parse_whole_text(const std::string& text, Number& number) {
 }
 
 }  // namespace
+
+void check_value(std::string_view option, const std::vector<std::string_view>& valid, const std::string& value) {
+    if (std::find(valid.begin(), valid.end(), value) != valid.end()) return;
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: '{}' is not a valid value; valid values: {}", option, value, fmt::join(valid, ", ")));
+}
 
 std::uint64_t parse_count(std::string_view option, const std::string& text, std::uint64_t most) {
     std::uint64_t number = 0;

@@ -1,4 +1,4 @@
-// BlockRow: a ring buffer of blocks that several threads process and the calling thread delivers in order.
+// BlockRing: a ring buffer of blocks that several threads process and the calling thread delivers in order.
 //
 //     empty_block() -> fill it -> add() -> `work` on any thread -> `deliver` on the calling thread, in order
 //
@@ -35,17 +35,17 @@ struct Block {
     std::vector<FilterWork> work;  ///< one element for each filter
 };
 
-class BlockRow {
+class BlockRing {
 public:
     using Step = std::function<void(Block&)>;
 
     /// `work` runs on any thread, `deliver` on the calling thread. An exception of `work` is rethrown when its block would be
     /// delivered, so which exception is thrown does not depend on the number of threads.
-    BlockRow(unsigned threads, Step work, Step deliver);
-    BlockRow(const BlockRow&) = delete;
-    BlockRow& operator=(const BlockRow&) = delete;
+    BlockRing(unsigned threads, Step work, Step deliver);
+    BlockRing(const BlockRing&) = delete;
+    BlockRing& operator=(const BlockRing&) = delete;
     /// Waits until helpers have processed the blocks that they have claimed.
-    ~BlockRow();
+    ~BlockRing();
 
     /// Returns the number of blocks in a row for `threads` threads.
     static std::size_t length(unsigned threads) { return threads == 1 ? 1 : std::size_t(threads) * 4; }

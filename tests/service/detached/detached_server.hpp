@@ -22,11 +22,11 @@
 
 namespace octopair::test {
 
-class ServerContext {
+class DetachedServer {
 public:
     using Change = std::function<void(service::ServerOptions&)>;
 
-    explicit ServerContext(const Change& change = {}) {
+    explicit DetachedServer(const Change& change = {}) {
         options_.listen = service::parse_address(address());
         options_.engine = [](unsigned width) { return make_local_engine(width); };
         options_.engine_name = "local";

@@ -1,18 +1,18 @@
-#include "pipeline/block_row.hpp"
+#include "pipeline/block_ring.hpp"
 
 #include <system_error>
 #include <utility>
 
-#include "base/floating_point.hpp"
+#include "base/floating_point_scope.hpp"
 
 namespace octopair {
 
-BlockRow::BlockRow(unsigned threads, Step work, Step deliver)
+BlockRing::BlockRing(unsigned threads, Step work, Step deliver)
     : threads_(threads), work_(std::move(work)), deliver_(std::move(deliver)), slots_(length(threads)) {
     helpers_.reserve(threads_ - 1);
 }
 
-BlockRow::~BlockRow() {
+BlockRing::~BlockRing() {
     {
         const std::lock_guard lock(mutex_);
         ended_ = true;
@@ -21,12 +21,12 @@ BlockRow::~BlockRow() {
     for (std::thread& helper : helpers_) helper.join();
 }
 
-Block& BlockRow::empty_block() {
+Block& BlockRing::empty_block() {
     while (filled_ == head_ + slots_.size()) advance();
     return slot(filled_).block;
 }
 
-void BlockRow::add() {
+void BlockRing::add() {
     bool others_wait = false;
     {
         const std::lock_guard lock(mutex_);
@@ -40,7 +40,7 @@ void BlockRow::add() {
     if (others_wait && may_start_ && helpers_.size() + 1 < threads_) start_helper();
 }
 
-void BlockRow::start_helper() {
+void BlockRing::start_helper() {
     try {
         helpers_.emplace_back([this] { help(); });
     } catch (const std::system_error&) {
@@ -48,20 +48,20 @@ void BlockRow::start_helper() {
     }
 }
 
-void BlockRow::hand_out() {
+void BlockRing::hand_out() {
     while (head_ < filled_ && head_is_done()) hand_out_head();
 }
 
-void BlockRow::finish() {
+void BlockRing::finish() {
     while (head_ < filled_) advance();
 }
 
-bool BlockRow::head_is_done() {
+bool BlockRing::head_is_done() {
     const std::lock_guard lock(mutex_);
     return slot(head_).done;
 }
 
-void BlockRow::hand_out_head() {
+void BlockRing::hand_out_head() {
     Slot& head = slot(head_);
     if (head.failure) std::rethrow_exception(std::exchange(head.failure, nullptr));
     deliver_(head.block);
@@ -70,7 +70,7 @@ void BlockRow::hand_out_head() {
 }
 
 /// Makes progress by one step: delivers the head, processes a block, or waits until the head is done.
-void BlockRow::advance() {
+void BlockRing::advance() {
     Slot* mine = nullptr;
     {
         std::unique_lock lock(mutex_);
@@ -90,7 +90,7 @@ void BlockRow::advance() {
     mine->done = true;
 }
 
-void BlockRow::work_at(Slot& slot) noexcept {
+void BlockRing::work_at(Slot& slot) noexcept {
     try {
         work_(slot.block);
     } catch (...) {
@@ -98,7 +98,7 @@ void BlockRow::work_at(Slot& slot) noexcept {
     }
 }
 
-void BlockRow::help() {
+void BlockRing::help() {
     const FloatingPointScope scope;
     std::unique_lock lock(mutex_);
     for (;;) {

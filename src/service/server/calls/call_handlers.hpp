@@ -1,0 +1,64 @@
+// The functions that start the calls of octopair.proto: one for each call, in the file of its name. Each returns gRPC's reactor
+// of the call; the reactor deletes itself when the call is done. The calls about jobs find only jobs of the caller.
+//
+// Requires: `server` outlives the call.
+#pragma once
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+namespace octopair::v1 {
+class JobList;
+class JobName;
+class JobReport;
+class ListRequest;
+class WaitRequest;
+}  // namespace octopair::v1
+
+namespace octopair::service {
+
+class ServerContext;
+
+// detect_call.cpp
+
+/// Runs one attached job: the job and its pairs are streams.
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_detect(ServerContext& server,
+                                                                          grpc::CallbackServerContext& context);
+/// Runs one attached job: the job is one message, and the pairs are one message.
+grpc::ServerUnaryReactor* start_detect_small(ServerContext& server, grpc::CallbackServerContext& context,
+                                             const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
+
+// scene_call.cpp
+
+/// Runs a scene: receives the calls of the scene, and answers each step.
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(ServerContext& server,
+                                                                         grpc::CallbackServerContext& context);
+
+// submit_call.cpp
+
+/// Stores a detached job in the state folder and queues it.
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(ServerContext& server, grpc::CallbackServerContext& context,
+                                                        grpc::ByteBuffer& response);
+
+// result_call.cpp
+
+/// Streams the pairs of a detached job, starting at a given pair, as they are found.
+grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(ServerContext& server, grpc::CallbackServerContext& context,
+                                                         const grpc::ByteBuffer& request);
+
+// job_calls.cpp
+
+grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context,
+                                       const v1::JobName& request, v1::JobReport& response);
+grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context,
+                                     const v1::WaitRequest& request, v1::JobReport& response);
+/// Cancels the job, and answers when the job has ended, after at most 10 s.
+grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context,
+                                       const v1::JobName& request, v1::JobReport& response);
+grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context,
+                                        const v1::JobName& request, v1::JobReport& response);
+grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context,
+                                     const v1::ListRequest& request, v1::JobList& response);
+
+}  // namespace octopair::service
