@@ -1,5 +1,5 @@
-// octopair-bench paper: measures the figure and the tables of the paper's section 5 (bench/paper; on ranks:
-// machines.cpp).
+// octopair-bench paper: measures figure 5 and tables 1 and 2 of the paper (Lucchesi, Egbert, Harris 2014), by bench/paper.
+// With --machines the measurement runs on MPI ranks (paper_on_machines.cpp).
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -19,7 +19,7 @@
 #include "samples/scenes.hpp"
 
 #ifdef OCTOPAIR_WITH_MPI
-#include "program/machines.hpp"
+#include "program/paper_on_machines.hpp"
 #endif
 
 namespace octopair::bench {

@@ -1,6 +1,7 @@
 // Objects and pairs: the plain data of every call.
 //
-// Units     Lengths are in the caller's unit; `margin` and `padding` use the same one. An object is an index into a span.
+// Units     All lengths, margin and padding included, are in the caller's unit.
+// Objects   An object is identified by its index in the span of boxes.
 // Rule      A pair counts if on every axis max(a.min - b.max, b.min - a.max) <= margin + (padding_a + padding_b), each
 //           operation in float64. Without margin and padding: if the closed boxes overlap, touching included.
 // State     The caller's floating-point state (rounding mode, flushing of subnormal numbers, traps) changes no result. A call

@@ -34,13 +34,13 @@ struct Tuning {
         std::size_t space_objects = 4096;   ///< maximum number of sampled objects that fit the space
     } sampling;
 
-    /// When an octant is divided (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
+    /// When an octant is split (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
-        double always_above = 2048;              ///< an octant with more is divided: a sweep of more misses the cache
+        double always_above = 2048;              ///< an octant with more is split: a sweep of more misses the cache
         double never_up_to = 512;                ///< an octant with at most this many stays whole; <= `always_above`
-        double max_tests_per_object = 40;        ///< an octant is divided if its sweep tests more objects per object
+        double max_tests_per_object = 40;        ///< an octant is split if its sweep tests more objects per object
         double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
-        double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a division
+        double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a split
         std::uint64_t max_cells_per_octant = 4;  ///< size of the table from cells to leaves
     } split;
 

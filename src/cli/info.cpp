@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "cli/detect/stage.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/output_stream.hpp"

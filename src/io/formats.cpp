@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/meshes/mesh.hpp"
+#include "io/meshes/mesh_reader.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {

@@ -10,7 +10,7 @@
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
 #include "io/json/json_scene.hpp"
-#include "io/meshes/mesh.hpp"
+#include "io/meshes/mesh_reader.hpp"
 
 namespace octopair::io {
 

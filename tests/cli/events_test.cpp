@@ -274,7 +274,7 @@ TEST_F(Events, Interrupted) {
 
 TEST_F(Events, InterruptedWhileAPipeIsFull) {
     ASSERT_EQ(run("generate coincident --objects 1000 --output m.npy --quiet").status, 0);
-    // The reader reads nothing before the program ends, so only the stop request can end the program.
+    // The reader never reads, so the pipe fills and the program blocks in a write. Only SIGINT can end the program.
     const Outcome outcome = shell(
         "mkfifo pipe; sh -c 'exec <pipe; while [ ! -e status ]; do sleep 0.05; done' & "
         "\"$P\" detect m.npy --events >pipe & child=$!; hears $child; sleep 0.2; kill -INT $child; wait $child; "

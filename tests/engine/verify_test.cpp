@@ -1,4 +1,4 @@
-// Tests Options::verify: correct results of the local engine pass, and an engine with wrong results fails.
+// Tests Options::verify: correct results of the local engine pass, and a call of an engine with wrong results throws.
 #include <gtest/gtest.h>
 
 #include <algorithm>

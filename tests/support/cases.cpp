@@ -22,7 +22,8 @@ std::uint64_t object_count(const std::string& kind, RandomStream& random) {
     return random.below(bound);
 }
 
-/// Returns the extent of a typical box. Clearances of this extent add pairs, but do not make all objects pairs.
+/// Returns the largest extent of about 16 sampled boxes, where the extent of a box is its shortest side. A margin or padding of
+/// this length adds pairs, but does not make all objects pairs.
 double usual_extent(const OwnedObjects& objects) {
     double extent = 0;
     const auto measure = [&](const auto& boxes) {

@@ -1,4 +1,4 @@
-// The options of `octopair detect`. Those of filters and exact stages are in stage.hpp. `octopair submit` shares the options
+// The options of `octopair detect`. Those of filters and exact stages are in pipeline_options.hpp. `octopair submit` shares the options
 // of the scene, and of the order and number of pairs.
 #pragma once
 

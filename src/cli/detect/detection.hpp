@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/detect/stage.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/ranks/group.hpp"
 #include "io/results/baseline.hpp"

@@ -9,7 +9,7 @@
 
 namespace octopair::cli {
 
-/// Throws: Error{usage} for options that exclude --events.
+/// Throws: Error{usage} for options, and formats of --output, that --events excludes.
 void check_event_options(const DetectRequest& request);
 
 /// Reads the inputs, finds the events, and writes the result. The caller writes the statistics. Throws: Error.

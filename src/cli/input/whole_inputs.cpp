@@ -1,6 +1,6 @@
 #include "cli/input/whole_inputs.hpp"
 
-#include "cli/detect/stage.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #endif

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/stage.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats.hpp"
@@ -40,7 +40,7 @@ public:
     void finish() override {}
 
 private:
-    // NOLINTNEXTLINE(readability-function-size): of which frame, what, how many, where.
+    // NOLINTNEXTLINE(readability-function-size): frame, data, number and place are one concept here.
     template <typename AnyPair>
     void write_piece(std::uint64_t frame, io::NpyType type, std::uint64_t pairs,
                      std::span<const std::span<const AnyPair>> chunks) {

@@ -156,7 +156,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Returns the dict literal, and the offset of the data in the file.
+/// Returns the header, a Python dictionary as text, and the offset of the data in the file. Throws: Error{bad_input}.
 std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std::string_view file) {
     if (bytes.empty()) refuse(file, "not an npy file: it is empty");
     const std::string_view start = bytes.substr(0, magic.size());

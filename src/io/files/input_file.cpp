@@ -11,7 +11,8 @@
 namespace octopair::io {
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
-    // O_NONBLOCK: without it, opening a pipe without a writer would block. It has no effect on a regular file.
+    // With O_NONBLOCK, opening a pipe that has no writer does not block; the check below then refuses the pipe. The flag has no
+    // effect on a regular file.
     descriptor_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
     struct stat status {};

@@ -1,4 +1,4 @@
-// MeshFile: a mesh file in memory, as a list of instances with names, poses and vertices.
+// MeshFile: a mesh file in memory, imported by Assimp, as a list of instances with names, poses and vertices.
 //
 // - An instance is a node whose meshes have at least one used vertex.
 // - A vertex is used if a face of its mesh refers to it. If a mesh has no faces, all its vertices are used.

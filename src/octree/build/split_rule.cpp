@@ -90,7 +90,7 @@ bool SplitRule::crowded(const SampledOctant& sampled) const {
     return wide;
 }
 
-bool SplitRule::worth_dividing(const OctantCounts& counts) {
+bool SplitRule::worth_splitting(const OctantCounts& counts) {
     return double(counts.inside_below) <= tuning().split.max_entries_per_object * double(counts.beginning) &&
            double(counts.inside_below + counts.kept_below) <=
                tuning().split.max_handed_growth * double(counts.inside + counts.kept);
@@ -104,7 +104,7 @@ void SplitRule::grow(SampledOctant sampled, SplitFlags& shape) const {
     if (sampled.octant.level >= deepest) return count_path(Path::octant_deepest);
     if (!crowded(sampled)) return;
     std::array<SampledOctant, 8> below = sampled.divided();
-    if (!worth_dividing(OctantCounts::of(sampled, below))) return count_path(Path::octant_multiplies);
+    if (!worth_splitting(OctantCounts::of(sampled, below))) return count_path(Path::octant_multiplies);
     count_path(Path::octant_divided);
     sampled = {};
     shape[index] = 1;

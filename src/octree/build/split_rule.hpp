@@ -1,7 +1,7 @@
-// SplitRule: decides on a sample of the scene which octants of a linear octree are divided.
+// SplitRule: decides on a sample of the scene which octants of a linear octree are split.
 //
-// An octant is divided if it is crowded: it holds too many objects, or a sweep along its best axis would test too many. It is
-// not divided if the division
+// An octant is split if it is crowded: it holds too many objects, or a sweep along its best axis would test too many. It is
+// not split if the split
 //   would multiply entries (boxes as large as the octant), or
 //   would copy the boxes handed down from above into the children without thinning them.
 //
@@ -48,7 +48,7 @@ struct OctantCube {
     bool keeps(const CellBox& box) const { return natural_level(box) <= level; }
 };
 
-/// Shape of a subtree: for each octant, in pre-order, 1 if it is divided, otherwise 0.
+/// Shape of a subtree: for each octant, in pre-order, 1 if it is split, otherwise 0.
 using SplitFlags = std::vector<std::uint8_t>;
 
 /// An octant and the sampled boxes that touch it.
@@ -64,7 +64,7 @@ struct SampledOctant {
     std::array<SampledOctant, 8> divided() const;
 };
 
-/// Numbers of sampled boxes in an octant, after keep(), and in the children that a division would make.
+/// Numbers of sampled boxes in an octant, after keep(), and in the children that a split would make.
 struct OctantCounts {
     std::uint64_t inside = 0, kept = 0;
     std::uint64_t beginning = 0;                     ///< boxes of `inside` that begin in the octant
@@ -82,7 +82,7 @@ public:
     bool is_crowd(std::uint64_t inside) const;
     bool crowded(const SampledOctant& sampled) const;
     /// True if dividing a crowded octant multiplies neither entries nor boxes handed down.
-    static bool worth_dividing(const OctantCounts& counts);
+    static bool worth_splitting(const OctantCounts& counts);
 
     /// Divides an octant as far as the rule says, and appends the shape of its subtree to `shape`.
     /// Throws: Error{cancelled}.

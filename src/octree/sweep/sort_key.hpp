@@ -1,5 +1,5 @@
 // SortKey: the low end of a box on an axis and the box's position in a list, packed into one integer. Keys sort in the order of
-// a sweep.
+// a sweep: by low end, ties by position.
 #pragma once
 
 #include <bit>

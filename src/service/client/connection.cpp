@@ -12,7 +12,7 @@
 #include "octopair/error.hpp"
 #include "service/protocol/address.hpp"
 #include "service/protocol/certificate.hpp"
-#include "service/protocol/library.hpp"
+#include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/private_file.hpp"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "octopair/error.hpp"
-#include "service/protocol/library.hpp"
+#include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/calls/calls.hpp"
 #include "service/server/log/event.hpp"

@@ -82,8 +82,8 @@ private:
 };
 
 /// Collective. Sends boxes and paddings of `out`. Stores the received ones in `in`, from `place` on.
-/// Requires: `out` and `in` have the same form; `in` is large enough.
-// NOLINTNEXTLINE(readability-function-size): from, to, where there, how many.
+/// Requires: `out` and `in` are equally wide and padded; `in` is large enough.
+// NOLINTNEXTLINE(readability-function-size): source, target, and the two numbers are one concept here.
 inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArrays& in, const Exchange& counts,
                              std::size_t place = 0) {
     if (in.wide) {
@@ -95,7 +95,7 @@ inline void exchange_objects(Communicator& comm, const Objects& out, ObjectArray
 }
 
 /// Collective. Sends the objects of `out`, with their indices or positions. Stores the received ones in `in`.
-/// Requires: `out` and `in` have the same form; `in` is large enough.
+/// Requires: `out` and `in` are equally wide, padded and indexed; `in` is large enough.
 inline void exchange(Communicator& comm, const ObjectArrays& out, ObjectArrays& in, const Exchange& counts) {
     exchange_objects(comm, out.view(), in, counts);
     if (out.indexed) comm.exchange(out.indices.data(), in.indices.data(), counts);

@@ -186,7 +186,7 @@ private:
         const OctantCube octant = octants_[i].octant;
         octants_[i].size = counts.inside + counts.kept;
         if (octant.level >= deepest || octants_[i].size <= most_ || !growth_.is_crowd(counts.inside)) return;
-        const bool divided = SplitRule::worth_dividing(counts);
+        const bool divided = SplitRule::worth_splitting(counts);
         if (divided) count_path(Path::ranks_top_divided);
         octants_[i].state = divided ? State::divided : State::whole;
         octants_[i].below = std::uint32_t(octants_.size());

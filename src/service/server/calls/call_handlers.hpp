@@ -1,5 +1,6 @@
-// The functions that start the calls of octopair.proto: one for each call, in the file of its name. Each returns gRPC's reactor
-// of the call; the reactor deletes itself when the call is done. The calls about jobs find only jobs of the caller.
+// Functions that start the calls of octopair.proto. calls.cpp forwards each call to its function, and answers Describe itself.
+// Each function returns gRPC's reactor of the call; the reactor deletes itself when the call is done. The calls about jobs find
+// only jobs of the caller.
 //
 // Requires: `server` outlives the call.
 #pragma once

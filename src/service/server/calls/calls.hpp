@@ -1,4 +1,5 @@
-// The gRPC service of octopair.proto. The service forwards each call to the file that implements the call.
+// The gRPC service of octopair.proto. The service answers Describe, and forwards the other calls
+// (call_handlers.hpp).
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-#include "cli/detect/stage.hpp"
+#include "cli/detect/pipeline_options.hpp"
 
 #include <fmt/format.h>
 

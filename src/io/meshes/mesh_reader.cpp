@@ -1,4 +1,4 @@
-#include "io/meshes/mesh.hpp"
+#include "io/meshes/mesh_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "service/protocol/library.hpp"
+#include "service/protocol/grpc_lifetime.hpp"
 
 #include <grpc/grpc.h>
 

@@ -1,4 +1,4 @@
-#include "program/machines.hpp"
+#include "program/paper_on_machines.hpp"
 
 #include <algorithm>
 
