@@ -15,7 +15,7 @@ namespace {
 /// Returns the sample of a list from which its costs are estimated.
 Sample measured(const EntryList& list) {
     const Tuning::Sweep& limits = tuning().sweep;
-    return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, limits.measured_least, limits.measured_most)};
+    return {list.size(), 1, std::clamp<std::size_t>(list.size() / 32, limits.min_measured, limits.max_measured)};
 }
 
 }  // namespace
