@@ -6,7 +6,8 @@
 //           and the PairList empty.
 // Threads   Any thread may call an engine; its calls run one after another, in the order of arrival. Different engines are
 //           independent.
-// Engines   Each engine derives from Engine: engine/threads, engine/processes, engine/mpi, service/client.
+// Engines   Each engine derives from Engine: engine/threads, engine/processes, engine/mpi, service/client. The command chooses
+//           one in cli/engine_choice.cpp.
 // Cost      O((n log n + pairs) / k) time on k threads. The local engine needs at most 56 bytes per object besides input and
 //           output; docs/engines.md has the numbers of the others.
 #pragma once

@@ -1,3 +1,4 @@
+// Engine: the public calls. They check the request, and pass it to the engine that derives from Engine.
 #include <cmath>
 #include <limits>
 #include <new>

@@ -1,4 +1,7 @@
 // File formats by the ending of the file's name. Case is ignored. No other file maps endings to formats.
+//
+// Scenes    scene_reader.cpp calls the reader of a format.
+// Results   results/pair_writer.cpp, collision_writer.cpp and event_writer.cpp write the formats.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Filters that use no geometry: a condition of the caller, groups and masks, ignored pairs, parents.
+// Filters that use no geometry: a condition of the caller, groups and masks, ignored pairs, parents. The filters of the
+// command `detect` are chosen in cli/detect/filter_chain.cpp.
 #include <algorithm>
 #include <bit>
 #include <utility>
