@@ -30,8 +30,8 @@ struct Tuning {
     struct Sampling {
         std::size_t stride = 64;            ///< one object in this many is sampled
         std::size_t max_objects = 1 << 21;  ///< maximum number of sampled objects
-        std::size_t max_stride = 2048;      ///< at least one in this many is sampled, even beyond `max_objects`
-        std::size_t space_objects = 4096;   ///< maximum number of sampled objects that fit the space
+        std::size_t max_stride = 2048;     ///< one in this many at least, whatever the maximum: as many crowd an octant
+        std::size_t space_objects = 4096;  ///< maximum number of sampled objects that fit the space, for its quantiles
     } sampling;
 
     /// When an octant is split (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
@@ -41,7 +41,7 @@ struct Tuning {
         double max_tests_per_object = 40;        ///< an octant is split if its sweep tests more objects per object
         double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
         double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a split
-        std::uint64_t max_cells_per_octant = 4;  ///< size of the table from cells to leaves
+        std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
     } split;
 
     /// How the steps of a build are divided into shares (octree/linear_octree.cpp, octree/build/build_steps.cpp).
@@ -99,7 +99,7 @@ struct Tuning {
     struct Output {
         std::uint64_t min_buffer_bytes = 1 << 20;       ///< bytes: minimum that Options::buffer_bytes is raised to
         std::size_t batch = 1 << 13;                    ///< smaller batches are collected before a sink receives them
-        std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list; limits the steps of the progress
+        std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list, so that progress grows in small steps
         std::size_t list_block = 1 << 15;               ///< pairs per memory block of a PairList; at least 64 pages
         std::size_t page = 512;                         ///< pairs per page of a bucket of the ascending order
         unsigned bucket_row_bits = 12;                  ///< log2 of the number of objects per bucket

@@ -2,12 +2,12 @@
 //
 //     empty_block() -> fill it -> add() -> `work` on any thread -> `deliver` on the calling thread, in order
 //
-// The calling thread fills and delivers blocks. If the row is full, it also processes blocks. It waits only if other threads
-// process all remaining blocks. The row starts its own helper threads when there is work for them. It cannot use the threads
+// The calling thread fills and delivers blocks. If the ring is full, it also processes blocks. It waits only if other threads
+// process all remaining blocks. The ring starts its own helper threads when there is work for them. It cannot use the threads
 // of the engine: they may be blocked inside the search while a sink runs.
 //
 // Invariants
-//   head_ <= claimed_ <= filled_ <= head_ + length of the row.
+//   head_ <= claimed_ <= filled_ <= head_ + length of the ring.
 //   Each block before claimed_ is done, or one thread processes it.
 #pragma once
 
@@ -47,16 +47,16 @@ public:
     /// Waits until helpers have processed the blocks that they have claimed.
     ~BlockRing();
 
-    /// Returns the number of blocks in a row for `threads` threads.
+    /// Returns the number of blocks in a ring for `threads` threads.
     static std::size_t length(unsigned threads) { return threads == 1 ? 1 : std::size_t(threads) * 4; }
 
-    /// Returns the block to fill next. While the row is full, processes and delivers blocks.
+    /// Returns the block to fill next. While the ring is full, processes and delivers blocks.
     Block& empty_block();
     /// Adds the block that empty_block() returned. Requires: it is filled.
     void add();
     /// Delivers blocks from the head on that are done. Does not wait.
     void hand_out();
-    /// Processes and delivers blocks until the row is empty.
+    /// Processes and delivers blocks until the ring is empty.
     void finish();
 
 private:

@@ -66,7 +66,7 @@ public:
           left_(setup.options.limit.value_or(~std::uint64_t(0))),
           size_(max_block_pairs(setup)),
           forward_(setup.stop, Forward{abandon_}),
-          row_(
+          ring_(
               setup.threads, [this](Block& block) { apply(block); }, [this](Block& block) { deliver(block); }) {}
     Flow(const Flow&) = delete;
     Flow& operator=(const Flow&) = delete;
@@ -88,13 +88,13 @@ public:
             pairs = pairs.subspan(some.size());
             if (held + some.size() == goal_) end_block();
         }
-        row_.hand_out();
+        ring_.hand_out();
     }
 
     void finish() {
         const Timed timed(seconds_);
         if (filling_ != nullptr) end_block();
-        row_.finish();
+        ring_.finish();
     }
 
     /// Returns the time spent in take() and finish(), on the calling thread.
@@ -112,14 +112,14 @@ private:
     }
 
     void begin_block() {
-        filling_ = &row_.empty_block();
+        filling_ = &ring_.empty_block();
         detail::BatchAccess::restart(filling_->batch, abandon_.get_token());
         goal_ = size_.pairs();
     }
 
     void end_block() {
         filling_ = nullptr;
-        row_.add();
+        ring_.add();
     }
 
     /// Applies all filters to a block. Runs on any thread.
@@ -173,7 +173,7 @@ private:
     std::size_t goal_ = 0;  // number of pairs at which the current block is full
     std::stop_source abandon_;
     std::stop_callback<Forward> forward_;
-    BlockRing row_;  // last, so that its helpers end before the members that they use are destroyed
+    BlockRing ring_;  // last, so that its helpers end before the members that they use are destroyed
 };
 
 /// Passes the pairs of a list to `take` in parts, and reports progress after each. With an empty `take`, only counts pairs.

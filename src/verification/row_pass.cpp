@@ -12,7 +12,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint32_t block_rings = 256;
+constexpr std::uint32_t block_rows = 256;
 
 /// Keeps the fault of the lowest row among the faults that several threads report.
 class LowestFault {
@@ -48,12 +48,12 @@ ResultFault RowPass::run(const RowRange& range, Columns order, const Visit& visi
             if (ResultFault fault = visit(std::uint32_t(a), row)) lowest.report(a, std::move(*fault));
         }
     };
-    const std::uint64_t wave_rows = std::uint64_t(block_rings) * 64 * team_.threads();
+    const std::uint64_t wave_rows = std::uint64_t(block_rows) * 64 * team_.threads();
     for (std::uint64_t begin = range.begin; begin < range.end; begin += wave_rows) {
         const std::uint64_t end = std::min<std::uint64_t>(range.end, begin + wave_rows);
-        team_.for_each(std::size_t((end - begin + block_rings - 1) / block_rings), [&](std::size_t i, unsigned worker) {
-            const std::uint64_t block = begin + i * block_rings;
-            visit_block(block, std::min(end, block + block_rings), columns[worker]);
+        team_.for_each(std::size_t((end - begin + block_rows - 1) / block_rows), [&](std::size_t i, unsigned worker) {
+            const std::uint64_t block = begin + i * block_rows;
+            visit_block(block, std::min(end, block + block_rows), columns[worker]);
         });
         if (ResultFault fault = lowest.take()) return fault;
         if (progress_) progress_(double(end) / double(rows_.rows()));

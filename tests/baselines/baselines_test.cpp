@@ -19,7 +19,7 @@ namespace {
 
 using test::same_pairs;
 
-constexpr std::uint64_t scenes_a_kind = test::scaled(40, 4);
+constexpr std::uint64_t scenes_per_kind = test::scaled(40, 4);
 
 class Baselines : public ::testing::TestWithParam<std::string> {};
 
@@ -36,7 +36,7 @@ void expect_agreement(const std::vector<Box3f>& boxes) {
 }
 
 TEST_P(Baselines, AgreeWithTheOracle) {
-    for (std::uint64_t i = 0; i < test::case_count(scenes_a_kind); ++i) {
+    for (std::uint64_t i = 0; i < test::case_count(scenes_per_kind); ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         expect_agreement(test::make_boxes(GetParam(), seed % 400, seed));
@@ -44,7 +44,7 @@ TEST_P(Baselines, AgreeWithTheOracle) {
 }
 
 TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
-    for (std::uint64_t i = 0; i < test::case_count(scenes_a_kind); ++i) {
+    for (std::uint64_t i = 0; i < test::case_count(scenes_per_kind); ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::vector<Box3f> boxes = test::make_boxes(GetParam(), seed % 100, seed);

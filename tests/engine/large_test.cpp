@@ -67,7 +67,7 @@ TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
     const auto engine = make_local_engine(2);
     engine->count_pairs(all);
     const double bytes = double(test::peak_rss() - before) / double(objects);
-    RecordProperty("bytes_an_object", std::to_string(bytes));
+    RecordProperty("bytes_per_object", std::to_string(bytes));
     if (!test::sanitized) {
         EXPECT_LE(bytes, 56);
     }

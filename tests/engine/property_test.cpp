@@ -17,7 +17,7 @@ using test::Case;
 using test::same_bytes;
 using test::same_pairs;
 
-constexpr std::uint64_t cases_a_kind = test::scaled(300, 10);
+constexpr std::uint64_t cases_per_kind = test::scaled(300, 10);
 constexpr std::uint64_t min_buffer = 1 << 20;  // smaller values of Options::buffer_bytes are raised to this
 
 /// Returns the engine for a number of threads. All cases reuse the engine, so that state left by a call would show in
@@ -129,7 +129,7 @@ void check_case(const Case& a_case) {
 class EngineProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EngineProperty, AgreesWithTheOracle) {
-    const std::uint64_t cases = test::case_count(cases_a_kind);
+    const std::uint64_t cases = test::case_count(cases_per_kind);
     for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         const Case a_case = test::make_case(GetParam(), seed);

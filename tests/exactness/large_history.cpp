@@ -163,20 +163,20 @@ std::vector<Pair> LargeHistory::find_pairs() {
     }
     const Objects objects{std::span<const Box3d>(boxes), paddings};
     const RowSearch search({objects, nullptr, margin_}, team);
-    constexpr std::uint32_t block_rings = 1024;
-    std::vector<std::vector<Pair>> blocks((search.rows() + block_rings - 1) / block_rings);
+    constexpr std::uint32_t block_rows = 1024;
+    std::vector<std::vector<Pair>> blocks((search.rows() + block_rows - 1) / block_rows);
     std::atomic<std::uint64_t> size = 0;
     team.for_each(blocks.size(), [&](std::size_t block, unsigned) {
         std::vector<std::uint32_t> columns;
-        const std::uint32_t begin = std::uint32_t(block) * block_rings,
-                            end = std::min(begin + block_rings, search.rows());
-        for (std::uint32_t a = begin; a < end && size < max_pairs_an_object * search.rows(); ++a) {
+        const std::uint32_t begin = std::uint32_t(block) * block_rows,
+                            end = std::min(begin + block_rows, search.rows());
+        for (std::uint32_t a = begin; a < end && size < max_pairs_per_object * search.rows(); ++a) {
             search.row(a, columns);
             size += columns.size();
             for (const std::uint32_t b : columns) blocks[block].push_back({indices[a], indices[b]});
         }
     });
-    too_many_ = size >= max_pairs_an_object * search.rows();
+    too_many_ = size >= max_pairs_per_object * search.rows();
     std::vector<Pair> pairs;
     pairs.reserve(size);
     for (const auto& block : blocks) pairs.insert(pairs.end(), block.begin(), block.end());

@@ -22,7 +22,7 @@ namespace octopair::test {
 class LargeHistory {
 public:
     static constexpr int steps = 6;
-    static constexpr std::uint64_t max_pairs_an_object = 60;
+    static constexpr std::uint64_t max_pairs_per_object = 60;
 
     /// A pure function of its arguments. `objects`: approximate number of objects.
     LargeHistory(const std::string& family, std::uint64_t objects, std::uint64_t seed);

@@ -8,12 +8,12 @@ namespace octopair::test {
 
 namespace {
 
-constexpr std::uint64_t max_pairs_an_object = 60;
+constexpr std::uint64_t max_pairs_per_object = 60;
 
 std::uint64_t pairs_of(const Case& a_case, Engine& engine) {
     Options options;
     options.margin = a_case.margin;
-    options.limit = max_pairs_an_object * 1'000'000;
+    options.limit = max_pairs_per_object * 1'000'000;
     return engine.count_pairs(a_case.input(), options);
 }
 
@@ -31,7 +31,7 @@ Case large_case(std::uint64_t i, std::uint64_t least) {
         samples::RandomStream random(seed, 2);
         const auto objects = std::uint64_t(double(least) * (1 + 6 * random.uniform()));
         Case a_case = make_family_case(names[i % names.size()], objects, seed);
-        if (pairs_of(a_case, *engine) <= max_pairs_an_object * object_count_of(a_case)) return a_case;
+        if (pairs_of(a_case, *engine) <= max_pairs_per_object * object_count_of(a_case)) return a_case;
     }
 }
 

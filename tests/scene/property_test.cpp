@@ -10,13 +10,13 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_a_kind = test::scaled(30, 2);
+constexpr std::uint64_t histories_per_kind = test::scaled(30, 2);
 
 class SceneProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     int full = 0, partial = 0;
-    const std::uint64_t count = test::case_count(histories_a_kind);
+    const std::uint64_t count = test::case_count(histories_per_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));

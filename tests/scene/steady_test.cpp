@@ -132,7 +132,7 @@ TEST(SceneMemory, IsBounded) {
     scene.move(std::span(ids).first(100), std::span<const Box3f>(boxes).first(100));
     EXPECT_FALSE(scene.step().full);
     const double bytes = double(test::peak_rss() - before);
-    RecordProperty("bytes_an_object", std::to_string(bytes / double(objects)));
+    RecordProperty("bytes_per_object", std::to_string(bytes / double(objects)));
     if (!test::sanitized) {
         EXPECT_LE(bytes, 120 * double(objects) + 16 * double(pairs));
     }

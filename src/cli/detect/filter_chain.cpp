@@ -10,9 +10,9 @@ namespace octopair::cli {
 
 namespace {
 
-class Row final : public FilterChain {
+class RequestedFilters final : public FilterChain {
 public:
-    Row(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
+    RequestedFilters(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
         : sets_(sets), stop_(stop), pipeline_(local_threads(request.engine)) {
         if (sets.first.scene.triangles) {
             add_triangles(request);
@@ -69,7 +69,7 @@ private:
 
 std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
                                                const std::stop_token& stop) {
-    return std::make_unique<Row>(request, sets, stop);
+    return std::make_unique<RequestedFilters>(request, sets, stop);
 }
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// Stage: how far a run goes down the pipeline; and the options of the pipeline.
+// The options of `octopair detect` for filters and exact stages. Stage: the last step of the pipeline that a run takes.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ struct Work {
 RankFilters::RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets,
                          const std::stop_token& stop)
     : cluster_(cluster) {
-    cluster_.together([&] { row_ = make_filter_chain(request, sets, stop); });
+    cluster_.together([&] { filters_ = make_filter_chain(request, sets, stop); });
 }
 
 PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, CollisionPiece* kept) {
@@ -35,7 +35,8 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
         const Timed timed(seconds);  // includes waiting for the slowest rank
         const CollisionSink keep = [&](const Batch& batch) { kept->add(batch.pairs(), batch.findings()); };
         // Each rank may stop at the limit by itself: the piece of one rank has no more collisions than the whole result.
-        cluster_.together([&] { summary = row_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
+        cluster_.together(
+            [&] { summary = filters_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
         const std::uint64_t own = join(summary, options);
         if (kept != nullptr) kept->cut(own);
     }

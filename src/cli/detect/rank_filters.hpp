@@ -25,7 +25,7 @@ private:
     std::uint64_t join(PipelineSummary& summary, const Options& options);
 
     Cluster& cluster_;
-    std::unique_ptr<FilterChain> row_;
+    std::unique_ptr<FilterChain> filters_;
 };
 
 }  // namespace octopair::cli

@@ -21,8 +21,8 @@ public:
         if (has_filters(run_.request)) {
             const Timed timed(run_.report.seconds.prepare);
             run_.progress.show("preparing", 0);
-            row_ = make_filter_chain(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
-                                     run_.stop);
+            filters_ = make_filter_chain(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
+                                         run_.stop);
         }
 #endif
         if (run_.request.count_only) return;
@@ -49,8 +49,8 @@ private:
         const Options options = run_.call_options(frame);
         const double written_before = run_.report.seconds.write;
         const auto written = [&] { return run_.report.seconds.write - written_before; };
-        if (row_ != nullptr) {
-            const PipelineSummary summary = row_->run(*engine_, frame, collision_sink(), options);
+        if (filters_ != nullptr) {
+            const PipelineSummary summary = filters_->run(*engine_, frame, collision_sink(), options);
             run_.report.add(summary, written());
         } else {
             const Input input(run_.inputs.first.frame(frame),
@@ -77,8 +77,8 @@ private:
 
     DetectRun& run_;
     std::unique_ptr<Engine> engine_;
-    std::unique_ptr<FilterChain> row_;     // none: pairs as they are
-    std::unique_ptr<FoundWriter> writer_;  // none: pairs are only counted
+    std::unique_ptr<FilterChain> filters_;  // none: pairs as they are
+    std::unique_ptr<FoundWriter> writer_;   // none: pairs are only counted
 };
 
 }  // namespace

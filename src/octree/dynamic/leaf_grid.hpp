@@ -68,8 +68,8 @@ struct alignas(32) LeafGrid {
     }
     /// True if the cells keep the entries of a box that touches the cells `range`; otherwise the own unit keeps an entry.
     bool keeps_in(const GridRange& range) const {
-        constexpr std::uint32_t max_cells_an_entry = 8;
-        return !inner && range.count() <= max_cells_an_entry;
+        constexpr std::uint32_t max_cells_per_entry = 8;
+        return !inner && range.count() <= max_cells_per_entry;
     }
 
     CellBox cells() const;

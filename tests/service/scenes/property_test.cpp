@@ -14,7 +14,7 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_a_kind = test::scaled(10, 5);
+constexpr std::uint64_t histories_per_kind = test::scaled(10, 5);
 
 /// A local and a remote scene that must stay equal.
 class TwinScene {
@@ -101,7 +101,7 @@ class RemoteSceneProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
     test::SceneServer server;
-    const std::uint64_t count = test::case_count(histories_a_kind);
+    const std::uint64_t count = test::case_count(histories_per_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
