@@ -52,7 +52,7 @@ def complaints_of(path, parts):
     if is_code:
         if len(lines) > LONGEST_FILE:
             yield 0, f"{len(lines)} lines; at most {LONGEST_FILE}"
-        if not SNAKE_CASE.match(path.stem):
+        if not SNAKE_CASE.match(path.stem.removesuffix("-inl")):
             yield 0, "file names are snake_case"
         if not has_head(path, lines):
             yield 0, "the file has no head comment"

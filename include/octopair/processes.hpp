@@ -56,8 +56,8 @@ std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,
 struct WorkerFaults {
     std::uint64_t ended = 0;    ///< number of workers that died
     std::uint64_t stopped = 0;  ///< number of workers that were stopped (SIGSTOP) and therefore killed
-    /// Number of these workers that were running a share, by its step: prepare, encode, count, scatter, scan, order.
-    std::array<std::uint64_t, 6> in_share = {};
+    /// Number of these workers that were running a share, by its step: prepare, encode (with scatter), count, scan, order.
+    std::array<std::uint64_t, 5> in_share = {};
 };
 
 /// Returns the faults of the engine's workers so far.

@@ -8,11 +8,13 @@ namespace octopair {
 
 /// Wall-clock seconds of each step of a call, summed over repetitions of the step.
 struct StepSeconds {
-    double encode = 0;   ///< finds the octants of each box; the paper's encode
-    double count = 0;    ///< counts entries per octant, to compute their places; half of the paper's sort
-    double scatter = 0;  ///< writes the entries to their places; the other half
-    double scan = 0;     ///< finds the pairs; the paper's scan
-    double merge = 0;    ///< merges sorted lists; 0 except in the paper's arrangement
+    double encode = 0;  ///< finds the octants of each box; the paper's encode
+    double count = 0;   ///< counts the entries of each octant
+    /// Appends the entries to the lists of their octants; the paper's sort. Encode and scatter run in one pass, whose time is
+    /// divided by a sample.
+    double scatter = 0;
+    double scan = 0;   ///< finds the pairs; the paper's scan
+    double merge = 0;  ///< merges sorted lists; 0 except in the paper's arrangement
 };
 
 /// Outcome of Options::verify.

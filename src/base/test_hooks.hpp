@@ -23,12 +23,12 @@ namespace octopair {
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
     /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
-    path(build_one_block) path(build_blocks) path(count_ranges) path(kept_above_leaf) path(ghost_entries) \
-    path(refilled) path(crowded_octree) path(class_bits_brought) \
+    path(build_one_block) path(build_blocks) path(count_ranges) path(kept_above_leaf) path(ghost_entries) path(ghosts_by_rule) \
+    path(refilled) path(class_bits_brought) \
     /* octree/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
     path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \
-    path(join_swept) path(join_crowded) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
+    path(join_swept) path(join_crowded) path(swept_on_other_axis) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
     path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) path(nested_join) \
     path(not_nested_largest) path(not_nested_growth) path(not_nested_depth) \
     /* octree/sweep/recursive_sweep.cpp */ \
@@ -36,13 +36,15 @@ namespace octopair {
     path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
     /* octree/sweep/sweep_order.cpp, octree/sweep/sort_key.cpp */ \
     path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
+    /* octree/cell_sweep/cell_pair_maker.cpp */ \
+    path(cell_sweep_resumed) path(cell_hit_doubtful) path(cell_hit_refused) \
     /* octree/sweep/sweep_kernel.cpp, octree/sweep/pair_maker.cpp */ \
     path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed) path(pairs_counted) \
     /* octree/dynamic/mutable_octree.cpp */ \
     path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
     path(unit_of_leaf) path(unit_of_inner) \
     /* engine/ */ \
-    path(list_block_full) path(bucket_sorted) path(bucket_split) path(keys_narrow) path(keys_wide) \
+    path(list_block_full) path(bucket_sorted) path(bucket_split) path(long_row_sorted) path(row_in_bitmap) \
     path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) \
     path(stream_lead_held) path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
     /* engine/processes/ */ \
@@ -73,6 +75,8 @@ enum class Fault : unsigned {
     begins_bit_cleared,      ///< a ghost loses the class bits that it brought into a nested octree
     octant_border_open,      ///< a box that ends in the first cell of an octant does not touch it
     window_end_open,         ///< a column that begins where the rows of a block end is not tested
+    cell_window_end_open,    ///< a column that begins in the last cell of a block of rows is not tested
+    cell_gap_too_small,      ///< a hit whose ends are in equal cells is certain
     tile_end_open,           ///< a tile that begins where a tile of rows ends is not swept
     handed_to_wrong_child,   ///< an entry is handed down to an octant that it does not touch
     nested_space_moved,      ///< class bits of handed down entries are computed in a space that is shifted by one cell
@@ -81,7 +85,7 @@ enum class Fault : unsigned {
     part_joined_twice,       ///< two parts of a crowd are joined in both directions
     rank_takes_neighbour,    ///< a rank's run of octants includes the first one of the next rank
 };
-inline constexpr unsigned fault_count = 11;
+inline constexpr unsigned fault_count = 13;
 
 /// State that tests set and read. It holds no pointers, so it can lie in a file that processes share.
 struct TestHooks {

@@ -36,9 +36,9 @@ struct Tuning {
 
     /// When an octant is split (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
-        double always_above = 2048;              ///< an octant with more is split: a sweep of more misses the cache
-        double never_up_to = 512;                ///< an octant with at most this many stays whole; <= `always_above`
-        double max_tests_per_object = 40;        ///< an octant is split if its sweep tests more objects per object
+        double always_above = 4096;              ///< an octant with more is split: a sweep of more misses the cache
+        double never_up_to = 1024;               ///< an octant with at most this many stays whole; <= `always_above`
+        double max_tests_per_object = 60;        ///< an octant is split if its sweep tests more objects per object
         double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
         double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a split
         std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
@@ -50,6 +50,8 @@ struct Tuning {
         std::size_t min_block = 2048;            ///< minimum number of objects per block
         std::size_t counts_per_range = 1 << 16;  ///< minimum number of merged counts per share
         std::size_t batch = 256;                 ///< objects loaded at a time, so that they stay in the L1 cache
+        std::size_t max_chunk = 64;              ///< entries per chunk of a list; a power of two, at least 16
+        std::size_t chunk_part = 4;  ///< with larger chunks, one entry in this many could be unused; at least 1
     } build;
 
     /// How the octants of a linear octree are scanned (octree/scan.cpp).
@@ -57,8 +59,8 @@ struct Tuning {
         std::size_t large_octant = 1 << 15;       ///< an octant with more entries is scanned by all threads together
         std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop is noticed soon
         std::size_t shares_per_thread = 64;       ///< number of shares per thread
-        std::size_t max_swept_list = 4096;        ///< maximum entries of a list swept at once, along the first axis
-        std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in such a sweep
+        std::size_t max_swept_list = 65535;       ///< maximum entries of a set that is swept on cells; not more
+        std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in a sweep on cells
         double max_part_in_octant = 0.75;         ///< maximum part of the entries in one octant of a nested octree
         double max_growth = 4;                    ///< maximum growth of entries by nesting, multiplied along its path
         unsigned max_nesting = 8;                 ///< maximum depth of nesting: octrees within octants of octrees
@@ -73,6 +75,8 @@ struct Tuning {
         std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
         std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times registers of columns: a few milliseconds
         std::size_t hits = 1024;                ///< masks that a call of the kernel may write; at least 8
+        std::size_t cell_hits = 2048;           ///< hits that are judged at a time; at least 128
+        std::size_t max_cell_buckets = 2048;    ///< maximum of a sort by cells; a power of two
         std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
         std::size_t max_buckets = 4096;         ///< maximum of a bucket sort, so that they stay in the L1 cache
         std::size_t max_comparison_sort = 24;   ///< up to this many boxes: comparison sort
@@ -82,7 +86,7 @@ struct Tuning {
         std::size_t min_measured = 256;         ///< minimum number of boxes of a set that are sampled to measure it
         std::size_t max_measured = 4096;        ///< maximum number of boxes of a set that are sampled to measure it
         std::size_t tried_rows = 16;            ///< rows that are tested against the sampled columns to estimate hits
-        std::size_t measured_row_stride = 13;   ///< of a laid out set, the window of one row in this many is measured,
+        std::size_t measured_row_stride = 13;   ///< of a sorted set, the window of one row in this many is measured,
         std::size_t measured_rows = 24;         ///< or about this many windows, whichever are fewer
     } sweep;
 
@@ -105,9 +109,12 @@ struct Tuning {
         unsigned bucket_row_bits = 12;                  ///< log2 of the number of objects per bucket
         unsigned bucket_bits = 10;                      ///< log2 of the maximum number of buckets
         unsigned bucket_split_bits = 6;                 ///< log2 of the number of parts of a bucket that is split
-        std::size_t sorted_at_once = 1 << 18;           ///< a bucket with more pairs is split
-        std::size_t min_radix_sort = 512;               ///< keys: fewer are sorted by comparison
-        std::size_t shares_ahead = 4;                   ///< shares per thread that a stream computes ahead of the sink
+        std::size_t sorted_at_once = 1 << 20;           ///< a bucket with more pairs is split
+        std::size_t bucket_pairs = 1 << 17;             ///< expected number of pairs per bucket, at most
+        std::size_t bitmap_columns =
+            64;  ///< a long row that has one in this many columns or more is sorted by a bit map
+        std::size_t min_radix_sort = 512;  ///< keys: fewer are sorted by comparison
+        std::size_t shares_ahead = 4;      ///< shares per thread that a stream computes ahead of the sink
     } output;
 
     /// Worker processes (engine/processes/).
@@ -117,8 +124,8 @@ struct Tuning {
         std::size_t kept_regions = 4;        ///< maximum number of regions that lists hold; further lists get copies
         std::uint64_t ring_block = 1 << 15;  ///< maximum number of pairs per block of a stream
         unsigned blocks_at_once = 16;        ///< blocks that the client takes before it does its other work
-        /// Arena bytes per entry of a nested octree that workers share: a bound for homes (4), ghosts (32) and sorted entries
-        /// (9 * 32), rounded up for the counts of octants. Must not be lowered.
+        /// Arena bytes per entry of a nested octree that workers share: a bound for its entries (8 * 16) and the links of their
+        /// chunks, with room for the lists of octants. Must not be lowered.
         std::uint64_t nested_bytes = 512;
     } processes;
 

@@ -2,6 +2,7 @@
 // are read into two registers that overlap.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/box_kernel.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -196,6 +197,51 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
 
 #endif
 
+constexpr std::size_t prefetched_pairs = 12;  // distance at which boxes are prefetched
+
+/// refused_pairs(), without a branch on the result of overlaps(a, b).
+template <typename Real, typename Overlaps>
+std::size_t refused_of(const DoubtfulPairs& doubtful, const BoxesOfPairs<Real>& boxes, const Overlaps& overlaps,
+                       std::uint32_t* out) {
+    const auto prefetch = [&](std::size_t k) HWY_ATTR {
+        hwy::Prefetch(&boxes.a(doubtful[k]));
+        hwy::Prefetch(&boxes.b(doubtful[k]));
+    };
+    for (std::size_t k = 0; k < doubtful.size() && k < prefetched_pairs; ++k) prefetch(k);
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < doubtful.size(); ++k) {
+        if (k + prefetched_pairs < doubtful.size()) prefetch(k + prefetched_pairs);
+        out[count] = doubtful.positions[k];
+        count += overlaps(boxes.a(doubtful[k]), boxes.b(doubtful[k])) ? 0 : 1;
+    }
+    return count;
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+std::size_t refused_narrow_simd(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out) {
+    return refused_of(doubtful, boxes, overlap<float>, out);
+}
+
+#else
+
+std::size_t refused_narrow_simd(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out) {
+    const hn::FixedTag<float, 4> d;
+    const auto low = [&](const Box3f& box) HWY_ATTR { return hn::LoadU(d, box.min); };
+    const auto high = [&](const Box3f& box) HWY_ATTR { return hn::Shuffle0321(hn::LoadU(d, box.min + 2)); };
+    const auto overlaps = [&](const Box3f& a, const Box3f& b) HWY_ATTR {
+        const auto apart = hn::Or(hn::Gt(low(a), high(b)), hn::Gt(low(b), high(a)));
+        return hn::AllFalse(d, hn::And(apart, hn::FirstN(d, 3)));
+    };
+    return refused_of(doubtful, boxes, overlaps, out);
+}
+
+#endif
+
+std::size_t refused_wide_simd(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out) {
+    return refused_of(doubtful, boxes, overlap<double>, out);
+}
+
 bool round_narrow_simd(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                        std::span<Entry> out) {
     return round_boxes_simd(boxes, padding, rounding, out);
@@ -239,6 +285,17 @@ bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, 
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out) {
     return HWY_DYNAMIC_DISPATCH(round_wide_simd)(boxes, padding, rounding, out);
+}
+
+HWY_EXPORT(refused_narrow_simd);
+HWY_EXPORT(refused_wide_simd);
+
+std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out) {
+    return HWY_DYNAMIC_DISPATCH(refused_narrow_simd)(doubtful, boxes, out);
+}
+
+std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out) {
+    return HWY_DYNAMIC_DISPATCH(refused_wide_simd)(doubtful, boxes, out);
 }
 
 HWY_EXPORT(bound_triangles_simd);

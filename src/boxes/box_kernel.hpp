@@ -8,6 +8,7 @@
 #include <span>
 
 #include "boxes/entry.hpp"
+#include "boxes/pair_rule.hpp"
 #include "geometry/rounding.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pose.hpp"
@@ -31,6 +32,15 @@ template <typename Real>
 Box3d wide(const Box<Real>& box) {
     return {{double(box.min[0]), double(box.min[1]), double(box.min[2])},
             {double(box.max[0]), double(box.max[1]), double(box.max[2])}};
+}
+
+/// True if the closed boxes overlap.
+template <typename Real>
+bool overlap(const Box<Real>& a, const Box<Real>& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
+    }
+    return true;
 }
 
 inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
@@ -81,6 +91,21 @@ bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, 
                  std::span<Entry> out);
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
+
+/// The boxes of the objects `a` and `b` of pairs. The first object `b` has the number `second_begin`.
+template <typename Real>
+struct BoxesOfPairs {
+    const Box<Real>* first;
+    const Box<Real>* second;
+    std::uint32_t second_begin;
+
+    const Box<Real>& a(const Pair& pair) const { return first[pair.a]; }
+    const Box<Real>& b(const Pair& pair) const { return second[pair.b - second_begin]; }
+};
+
+/// PairRule::refused() for boxes that are a pair if they overlap.
+std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out);
+std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out);
 
 /// Sets boxes[i] to the smallest float32 box that holds triangles[i]. Returns false if any number is not finite.
 bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes);

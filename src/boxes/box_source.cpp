@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/prefetch.hpp"
 #include "boxes/box_kernel.hpp"
 #include "octopair/error.hpp"
 
@@ -88,6 +89,43 @@ bool BoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
     return within_reach(box_a, box_b, form_.rounding.margin + (padding_a + padding_b));
 }
 
+std::size_t BoxSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
+    // The objects `b` of a join are in the second set.
+    const Objects& set_of_b = join() ? *second_ : *first_;
+    const auto* const plain_a = std::get_if<std::span<const Box3f>>(&first_->boxes);
+    const auto* const plain_b = std::get_if<std::span<const Box3f>>(&set_of_b.boxes);
+    if (form_.exact) return refused_pairs(doubtful, {plain_a->data(), plain_b->data(), second_begin()}, out);
+    const auto* const wide_a = std::get_if<std::span<const Box3d>>(&first_->boxes);
+    const auto* const wide_b = std::get_if<std::span<const Box3d>>(&set_of_b.boxes);
+    const bool without_clearance = form_.rounding.margin == 0 && first_->padding.empty() && set_of_b.padding.empty();
+    if (without_clearance && wide_a != nullptr && wide_b != nullptr) {
+        return refused_pairs(doubtful, {wide_a->data(), wide_b->data(), second_begin()}, out);
+    }
+    return refused_one_by_one(doubtful, out);
+}
+
+void BoxSource::load_bounds(std::span<Entry> entries) const {
+    if (form_.exact) {
+        const auto box = [&](const Entry& entry) {
+            const bool in_first = entry.object < first_size_;
+            const Objects& set = in_first ? *first_ : *second_;
+            return &std::get<std::span<const Box3f>>(set.boxes)[in_first ? entry.object : entry.object - first_size_];
+        };
+        constexpr std::size_t ahead = 16;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            if (i + ahead < entries.size()) prefetch(box(entries[i + ahead]));
+            std::memcpy(&entries[i], box(entries[i]), sizeof(Box3f));
+        }
+        return;
+    }
+    for (Entry& entry : entries) {
+        double padding = 0;
+        const Box3d wide = box(entry.object, padding);
+        const Entry rounded = form_.rounding.entry(wide, padding);
+        std::memcpy(&entry, &rounded, sizeof(Box3f));
+    }
+}
+
 RoundingSlack BoxSource::slack() const {
     // The error of an entry's bound has two parts: 2^-23 of the bound (rounding to float32), and 2^-47 of the numbers from
     // which the bound was computed (OutwardRounding::error_part). The slack is more than four times the error, which separates
@@ -128,13 +166,13 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-std::span<const Box3f> BoxSource::plain(std::size_t begin, std::size_t count) const {
+PlainBoxes BoxSource::plain(std::size_t begin, std::size_t count) const {
     if (!form_.exact || join()) return {};
-    return std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count);
+    return {std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count), std::uint32_t(begin)};
 }
 
 void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
-    if (const auto boxes = plain(0, size()); !boxes.empty()) {
+    if (const auto boxes = plain(0, size()).boxes; !boxes.empty()) {
         for (std::size_t i = 0; i < out.size(); ++i) std::memcpy(&out[i], &boxes[positions[i]], sizeof(Box3f));
         return;
     }

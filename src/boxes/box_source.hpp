@@ -21,6 +21,12 @@
 
 namespace octopair {
 
+/// Boxes of consecutive objects.
+struct PlainBoxes {
+    std::span<const Box3f> boxes;
+    std::uint32_t first_object = 0;
+};
+
 /// Source of the entries of an octree: the caller's boxes, or the entries of a crowded octant (octree/scan.cpp).
 class EntrySource {
 public:
@@ -28,8 +34,9 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// Returns the boxes [begin, begin + count), unchecked, if entries have the same bounds; otherwise an empty span.
-    virtual std::span<const Box3f> plain(std::size_t begin, std::size_t count) const {
+    /// Returns the boxes [begin, begin + count), unchecked, if their entries have the same bounds, no bit in their masks and
+    /// consecutive objects; otherwise no boxes.
+    virtual PlainBoxes plain(std::size_t begin, std::size_t count) const {
         (void)begin, (void)count;
         return {};
     }
@@ -74,7 +81,7 @@ public:
 
     std::size_t size() const override { return first_size_ + second_size_; }
     bool load(std::size_t begin, std::span<Entry> out) const override;
-    std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override;
+    PlainBoxes plain(std::size_t begin, std::size_t count) const override;
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
     bool join() const override { return second_ != nullptr; }
@@ -83,6 +90,8 @@ public:
     RoundingSlack slack() const override;
     /// Evaluates the pair rule of octopair/objects.hpp in float64.
     bool is_pair(std::uint32_t a, std::uint32_t b) const override;
+    std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
+    void load_bounds(std::span<Entry> entries) const override;
 
     /// Returns the conversion of boxes to entries, used unless exact().
     const OutwardRounding& rounding() const { return form_.rounding; }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "boxes/entry.hpp"
 #include "octopair/objects.hpp"
@@ -17,6 +19,15 @@ inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
     return true;
 }
 
+/// Pairs, some of which are in doubt.
+struct DoubtfulPairs {
+    std::span<const Pair> pairs;
+    std::span<const std::uint32_t> positions;  ///< of the pairs in doubt
+
+    const Pair& operator[](std::size_t i) const { return pairs[positions[i]]; }
+    std::size_t size() const { return positions.size(); }
+};
+
 class PairRule {
 public:
     virtual ~PairRule() = default;
@@ -30,6 +41,22 @@ public:
     virtual RoundingSlack slack() const = 0;
     /// True if the objects are a pair by the caller's own numbers.
     virtual bool is_pair(std::uint32_t a, std::uint32_t b) const = 0;
+    /// Writes the positions of the doubtful pairs that are no pairs to `out`, in the same order, and returns their number.
+    /// Requires: `out` has room for all positions.
+    virtual std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const = 0;
+    /// Sets the bounds of entries whose object is set.
+    virtual void load_bounds(std::span<Entry> entries) const = 0;
+
+protected:
+    /// refused(), by a call of is_pair() for each pair.
+    std::size_t refused_one_by_one(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < doubtful.size(); ++i) {
+            out[count] = doubtful.positions[i];
+            count += is_pair(doubtful[i].a, doubtful[i].b) ? 0 : 1;
+        }
+        return count;
+    }
 };
 
 }  // namespace octopair

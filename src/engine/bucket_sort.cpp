@@ -1,11 +1,14 @@
 #include "engine/bucket_sort.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "boxes/row_sort.hpp"
 
 namespace octopair {
 
@@ -24,10 +27,52 @@ BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(
     const unsigned row_bits = keys_.row_bits();
     const unsigned for_rows = row_bits - std::min(row_bits, tuning().output.bucket_row_bits);
     const unsigned for_pairs =
-        std::min(row_bits, unsigned(std::bit_width(bounds.expected / tuning().output.sorted_at_once * 2)));
+        std::min(row_bits, unsigned(std::bit_width(bounds.expected / tuning().output.bucket_pairs)));
     const unsigned wanted = std::min(std::max(for_rows, for_pairs), tuning().output.bucket_bits);
     bits_ = std::clamp(wanted, 1u, unsigned(std::bit_width(spare_pages | 2)) - 1);
 }
+
+namespace {
+
+constexpr std::size_t columns_read_beyond = 16;  // by sort_rows()
+
+/// Requires: the strings are not all empty.
+const Pair& first_pair(const std::vector<PageString>& strings) {
+    return std::ranges::find_if(strings, [](const PageString& string) { return string.size() > 0; })->page(0).front();
+}
+
+}  // namespace
+
+/// Writes pairs to pages, and appends a run for each page.
+class BucketSort::PageWriter {
+public:
+    PageWriter(Pages& pages, Runs& runs) : pages_(pages), runs_(runs) { take(); }
+    /// Returns the number of pairs that fit into the page.
+    std::size_t left() const { return page_pairs() - used_; }
+    Pair* next() { return page_ + used_; }
+    void wrote(std::size_t pairs) {
+        used_ += pairs;
+        if (left() > 0) return;
+        runs_.emplace_back(page_, used_);
+        take();
+    }
+    void add(const Pair& pair) {
+        *next() = pair;
+        wrote(1);
+    }
+    void finish() { used_ > 0 ? runs_.push_back({page_, used_}) : pages_.give_back(page_); }
+
+private:
+    void take() {
+        page_ = pages_.take();
+        used_ = 0;
+    }
+
+    Pages& pages_;
+    Runs& runs_;
+    Pair* page_ = nullptr;
+    std::size_t used_ = 0;
+};
 
 struct BucketSort::Task {
     const std::stop_token& stop;
@@ -55,9 +100,7 @@ void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, Task& ta
         return split(std::move(strings), bits, task);
     }
     count_path(Path::bucket_sorted);
-    count_path(bits <= 32 ? Path::keys_narrow : Path::keys_wide);
-    if (bits <= 32) return sort_at_once(strings, bits, narrow_, task);
-    sort_at_once(strings, bits, wide_, task);
+    sort_at_once(strings, bits, task);
 }
 
 void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& task) {
@@ -80,28 +123,113 @@ void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& t
     }
 }
 
-template <typename Key>
-void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned bits, RadixSort<Key>& radix,
-                              Task& task) {
-    constexpr unsigned key_bits = sizeof(Key) * 8;
-    const std::span<Key> keys = radix.take(size_of(strings));
-    std::uint64_t above = 0;  // the high bits, equal in all keys
-    std::size_t at = 0;
+void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task) {
+    const PairKeys& keys = plan_.keys();
+    const unsigned column_bits = keys.column_bits();
+    const std::uint32_t rows = bits > column_bits ? std::uint32_t(1) << (bits - column_bits) : 1;
+    const std::uint64_t first_row = keys.first_row() + (keys.row(first_pair(strings)) & ~(rows - 1));
+    const auto row_of = [&](const Pair& pair) { return keys.row(pair) & (rows - 1); };
+    row_ends_.assign(2 * std::size_t(rows), 0);
+    const std::span<std::uint32_t> ends = std::span(row_ends_).first(rows),
+                                   odd_counts = std::span(row_ends_).subspan(rows);
+    for (const PageString& string : strings) {
+        for (std::size_t i = 0; i < string.pages().size(); ++i) {
+            const std::span<const Pair> page = string.page(i);
+            // Two counters for each row: a counter that is increased in turn must wait for its last store.
+            std::size_t k = 0;
+            for (; k + 1 < page.size(); k += 2) {
+                ++ends[row_of(page[k])];
+                ++odd_counts[row_of(page[k + 1])];
+            }
+            if (k < page.size()) ++ends[row_of(page[k])];
+        }
+    }
+    std::uint32_t begin = 0, longest = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+        const std::uint32_t size = ends[row] + odd_counts[row];
+        longest = std::max(longest, size);
+        ends[row] = std::exchange(begin, begin + size);
+    }
+    const bool long_runs = longest > begin / 4;  // pairs of one row often follow each other if the row is long
+    columns_.resize_discard(begin + columns_read_beyond);
     for (const PageString& string : strings) {
         for (std::size_t i = string.pages().size(); i-- > 0;) {  // the page returned last is taken first
-            for (const Pair& pair : string.page(i)) keys[at++] = Key(above = plan_.keys().key(pair));
+            const std::span<const Pair> page = string.page(i);
+            if (!long_runs) {
+                for (const Pair& pair : page) columns_[ends[row_of(pair)]++] = pair.b;
+            }
+            for (std::size_t k = long_runs ? 0 : page.size(); k < page.size();) {
+                const std::uint32_t row = row_of(page[k]);
+                std::uint32_t at = ends[row];
+                do columns_[at++] = page[k++].b;
+                while (k < page.size() && row_of(page[k]) == row);
+                ends[row] = at;
+            }
             task.spend(string.pages()[i]);
         }
     }
-    above = above >> (key_bits - 1) >> 1 << (key_bits - 1) << 1;
-    std::span<const Key> sorted = radix.sort(0, bits);
-    while (!sorted.empty()) {
-        Pair* const page = pages_.take();
-        const auto part = sorted.first(std::min(sorted.size(), page_pairs()));
-        for (std::size_t i = 0; i < part.size(); ++i) page[i] = plan_.keys().pair(above | part[i]);
-        task.sorted.emplace_back(page, part.size());
+    write_rows({ends, first_row}, std::min(bits, column_bits), task);
+}
+
+/// Sorts the columns of each row and writes the pairs to pages.
+void BucketSort::write_rows(const Rows& rows, unsigned bits, Task& task) {
+    PageWriter writer(pages_, task.sorted);
+    std::uint32_t begin = 0;
+    for (std::size_t row = 0; row < rows.ends.size();) {
+        // As many rows as fit into the page. Without any, a single row, which is long or goes beyond the page.
+        const std::uint32_t page_end = begin + std::uint32_t(writer.left());
+        std::size_t end = row;
+        for (std::uint32_t at = begin; end < rows.ends.size(); at = rows.ends[end++]) {
+            if (rows.ends[end] > page_end || rows.ends[end] - at > max_row_at_once) break;
+        }
+        if (end > row) {
+            const auto ends = rows.ends.subspan(row, end - row);
+            sort_rows({columns_.data(), begin, ends, std::uint32_t(rows.first + row)}, writer.next());
+            writer.wrote(ends.back() - begin);
+        } else {
+            end = row + 1;
+            write_row(std::uint32_t(rows.first + row), columns_.span().subspan(begin, rows.ends[row] - begin), bits,
+                      writer);
+        }
+        begin = rows.ends[end - 1];
+        row = end;
+    }
+    writer.finish();
+}
+
+void BucketSort::write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits,
+                           PageWriter& writer) {
+    count_path(Path::long_row_sorted);
+    for (auto sorted = sorted_columns(columns, bits); !sorted.empty();) {
+        const auto part = sorted.first(std::min(sorted.size(), writer.left()));
+        Pair* const out = writer.next();
+        for (std::size_t i = 0; i < part.size(); ++i) out[i] = {row, part[i]};
+        writer.wrote(part.size());
         sorted = sorted.subspan(part.size());
     }
+}
+
+/// Sorts the columns of one row, which differ only in their lowest `bits`. The result is valid until the next call.
+std::span<const std::uint32_t> BucketSort::sorted_columns(std::span<const std::uint32_t> columns, unsigned bits) {
+    const std::span<std::uint32_t> sorted = radix_.take(columns.size());
+    const auto [least, greatest] = std::ranges::minmax(columns);
+    const std::size_t words = (greatest - least) / 64 + 1;
+    if ((greatest - least) / tuning().output.bitmap_columns >= columns.size()) {
+        std::ranges::copy(columns, sorted.begin());
+        return radix_.sort(0, bits);
+    }
+    // Many of the possible columns are there: marks them in a bit map.
+    count_path(Path::row_in_bitmap);
+    bitmap_.assign(words, 0);
+    for (const std::uint32_t column : columns)
+        bitmap_[(column - least) / 64] |= std::uint64_t(1) << (column - least) % 64;
+    std::uint32_t* out = sorted.data();
+    for (std::size_t word = 0; word < words; ++word) {
+        const std::uint32_t first = least + std::uint32_t(word * 64);
+        for (std::uint64_t set = bitmap_[word]; set != 0; set &= set - 1)
+            *out++ = first + std::uint32_t(std::countr_zero(set));
+    }
+    return sorted;
 }
 
 }  // namespace octopair

@@ -1,7 +1,8 @@
 // BucketSort: sorts pairs into ascending order (by a, then b) with one bucket for each range of neighbouring `a`.
 //
 // 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a string of pages.
-// 2. Each bucket is gathered from all threads or workers and sorted independently.
+// 2. Each bucket is gathered from all threads or workers and sorted independently: its pairs are counted by `a` and moved to
+//    their rows, then the objects `b` of each row are sorted.
 //
 // Invariants
 //   Every key in bucket i is less than every key in bucket i + 1.
@@ -30,11 +31,12 @@ public:
 
     /// Returns true if `pair.a` is in the range of rows.
     bool wanted(const Pair& pair) const { return pair.a - first_ < count_; }
+    /// Returns the row of a pair, relative to the first row.
+    std::uint32_t row(const Pair& pair) const { return std::uint32_t(pair.a - first_); }
+    std::uint64_t first_row() const { return first_; }
     std::uint64_t key(const Pair& pair) const { return (pair.a - first_) << b_bits_ | pair.b; }
-    Pair pair(std::uint64_t key) const {
-        return {std::uint32_t((key >> b_bits_) + first_), std::uint32_t(key & ((std::uint64_t(1) << b_bits_) - 1))};
-    }
     unsigned row_bits() const { return std::max(1u, unsigned(std::bit_width(count_))); }
+    unsigned column_bits() const { return b_bits_; }
     unsigned bits() const { return row_bits() + b_bits_; }
 
 private:
@@ -58,8 +60,15 @@ public:
     /// Appends each wanted pair to the string of its bucket. `strings` has one string for each bucket.
     /// Throws: OverBudget.
     void fill(std::span<const Pair> pairs, std::span<PageString> strings, Pages& pages) const {
+        if (key_bits() < keys_.column_bits()) {
+            for (const Pair& pair : pairs) {
+                if (keys_.wanted(pair)) strings[bucket(pair)].add(pair, pages);
+            }
+            return;
+        }
+        const unsigned rows_in_bucket = key_bits() - keys_.column_bits();  // log2
         for (const Pair& pair : pairs) {
-            if (keys_.wanted(pair)) strings[bucket(pair)].add(pair, pages);
+            if (keys_.wanted(pair)) strings[keys_.row(pair) >> rows_in_bucket].add(pair, pages);
         }
     }
 
@@ -84,13 +93,23 @@ private:
     struct Task;
     void sort(std::vector<PageString>&& strings, unsigned bits, Task& task);
     void split(std::vector<PageString>&& strings, unsigned bits, Task& task);
-    template <typename Key>
-    void sort_at_once(const std::vector<PageString>& strings, unsigned bits, RadixSort<Key>& radix, Task& task);
+    class PageWriter;
+    /// Rows of a bucket: positions behind their last columns in `columns_`, and the object `a` of the first row.
+    struct Rows {
+        std::span<const std::uint32_t> ends;
+        std::uint64_t first;
+    };
+    void sort_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task);
+    void write_rows(const Rows& rows, unsigned bits, Task& task);
+    void write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits, PageWriter& writer);
+    std::span<const std::uint32_t> sorted_columns(std::span<const std::uint32_t> columns, unsigned bits);
 
     const BucketPlan& plan_;
     Pages& pages_;
-    RadixSort<std::uint32_t> narrow_;
-    RadixSort<std::uint64_t> wide_;
+    Buffer<std::uint32_t> columns_;        // objects `b` of a bucket, row by row
+    std::vector<std::uint32_t> row_ends_;  // by row of a bucket: position behind its last column; then second counters
+    std::vector<std::uint64_t> bitmap_;    // columns of a long row
+    RadixSort<std::uint32_t> radix_;       // sorts a long row
 };
 
 }  // namespace octopair

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/prefetch.hpp"
 #include "base/tuning.hpp"
 #include "octopair/objects.hpp"
 
@@ -48,6 +49,7 @@ public:
 
     void add(const Pair& pair, Pages& pages) {
         if (next_ == end_) grow(pages);
+        prefetch(next_ + prefetched);
         *next_++ = pair;
     }
 
@@ -56,6 +58,8 @@ public:
     std::span<Pair> page(std::size_t i) const { return {pages_[i], std::min(page_pairs(), size() - i * page_pairs())}; }
 
 private:
+    static constexpr std::size_t prefetched = 12;  // pairs: the cache line after the current one
+
     void grow(Pages& pages) {
         next_ = pages.take();
         end_ = next_ + page_pairs();

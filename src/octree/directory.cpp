@@ -42,16 +42,16 @@ void Directory::leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) c
         for (std::uint32_t i = 0; i < some.size(); ++i) {
             out[i] = Leaf(first_element(some[i].lo));
             waiting[count] = i;
-            count += out[i].element_ >= further ? 1 : 0;
+            count += out[i].element() >= further ? 1 : 0;
         }
         for (unsigned shift = table_shift_; count > 0;) {
             unsigned below = shift;
             std::size_t left = 0;
             for (const std::uint32_t i : std::span(waiting).first(count)) {
                 below = shift;
-                out[i] = Leaf(further_element(out[i].element_, some[i].lo, below));
+                out[i] = Leaf(further_element(out[i].element(), some[i].lo, below));
                 waiting[left] = i;
-                left += out[i].element_ >= further ? 1 : 0;
+                left += out[i].element() >= further ? 1 : 0;
             }
             shift = below;
             count = left;

@@ -68,11 +68,24 @@ public:
         OctantIndex octant() const { return element_ & max_octants; }
         unsigned level() const { return element_ >> octant_bits; }
 
-    private:
-        friend Directory;
+        /// Returns index and level in one number, as in LeafTable.
+        std::uint32_t element() const { return element_; }
         explicit Leaf(std::uint32_t element) : element_(element) {}
+
+    private:
         std::uint32_t element_;
     };
+    /// The tables of leaf(), for SIMD versions. See the comment at the tables below.
+    struct LeafTable {
+        const std::uint32_t* elements;
+        std::array<std::uint32_t, 3> sizes;
+        unsigned shift;
+    };
+    LeafTable leaf_table() const { return {table_.data(), table_size_, table_shift_}; }
+    static constexpr unsigned table_levels = 3;
+    static constexpr unsigned octant_bits = 26;
+    static constexpr std::uint32_t max_octants = (std::uint32_t(1) << octant_bits) - 1;
+    static constexpr std::uint32_t further = (deepest + 1) << octant_bits;
     /// Returns the leaf that holds `cell`.
     Leaf leaf(const Cell& cell) const {
         unsigned shift = table_shift_;
@@ -102,10 +115,6 @@ private:
     // Lookup from cells to leaves. The first table has the octants of one level, row-major. An octant that is divided further
     // has a table of the next three levels, and so on. An element is a leaf with its level, or `further` plus the
     // position where the octant's table begins.
-    static constexpr unsigned table_levels = 3;
-    static constexpr unsigned octant_bits = 26;
-    static constexpr std::uint32_t max_octants = (std::uint32_t(1) << octant_bits) - 1;
-    static constexpr std::uint32_t further = (deepest + 1) << octant_bits;
     std::uint32_t first_element(const Cell& cell) const {
         const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;
         return table_[(z * table_size_[1] + y) * table_size_[0] + x];

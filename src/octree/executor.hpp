@@ -27,6 +27,8 @@ public:
     virtual ~ShareWriter() = default;
     /// True if pairs are counted only: the share then calls write_count in place of write.
     virtual bool counting() const = 0;
+    /// Returns memory for `pairs` pairs, or no memory. Pairs that are written from its begin need not be copied.
+    virtual std::span<Pair> room([[maybe_unused]] std::size_t pairs) { return {}; }
     virtual void write(std::span<const Pair> pairs) = 0;
     virtual void write_count(std::uint64_t pairs) = 0;
 };
@@ -35,7 +37,6 @@ public:
 struct BuildPlace {
     Executor& executor;
     PageSource& pages;
-    PageSource& scratch;  ///< for data that is not read after the scatter step
 };
 
 class Executor {
@@ -50,7 +51,7 @@ public:
     /// Returns where a scan with this executor builds a nested octree of `entries` entries. The default is this executor, with
     /// memory of this process. The returned executor is valid until the next call.
     /// Requires: processes that scan together make the same calls. They get the same kind of place.
-    virtual BuildPlace build_place([[maybe_unused]] std::size_t entries) { return {*this, own_pages(), own_pages()}; }
+    virtual BuildPlace build_place([[maybe_unused]] std::size_t entries) { return {*this, own_pages()}; }
 };
 
 /// Discards pairs: the writer for steps that write none.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
@@ -13,9 +12,11 @@ namespace octopair {
 namespace {
 
 std::vector<NumberedBlock> blocks_of(std::size_t objects, unsigned width) {
+    constexpr std::size_t max_objects = std::size_t(1) << 28;  // 32 bits number the entries of a block
     const std::size_t enough = std::max<std::size_t>(1, objects / tuning().build.min_block);
     std::vector<NumberedBlock> blocks(
-        std::min<std::size_t>(width == 1 ? 1 : width * tuning().build.blocks_per_thread, enough));
+        std::max(std::min<std::size_t>(width == 1 ? 1 : width * tuning().build.blocks_per_thread, enough),
+                 objects / max_objects + 1));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         blocks[i] = {i, {objects * i / blocks.size(), objects * (i + 1) / blocks.size()}};
     }
@@ -104,38 +105,35 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     count_path(blocks.size() == 1 ? Path::build_one_block : Path::build_blocks);
     if (ranges.size() > 1) count_path(Path::count_ranges);
     const BuildSteps steps{source, space(), directory(), memory_, stop};
-    executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode(blocks[i]); });
-    seconds_.encode = seconds_since(clock);
-
-    std::vector<std::size_t> all(blocks.size());
-    std::iota(all.begin(), all.end(), std::size_t(0));
-    executor.for_each(ranges.size(), [&](std::size_t i) { steps.count(ranges[i], all); });
-    std::vector<std::uint64_t> range_begins;
-    join_ranges(ranges, range_begins);
-    seconds_.count = seconds_since(clock);
-
-    entries_.resize_discard(std::size_t(entry_count()) + blocks.size());
-    executor.for_each(blocks.size(), [&](std::size_t i) {
-        const ScatterTarget target{entries_.span(), range_begins, ranges, std::size_t(entry_count()) + i};
-        steps.scatter(blocks[i], target);
-    });
+    assembled_ = false;
+    executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode_and_scatter(blocks[i]); });
     for (const NumberedBlock& block : blocks) {
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
     }
-    memory_.ghosts.clear();
-    if (is_crowded()) {
-        count_path(Path::crowded_octree);
-        memory_.homes.clear();  // the scan of a crowded octant needs this memory
-    }
-    seconds_.scatter = seconds_since(clock);
+    const double both = seconds_since(clock);
+    seconds_.scatter = both * scatter_part(blocks.size());
+    seconds_.encode = both - seconds_.scatter;
+
+    executor.for_each(ranges.size(), [&](std::size_t i) { steps.count(ranges[i]); });
+    join_ranges(ranges);
+    seconds_.count = seconds_since(clock);
 }
 
-/// Sets the positions where the entries of each range of octants, and of each octant, begin.
-void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges, std::vector<std::uint64_t>& range_begins) {
+/// Returns the part of the time of encode and scatter that scatter took.
+double LinearOctree::scatter_part(std::size_t blocks) const {
+    BuildMemory::Seconds all;
+    for (std::size_t block = 0; block < blocks; ++block) {
+        all.encode += memory_.seconds[block].encode;
+        all.scatter += memory_.seconds[block].scatter;
+    }
+    return all.scatter > 0 ? all.scatter / (all.encode + all.scatter) : 0;
+}
+
+/// Sets the positions where the entries of each octant begin, in the order of octants.
+void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges) {
     begins_.resize(octants().size() + 1);
     std::uint64_t at = 0;
     for (const NumberedOctants& range : ranges) {
-        range_begins.push_back(at);
         for (OctantIndex octant = range.begin; octant < range.end; ++octant)
             begins_[octant] = at + memory_.begins[octant];
         at += memory_.totals[range.number];
@@ -143,12 +141,11 @@ void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges, std::vec
     begins_.back() = at;
 }
 
-/// True if one octant holds more than half of the entries.
-bool LinearOctree::is_crowded() const {
-    for (OctantIndex octant = 0; octant < octants().size(); ++octant) {
-        if (2 * entries(octant).size() > entry_count()) return true;
-    }
-    return false;
+std::vector<CellEntry> LinearOctree::entries(OctantIndex octant) const {
+    std::vector<CellEntry> all;
+    all.reserve(std::size_t(entry_count(octant)));
+    for_each_run(octant, [&](std::span<const CellEntry> run) { all.insert(all.end(), run.begin(), run.end()); });
+    return all;
 }
 
 void LinearOctree::assemble(OctreeLayout layout, std::span<const SortedList> lists, const std::stop_token& stop) {
@@ -156,9 +153,10 @@ void LinearOctree::assemble(OctreeLayout layout, std::span<const SortedList> lis
     layout_ = std::move(layout);
     std::uint64_t all = 0;
     for (const SortedList& list : lists) all += list.entries.size();
-    entries_.resize_discard(std::size_t(all));
+    assembled_ = true;
+    merged_.resize_discard(std::size_t(all));
     begins_.resize(octants().size() + 1);
-    begins_.back() = merge_lists(lists, {entries_.span(), std::span(begins_).first(octants().size()), {}}, stop);
+    begins_.back() = merge_lists(lists, {merged_.span(), std::span(begins_).first(octants().size()), {}}, stop);
     seconds_ = {};
     seconds_.merge = seconds_since(clock);
 }

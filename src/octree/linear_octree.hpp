@@ -30,8 +30,9 @@
 
 namespace octopair {
 
+/// Seconds of the steps. Encode and scatter run together; their time is divided by a sample of the batches.
 struct BuildSeconds {
-    double encode = 0, count = 0, scatter = 0, merge = 0;
+    double encode = 0, scatter = 0, count = 0, merge = 0;
 };
 
 /// An octree's space and octants. Both are a function of a sample of the objects.
@@ -61,9 +62,9 @@ OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop)
 class LinearOctree {
 public:
     LinearOctree() = default;
-    /// Stores entries and the results of steps in `pages`, and data that is not read after the scatter step in `scratch`.
-    /// Requires: both outlive the octree. If several processes build one octree together, all of them share these pages.
-    LinearOctree(PageSource& pages, PageSource& scratch) : entries_(pages), memory_(pages, scratch) {}
+    /// Stores entries in `pages`. Requires: `pages` outlives the octree. If several processes build one octree together, all of
+    /// them share these pages.
+    explicit LinearOctree(PageSource& pages) : memory_(pages) {}
 
     /// Replaces the contents and reuses the memory.
     /// Throws: Error{cancelled}; Invalid if an object is not a valid box.
@@ -88,9 +89,19 @@ public:
     const Space& space() const { return layout_.space; }
     std::span<const Octant> octants() const { return layout_.directory.octants(); }
     const Directory& directory() const { return layout_.directory; }
-    std::span<const Entry> entries(OctantIndex octant) const {
-        return entries_.span().subspan(begins_[octant], begins_[octant + 1] - begins_[octant]);
+    /// Calls visit(entries) for each run of adjacent entries of an octant, in order.
+    template <typename Visit>
+    void for_each_run(OctantIndex octant, Visit&& visit) const {
+        if (assembled_) {
+            visit(merged_.span().subspan(begins_[octant], entry_count(octant)));
+        } else {
+            memory_.lists.for_each_run(memory_.home_list(octant), visit);
+            memory_.lists.for_each_run(memory_.ghost_list(octant), visit);
+        }
     }
+    /// Returns a copy of the entries of an octant, in order.
+    std::vector<CellEntry> entries(OctantIndex octant) const;
+    std::uint64_t entry_count(OctantIndex octant) const { return begins_[octant + 1] - begins_[octant]; }
     /// Returns the number of entries of the octants [begin, end).
     std::uint64_t entry_count(OctantIndex begin, OctantIndex end) const { return begins_[end] - begins_[begin]; }
     std::uint64_t entry_count() const { return begins_.back(); }
@@ -99,13 +110,14 @@ public:
 private:
     using Clock = std::chrono::steady_clock::time_point;
     void fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, Clock clock);
-    void join_ranges(std::span<const NumberedOctants> ranges, std::vector<std::uint64_t>& range_begins);
-    bool is_crowded() const;
+    double scatter_part(std::size_t blocks) const;
+    void join_ranges(std::span<const NumberedOctants> ranges);
 
     OctreeLayout layout_;
     std::vector<std::uint64_t> begins_ = {0, 0};  // position of each octant's first entry, and the number of entries
-    Buffer<Entry> entries_;
-    BuildMemory memory_{own_pages(), own_pages()};
+    BuildMemory memory_{own_pages()};
+    Buffer<CellEntry> merged_;  // of assemble(), by octant
+    bool assembled_ = false;    // true if `merged_` has the entries, false if `memory_` has
     BuildSeconds seconds_;
 };
 

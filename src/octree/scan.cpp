@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <mutex>
 #include <vector>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/cell_sweep/cell_pair_maker.hpp"
 #include "octree/sweep/recursive_sweep.hpp"
 
 namespace octopair {
@@ -16,11 +18,48 @@ namespace {
 
 using Handed = std::vector<Entry>;
 
+/// Returns the entries of an octant with their bounds as coordinates, made again from the caller's boxes.
+std::vector<Entry> whole_entries(const LinearOctree& octree, OctantIndex octant, const PairRule& rule) {
+    std::vector<Entry> whole;
+    whole.reserve(std::size_t(octree.entry_count(octant)));
+    const OctantCells cells(octree.space(), octree.octants()[octant]);
+    octree.for_each_run(octant, [&](std::span<const CellEntry> run) {
+        for (const CellEntry& entry : run) whole.push_back({{}, {}, entry.object, cells.mask_of(entry)});
+    });
+    rule.load_bounds(whole);
+    return whole;
+}
+
+/// The own entries of inner octants, with their bounds as coordinates. Each octant's are made once, when they are first used.
+/// Thread safety: any thread may call it.
+class KeptEntries {
+public:
+    KeptEntries(const LinearOctree& octree, const PairRule& rule)
+        : octree_(octree), rule_(rule), kept_((octree.octants().size() + 7) / 8) {}
+
+    std::span<const Entry> of(OctantIndex inner) {
+        if (octree_.entry_count(inner) == 0) return {};
+        Kept& kept = kept_[octree_.octants()[inner].children];  // rows of the child table number the inner octants
+        std::call_once(kept.made, [&] { kept.entries = whole_entries(octree_, inner, rule_); });
+        return kept.entries;
+    }
+
+private:
+    struct Kept {
+        std::once_flag made;
+        std::vector<Entry> entries;
+    };
+    const LinearOctree& octree_;
+    const PairRule& rule_;
+    std::vector<Kept> kept_;
+};
+
 /// The entries handed down to the octants of one path, by level, each with its class bits in that octant.
 class HandedDown {
 public:
     /// `moved`: number of cells by which boxes are shifted, for Fault::nested_space_moved; otherwise 0.
-    HandedDown(const LinearOctree& octree, std::uint32_t moved) : octree_(octree), moved_(moved) {}
+    HandedDown(const LinearOctree& octree, KeptEntries& kept, std::uint32_t moved)
+        : octree_(octree), kept_(kept), moved_(moved) {}
 
     /// Returns the entries that octants above keep and that touch `octant`.
     /// Requires: calls come in pre-order of octants; any octant may be the first.
@@ -38,7 +77,7 @@ public:
             (void)at(parent);
             lists_[level].clear();
             hand_down(lists_[level - 1], octant);
-            hand_down(octree_.entries(parent), octant);
+            hand_down(kept_.of(parent), octant);
         }
         owners_[level] = octant;
         return lists_[level];
@@ -77,6 +116,7 @@ private:
     }
 
     const LinearOctree& octree_;
+    KeptEntries& kept_;
     std::uint32_t moved_;
     std::vector<Handed> lists_;
     std::vector<OctantIndex> owners_;
@@ -114,85 +154,163 @@ public:
         if constexpr (has_test_hooks) {
             if (context_.nesting == 0) context_.outermost = OutermostOctant{octree_.space(), octree_.octants()[octant]};
         }
-        const auto own = octree_.entries(octant);
-        const unsigned axis = octree_.space().long_axis();
-        context_.rule.join() ? scan_join(own, handed, axis) : scan_self(own, handed, axis);
+        octant_ = octant;
+        cells_ = OctantCells(octree_.space(), octree_.octants()[octant]);
+        gaps_ = certain_gaps(cells_, context_.rule);
+        turns_ = 0;
+        crowd_.clear();
+        if (runs_owner_ != octant) find_runs(octant, runs_);
+        next_runs_.clear();
+        if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, next_runs_);
+        context_.rule.join() ? scan_join(handed) : scan_self(handed);
+        std::swap(runs_, next_runs_);
+        runs_owner_ = octant + 1;
     }
 
 private:
+    using Runs = std::vector<std::span<const CellEntry>>;
+
+    void find_runs(OctantIndex octant, Runs& runs) const {
+        runs.clear();
+        octree_.for_each_run(octant, [&](std::span<const CellEntry> run) { runs.push_back(run); });
+    }
+
     /// Finds the pairs among the octant's own entries, and between own entries and entries handed down.
-    void scan_self(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
-        const EntryList own_list{own}, handed_list{handed};
-        const bool laid_out = try_lay_out(own_list, axis, own_set_);
+    void scan_self(std::span<const Entry> handed) {
+        const std::size_t own = std::size_t(octree_.entry_count(octant_));
+        if (own + handed.size() < 2) return;
+        const bool laid_out = own <= tuning().scan.max_swept_list;
+        if (laid_out) own_set_.assign(runs_, next_runs_);
         if (!laid_out) count_path(Path::own_too_large);
-        if (own.size() > 1 && !(laid_out && try_own_sweep())) scan_crowded({own_list, own_list, true, {}});
-        if (!handed.empty() && !(laid_out && try_handed_sweep(handed_list, axis))) {
-            scan_crowded({handed_list, own_list, false, {}});
+        if (own > 1 && !(laid_out && try_own_sweep())) {
+            const EntryList crowd{crowd_of_own()};
+            scan_crowded({crowd, crowd, true, {}});
+        }
+        if (!handed.empty() && !(laid_out && try_handed_sweep(handed))) {
+            scan_crowded({{handed}, {crowd_of_own()}, false, {}});
         }
     }
 
+    /// Returns the octant's own entries with their bounds as coordinates.
+    std::span<const Entry> crowd_of_own() {
+        if (crowd_.empty()) crowd_ = whole_entries(octree_, octant_, context_.rule);
+        return crowd_;
+    }
+
     bool try_own_sweep() {
-        const bool done = try_sweep({{own_set_, own_set_, SweepKind::self}});
+        bool done = try_sweep({{own_set_, own_set_, SweepKind::self}});
+        for (unsigned axis = 1; !done && axis < 3; ++axis) {
+            turn_own();
+            done = try_sweep({{own_set_, own_set_, SweepKind::self}});
+            if (done) count_path(Path::swept_on_other_axis);
+        }
         count_path(done ? Path::own_swept : Path::own_window_too_wide);
         return done;
     }
 
-    bool try_handed_sweep(const EntryList& handed, unsigned axis) {
-        const bool laid_out = try_lay_out(handed, axis, handed_set_);
+    bool try_handed_sweep(std::span<const Entry> handed) {
+        handed_cells_.resize(handed.size());
+        cell_entries(cells_, handed, handed_cells_.data());
+        const bool laid_out = try_lay_out(handed_cells_, handed_set_);
+        for (unsigned turn = 0; laid_out && turn < turns_; ++turn) handed_set_.turn();
         const bool done = laid_out && try_cross_sweeps();
         count_path(done ? Path::handed_swept : laid_out ? Path::handed_window_too_wide : Path::handed_too_large);
         return done;
     }
 
-    /// Finds the pairs between the two sets of a join. No set is swept against itself.
-    void scan_join(std::span<const Entry> own, std::span<const Entry> handed, unsigned axis) {
-        const EntryList own_first = of_set(own, first_set, positions_[0]);
-        const EntryList own_second = of_set(own, second_set, positions_[1]);
-        join(own_first, own_second, axis);
-        join(of_set(handed, first_set, positions_[2]), own_second, axis);
-        join(of_set(handed, second_set, positions_[3]), own_first, axis);
+    /// Sorts the octant's own entries along the next axis.
+    void turn_own() {
+        own_set_.turn();
+        std::ranges::rotate(gaps_.cells, gaps_.cells.begin() + 1);
+        ++turns_;
     }
 
-    static EntryList of_set(std::span<const Entry> entries, std::uint32_t set, std::vector<std::uint32_t>& positions) {
+    /// A part of the entries that meet in an octant of a join.
+    struct Part {
+        bool handed;        ///< the entries handed down; otherwise the own entries
+        std::uint32_t set;  ///< first_set or second_set
+
+        std::size_t number() const { return (handed ? 2u : 0u) + (set == second_set ? 1u : 0u); }
+    };
+
+    /// Finds the pairs between the two sets of a join. No set is swept against itself.
+    void scan_join(std::span<const Entry> handed) {
+        for (Part own : {Part{false, first_set}, Part{false, second_set}}) {
+            std::vector<CellEntry>& cells = cells_of_part_[own.number()];
+            const std::size_t flag = own.set == first_set ? 0 : 1;
+            cells.clear();
+            for (const auto run : runs_) {
+                for (const CellEntry& entry : run) {
+                    if (entry.ends[flag] >> 31 != 0) cells.push_back(entry);
+                }
+            }
+        }
+        for (Part part : {Part{true, first_set}, Part{true, second_set}}) {
+            const EntryList list = of_set(handed, part);
+            cells_of_part_[part.number()].resize(list.size());
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                cell_entries(cells_, {&list[i], 1}, &cells_of_part_[part.number()][i]);
+            }
+        }
+        join(handed, {false, first_set}, {false, second_set});
+        join(handed, {true, first_set}, {false, second_set});
+        join(handed, {true, second_set}, {false, first_set});
+    }
+
+    EntryList of_set(std::span<const Entry> entries, Part part) {
+        std::vector<std::uint32_t>& positions = positions_[part.number()];
         positions.clear();
         for (std::uint32_t i = 0; i < entries.size(); ++i) {
-            if (entries[i].mask & set) positions.push_back(i);
+            if (entries[i].mask & part.set) positions.push_back(i);
         }
         return {entries, positions, false};
     }
 
-    void join(const EntryList& rows, const EntryList& columns, unsigned axis) {
-        if (rows.size() == 0 || columns.size() == 0) return;
-        const bool done =
-            try_lay_out(rows, axis, handed_set_) && try_lay_out(columns, axis, own_set_) && try_cross_sweeps();
+    void join(std::span<const Entry> handed, Part rows, Part columns) {
+        if (cells_of_part_[rows.number()].empty() || cells_of_part_[columns.number()].empty()) return;
+        gaps_ = certain_gaps(cells_, context_.rule);
+        const bool done = try_lay_out(cells_of_part_[rows.number()], handed_set_) &&
+                          try_lay_out(cells_of_part_[columns.number()], own_set_) && try_cross_sweeps();
         count_path(done ? Path::join_swept : Path::join_crowded);
-        if (!done) scan_crowded({rows, columns, false, {}});
+        if (done) return;
+        const auto whole = [&](Part part) { return of_set(part.handed ? handed : crowd_of_own(), part); };
+        scan_crowded({whole(rows), whole(columns), false, {}});
     }
 
-    /// Returns false, with nothing done, if the list is too large.
-    bool try_lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-        if (list.size() > tuning().scan.max_swept_list) return false;
-        order_.lay_out(list, axis, set);
+    /// Returns false, with nothing done, if there are too many entries.
+    static bool try_lay_out(std::span<const CellEntry> entries, CellSet& set) {
+        if (entries.size() > tuning().scan.max_swept_list) return false;
+        set.assign({&entries, 1});
         return true;
     }
 
+    /// Sweeps the two sets against each other, along the first of three axes on which the sweep is cheap.
     bool try_cross_sweeps() {
-        return try_sweep({{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
+        const auto try_axis = [&] {
+            return try_sweep(
+                {{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
+        };
+        bool done = try_axis();
+        for (unsigned axis = 1; !done && axis < 3; ++axis) {
+            turn_own();
+            handed_set_.turn();
+            done = try_axis();
+            if (done) count_path(Path::swept_on_other_axis);
+        }
+        return done;
     }
 
     /// Runs the sweeps and returns true, unless they would test too many columns for each row.
-    bool try_sweep(std::initializer_list<Sweep> sweeps) {
+    bool try_sweep(std::initializer_list<CellSweep> sweeps) {
         std::uint64_t tests = 0;
         std::size_t rows = 0;
-        for (const Sweep& sweep : sweeps) {
+        for (const CellSweep& sweep : sweeps) {
             tests += sampled_tests(sweep);
             rows += sweep.rows.size();
         }
         if (tests > tuning().scan.max_tests_per_box * rows) return false;
         executor_.for_each_writing(1, [&](std::size_t, ShareWriter& writer) {
-            PairMaker maker(context_, writer);
-            for (const Sweep& sweep : sweeps) maker.sweep(sweep, {});
-            maker.flush();
+            for (const CellSweep& sweep : sweeps) pair_maker_.sweep(sweep, gaps_, writer);
         });
         return true;
     }
@@ -243,7 +361,7 @@ private:
         }
         const JoinSource entries(join);
         const BuildPlace place = executor_.build_place(entries.size());
-        LinearOctree octree(place.pages, place.scratch);
+        LinearOctree octree(place.pages);
         octree.build(entries, place.executor, context_.stop);
         if (!thins(octree, entries.size())) return false;
         ScanContext within = context_;
@@ -261,7 +379,7 @@ private:
     bool thins(const LinearOctree& octree, std::size_t entries) const {
         std::size_t largest = 0;
         for (OctantIndex octant = 0; octant < octree.octants().size(); ++octant) {
-            largest = std::max(largest, octree.entries(octant).size());
+            largest = std::max(largest, std::size_t(octree.entry_count(octant)));
         }
         const bool thinner = double(largest) <= tuning().scan.max_part_in_octant * double(entries);
         const double growth = context_.growth * double(octree.entry_count()) / double(entries);
@@ -274,10 +392,20 @@ private:
     const LinearOctree& octree_;
     ScanContext context_;
     Executor& executor_;
+    OctantIndex octant_ = 0;
+    OctantIndex runs_owner_ = ~OctantIndex(0);
+    Runs runs_, next_runs_;     // entries of the scanned octant, and of the one behind it
+    std::vector<Entry> crowd_;  // result of crowd_of_own(), or empty
     SweepOrder order_;
-    SweepSet own_set_;
-    SweepSet handed_set_;
-    std::array<std::vector<std::uint32_t>, 4> positions_;  // of own entries by set, then of entries handed down by set
+    OctantCells cells_;
+    CertainGaps gaps_;
+    unsigned turns_ = 0;  // number of times that the own entries, and gaps_, were turned
+    CellPairMaker pair_maker_{context_};
+    std::vector<CellEntry> handed_cells_;
+    CellSet own_set_;
+    CellSet handed_set_;
+    std::array<std::vector<CellEntry>, 4> cells_of_part_;  // of a join, by Part::number()
+    std::array<std::vector<std::uint32_t>, 4> positions_;  // of the entries of a part, if it is crowded
 };
 
 /// A run of octants in pre-order that is scanned as one share. A large octant is a share alone.
@@ -294,7 +422,7 @@ std::vector<Share> shares_of(const OctreeRange& octants, unsigned width) {
     std::vector<Share> shares;
     std::uint64_t held = 0;
     for (OctantIndex octant = octants.begin; octant < octants.end; ++octant) {
-        const std::size_t size = octree.entries(octant).size();
+        const std::size_t size = std::size_t(octree.entry_count(octant));
         const bool large = size > tuning().scan.large_octant;
         if (shares.empty() || large || shares.back().large || held + size > most) {
             shares.push_back({octant, octant, large});
@@ -312,12 +440,13 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
           const std::function<void(std::uint64_t)>& progress) {
     const LinearOctree& octree = octants.octree;
     const std::vector<Share> shares = shares_of(octants, executor.width());
+    KeptEntries kept(octree, context.rule);
     const auto scan_share = [&](const Share& share, Executor& within) {
-        HandedDown handed(octree, planted(Fault::nested_space_moved) && context.nesting > 0 ? 1 : 0);
+        HandedDown handed(octree, kept, planted(Fault::nested_space_moved) && context.nesting > 0 ? 1 : 0);
         OctantScan scans(octree, context, within);
         for (OctantIndex octant = share.begin; octant < share.end; ++octant) {
             const Handed& above = handed.at(octant);
-            if (!octree.entries(octant).empty()) scans.scan(octant, above);
+            if (octree.entry_count(octant) > 0) scans.scan(octant, above);
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));

@@ -109,10 +109,11 @@ Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects
     shape[space.long_axis_] *= 4;
     for (unsigned axis = 0; axis < 3; ++axis) {
         const double length = shape[axis] * max_octants;
-        const double scale = length > 0 ? double(cells_per_axis) / length : 1.0;
+        const double scale = length > 0 ? double(SpaceMap::last_fine_cell + 1) / length : 1.0;
         space.map_.origin[axis] = float(axes[axis].begin);
         space.map_.scale[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
-        space.map_.last[axis] = float(space.map_.cell(float(axes[axis].end), axis));
+        constexpr std::uint32_t last_in_cell = (1u << SpaceMap::fine_bits) - 1;
+        space.map_.last[axis] = float(space.map_.fine_cell(float(axes[axis].end), axis) | last_in_cell);
     }
     return space;
 }
@@ -123,7 +124,7 @@ Box3d Space::bounds(const CellBox& cells) const {
     constexpr double roundings = 0x1p-21;
     Box3d bounds;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        const double origin = double(map_.origin[axis]), cell = 1 / double(map_.scale[axis]);
+        const double origin = double(map_.origin[axis]), cell = (1u << SpaceMap::fine_bits) / double(map_.scale[axis]);
         // In the map, a difference above FLT_MAX overflows and gets the last cell. So no cell begins farther away.
         const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
         const double hi = origin + (double(cells.hi[axis]) + 1) * cell;

@@ -2,7 +2,7 @@
 //
 // Invariants
 //   Each axis has 2^21 cells, as the deepest level of an octal code has octants.
-//   SpaceMap::cell() is monotone: its result never falls as the coordinate grows.
+//   SpaceMap is monotone: its results never fall as the coordinate grows.
 //   The same map decides which octant a box begins in, which octants it touches, and which octant reports a pair. So
 //   rounding at octant borders neither loses nor duplicates a pair.
 //   Coordinates outside the space are clamped into its border cells.
@@ -42,21 +42,24 @@ inline unsigned natural_level(const CellBox& box) {
     return deepest - unsigned(std::bit_width(extent));
 }
 
-/// Map from coordinates to cells: the specification of the SIMD version (space_kernel.cpp).
+/// Map from coordinates to cells: the specification of the SIMD versions (space_kernel.cpp, build/batch_encoder_kernel.cpp).
 struct SpaceMap {
-    static constexpr float end = float(cells_per_axis - 1);
+    static constexpr unsigned fine_bits = 2;  ///< a cell has 2^fine_bits fine cells on each axis
+    static constexpr unsigned bits = deepest + fine_bits;
+    static constexpr std::uint32_t last_fine_cell = (std::uint32_t(1) << bits) - 1;
     static constexpr float whole = 0x1p23f;  // adding it rounds to an integer, which is then in the low bits
     std::array<float, 4> origin = {0, 0, 0, 0};
-    std::array<float, 4> scale = {1, 1, 1, 0};
-    std::array<float, 4> last = {end, end, end, 0};
+    std::array<float, 4> scale = {1, 1, 1, 0};  ///< fine cells for each unit of length
+    std::array<float, 4> last = {float(last_fine_cell), float(last_fine_cell), float(last_fine_cell), 0};
 
-    std::uint32_t cell(float coordinate, unsigned axis) const {
+    std::uint32_t fine_cell(float coordinate, unsigned axis) const {
         // Clamped before the conversion: an overflowing difference (infinity) gets a border cell, like any far value.
         const float scaled = (coordinate - origin[axis]) * scale[axis];
         const float below = scaled > 0.0f ? scaled : 0.0f;
         const float clamped = below < last[axis] ? below : last[axis];
-        return std::bit_cast<std::uint32_t>(clamped + whole) & (cells_per_axis - 1);
+        return std::bit_cast<std::uint32_t>(clamped + whole) & last_fine_cell;
     }
+    std::uint32_t cell(float coordinate, unsigned axis) const { return fine_cell(coordinate, axis) >> fine_bits; }
 };
 
 /// The subset of the sampled boxes that a space is fitted to, and the three measures taken of it on each axis. Measures do not
@@ -111,7 +114,7 @@ public:
     /// Returns the axis on which octants are longest. Octants are swept along this axis first.
     unsigned long_axis() const { return long_axis_; }
     /// Returns the last cell of an axis that a box can touch.
-    std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(map_.last[axis]); }
+    std::uint32_t last_cell(unsigned axis) const { return std::uint32_t(map_.last[axis]) >> SpaceMap::fine_bits; }
 
 private:
     SpaceMap map_;

@@ -45,7 +45,7 @@ template <typename Bounds>
 void cells_simd(const SpaceMap& map, std::span<const Bounds> bounds, std::span<CellBox> boxes) {
     const hn::FixedTag<float, 4> floats;
     const hn::FixedTag<std::uint32_t, 4> words;
-    constexpr std::uint32_t digits = cells_per_axis - 1;
+    constexpr std::uint32_t digits = SpaceMap::last_fine_cell;
     alignas(16) constexpr std::array<std::uint32_t, 4> xyz = {digits, digits, digits, 0};
     const auto kept = hn::Load(words, xyz.data());
     const auto origin = hn::LoadU(floats, map.origin.data());
@@ -55,7 +55,7 @@ void cells_simd(const SpaceMap& map, std::span<const Bounds> bounds, std::span<C
     const auto cell = [&](auto coordinates) HWY_ATTR {
         const auto scaled = hn::Mul(hn::Sub(coordinates, origin), scale);
         const auto clamped = hn::Min(hn::Max(scaled, hn::Zero(floats)), last);
-        return hn::And(hn::BitCast(words, hn::Add(clamped, whole)), kept);
+        return hn::ShiftRight<SpaceMap::fine_bits>(hn::And(hn::BitCast(words, hn::Add(clamped, whole)), kept));
     };
     for (std::size_t i = 0; i < bounds.size(); ++i) {
         // Both ends are read before one is written: the processor mistakes addresses 4 KiB apart for the same (4K aliasing).

@@ -7,14 +7,23 @@ namespace octopair {
 
 SceneSource::SceneSource(const ObjectTable& table, double margin)
     : table_(table), objects_(table.objects()), all_(objects_, nullptr, margin) {
-    if (table.size() == table.indices()) {
+    find_runs();
+}
+
+SceneSource::SceneSource(const ObjectTable& table, const EntryForm& form)
+    : table_(table), objects_(table.objects()), all_(objects_, nullptr, form) {
+    find_runs();
+}
+
+void SceneSource::find_runs() {
+    if (table_.size() == table_.indices()) {
         runs_.push_back({0, 0});
         return;
     }
     std::size_t position = 0;
     bool before = false;
-    for (std::uint32_t index = 0; index < table.indices(); ++index) {
-        const bool alive = table.alive(index);
+    for (std::uint32_t index = 0; index < table_.indices(); ++index) {
+        const bool alive = table_.alive(index);
         if (alive && !before) runs_.push_back({position, index});
         position += alive ? 1 : 0;
         before = alive;
@@ -48,8 +57,9 @@ bool SceneSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-std::span<const Box3f> SceneSource::plain(std::size_t begin, std::size_t count) const {
-    return runs_.size() == 1 ? all_.plain(begin + runs_[0].index, count) : std::span<const Box3f>{};
+PlainBoxes SceneSource::plain(std::size_t begin, std::size_t count) const {
+    if (runs_.size() != 1 || table_.any_traits()) return {};
+    return all_.plain(begin + runs_[0].index, count);
 }
 
 void SceneSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
@@ -67,6 +77,10 @@ RoundingSlack SceneSource::slack() const {
 
 bool SceneSource::is_pair(std::uint32_t a, std::uint32_t b) const {
     return compatible(table_.traits(a), table_.traits(b)) && all_.is_pair(a, b);
+}
+
+std::size_t SceneSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
+    return table_.any_traits() ? refused_one_by_one(doubtful, out) : all_.refused(doubtful, out);
 }
 
 }  // namespace octopair

@@ -21,10 +21,11 @@ class SceneSource final : public EntrySource, public PairRule {
 public:
     /// Borrows `table`. Requires: the table does not change while this source exists.
     SceneSource(const ObjectTable& table, double margin);
+    SceneSource(const ObjectTable& table, const EntryForm& form);
 
     std::size_t size() const override { return std::size_t(table_.size()); }
     bool load(std::size_t begin, std::span<Entry> out) const override;
-    std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override;
+    PlainBoxes plain(std::size_t begin, std::size_t count) const override;
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
     bool join() const override { return false; }
@@ -32,10 +33,14 @@ public:
     bool exact() const override { return all_.exact() && !table_.any_traits(); }
     RoundingSlack slack() const override;
     bool is_pair(std::uint32_t a, std::uint32_t b) const override;
+    std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
+    void load_bounds(std::span<Entry> entries) const override { all_.load_bounds(entries); }
 
     const BoxSource& boxes() const { return all_; }
 
 private:
+    void find_runs();
+
     /// A run of consecutive indices in use.
     struct Run {
         std::size_t position;  ///< position of its first object

@@ -106,7 +106,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
         chooses_incremental(double(objects_.moved()) * seconds_a_change_ <= max_rebuild_cost * full_seconds_);
     if (build_octree) {
         count_path(Path::octree_rebuilt);
-        octree_.build(linear_, stop);
+        octree_.build(linear_, source, stop);
         linear_ = {};
         refills_ = tuning().scene.max_refills;
         linear_matches_now_ = false;
@@ -135,7 +135,8 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         count_path(Path::octree_for_queries);
         octree_matches_last_step_ = false;
         if (!linear_matches_now_) build(SceneSource(objects_.table(), margin_), {});
-        octree_.build(linear_, {});
+        // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
+        octree_.build(linear_, SceneSource(objects_.table(), {rounding_.exact, rounding_.rounding}), {});
         octree_matches_now_ = queried_ = true;
     }
     return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};

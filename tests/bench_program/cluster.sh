@@ -42,7 +42,7 @@ modelled = {(row["ranks"], row["arrangement"]): row["network_seconds"] for row i
 assert set(modelled) == {(ranks, arrangement) for ranks in (1, 2, 4) for arrangement in ("shared", "paper")}
 # One machine needs no network. With two machines, the master's network carries at least half of objects and entries.
 assert all((seconds > 0) == (ranks == 4) for (ranks, _), seconds in modelled.items())
-assert modelled[4, "paper"] > (3000 / 2 * 24 + 3000 / 2 * 32) / 1e8
+assert modelled[4, "paper"] > (3000 / 2 * 24 + 3000 / 2 * 16) / 1e8
 END
 
 status=0

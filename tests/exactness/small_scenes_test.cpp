@@ -21,8 +21,6 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
     const auto finding = test::check_small_cases(seeds, test::local_engines());
     ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     if (test::sanitized || seeds.size() < usual_small_scenes / small_parts) return;
-    // All paths except keys_wide, whose keys of more than 32 bits need many objects: tests/engine/ascending_test.cpp
-    // tests them.
     using enum Path;
     EXPECT_EQ(test::paths_not_taken({octant_divided,
                                      octant_too_small,
@@ -35,7 +33,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      count_ranges,
                                      kept_above_leaf,
                                      ghost_entries,
-                                     crowded_octree,
+                                     ghosts_by_rule,
                                      class_bits_brought,
                                      share_of_octants,
                                      large_octant,
@@ -48,6 +46,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      handed_window_too_wide,
                                      join_swept,
                                      join_crowded,
+                                     swept_on_other_axis,
                                      crowd_swept,
                                      crowd_parted,
                                      part_swept,
@@ -74,6 +73,9 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      sort_radix,
                                      radix_blocks,
                                      hits_few,
+                                     cell_sweep_resumed,
+                                     cell_hit_doubtful,
+                                     cell_hit_refused,
                                      sweep_resumed,
                                      hit_turned,
                                      hit_settled,
@@ -82,7 +84,8 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      list_block_full,
                                      bucket_sorted,
                                      bucket_split,
-                                     keys_narrow,
+                                     long_row_sorted,
+                                     row_in_bitmap,
                                      buffer_over,
                                      window,
                                      window_of_one,

@@ -48,6 +48,8 @@ void shrink(Tuning::Build& build, Shrinker& to) {
     to.one_of<std::size_t>(build.min_block, {1, 3, 17});
     to.one_of<std::size_t>(build.counts_per_range, {1, 8, 50});
     to.one_of<std::size_t>(build.batch, {1, 3, 16});
+    to.one_of<std::size_t>(build.max_chunk, {16, 32});
+    to.one_of<std::size_t>(build.chunk_part, {1, 4});
 }
 
 void shrink(Tuning::Scan& scan, Shrinker& to) {
@@ -69,6 +71,8 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.large_join, {1, 4, 20});
     to.one_of<std::size_t>(sweep.tests_per_call, {1, 2, 7});
     to.one_of<std::size_t>(sweep.hits, {8, 9, 20});
+    to.one_of<std::size_t>(sweep.cell_hits, {128, 130, 200});
+    to.one_of<std::size_t>(sweep.max_cell_buckets, {1, 2, 8});
     to.one_of<std::size_t>(sweep.pairs, {1, 9, 30});
     to.one_of<std::size_t>(sweep.max_buckets, {2, 4, 16});
     to.one_of<std::size_t>(sweep.max_comparison_sort, {1, 2, 5});
@@ -100,6 +104,8 @@ void shrink(Tuning::Output& output, Shrinker& to) {
     to.one_of<unsigned>(output.bucket_bits, {1, 2, 4});
     to.one_of<unsigned>(output.bucket_split_bits, {1, 2});
     to.one_of<std::size_t>(output.sorted_at_once, {1, 3, 20});
+    to.one_of<std::size_t>(output.bucket_pairs, {1, 3, 20});
+    to.one_of<std::size_t>(output.bitmap_columns, {1, 2, 64});
     to.one_of<std::size_t>(output.min_radix_sort, {1, 4});
     to.one_of<std::size_t>(output.shares_ahead, {1, 2});
 }

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "boxes/entry.hpp"
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
+#include "octree/cell_sweep/cell_entry.hpp"
 #include "samples/scenes.hpp"
 #include "support/any_call.hpp"
 #include "support/compare.hpp"
@@ -145,7 +145,7 @@ TEST(RankMaster, IsOneOfTheRanksThatBuildLists) {
         EXPECT_GE(costs.bytes_sent, (objects - run) * sizeof(Box3f));
         EXPECT_LT(costs.bytes_sent, objects * sizeof(Box3f) * 5 / 4);
     } else {
-        EXPECT_GE(costs.bytes_sent, run * sizeof(Entry));
+        EXPECT_GE(costs.bytes_sent, run * sizeof(CellEntry));
     }
     if (master || merges) {
         EXPECT_GT(costs.merge, 0.00001);

@@ -23,21 +23,26 @@ bool overlap(const CellBox& a, const CellBox& b) {
     return true;
 }
 
-LinearOctree linear_octree_of(const std::vector<Box3f>& boxes) {
-    const Objects objects{std::span<const Box3f>(boxes)};
-    const BoxSource source(objects, nullptr, 0);
-    NoPairs none;
-    SerialExecutor executor(none);
+/// A linear octree, and the source of its entries.
+struct Linear {
+    /// Borrows `boxes`.
+    explicit Linear(const std::vector<Box3f>& boxes) : objects{std::span<const Box3f>(boxes)} {
+        NoPairs none;
+        SerialExecutor executor(none);
+        octree.build(source, executor, {});
+    }
+
+    Objects objects;
+    BoxSource source{objects, nullptr, 0};
     LinearOctree octree;
-    octree.build(source, executor, {});
-    return octree;
-}
+};
 
 /// An octree, and the cells of its objects.
 class Changing {
 public:
     explicit Changing(const std::vector<Box3f>& boxes) {
-        octree_.build(linear_octree_of(boxes), {});
+        const Linear linear(boxes);
+        octree_.build(linear.octree, linear.source, {});
         cells_.resize(boxes.size());
         octree_.space().cells(boxes, cells_);
         here_.assign(boxes.size(), true);
@@ -134,7 +139,7 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
 
 /// Builds `octree` and requests a stop after `delay`, or before the build if `delay` is 0. Returns whether the build
 /// was cancelled.
-bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, MutableOctree& octree) {
+bool stopped_after(std::chrono::nanoseconds delay, const Linear& linear, MutableOctree& octree) {
     std::stop_source stop;
     if (delay.count() == 0) stop.request_stop();
     std::jthread clock([&, until = std::chrono::steady_clock::now() + delay] {
@@ -142,7 +147,7 @@ bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, M
         stop.request_stop();
     });
     try {
-        octree.build(linear, stop.get_token());
+        octree.build(linear.octree, linear.source, stop.get_token());
         return false;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
@@ -153,10 +158,10 @@ bool stopped_after(std::chrono::nanoseconds delay, const LinearOctree& linear, M
 TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     constexpr unsigned moments = 12;
     const std::vector<Box3f> boxes = test::make_boxes("uniform", 50'000, 1);
-    const LinearOctree linear = linear_octree_of(boxes);
+    const Linear linear(boxes);
     MutableOctree octree;
     const auto begin = std::chrono::steady_clock::now();
-    octree.build(linear, {});
+    octree.build(linear.octree, linear.source, {});
     const auto whole = std::chrono::steady_clock::now() - begin;
     std::vector<CellBox> cells(boxes.size());
     octree.space().cells(boxes, cells);

@@ -22,6 +22,8 @@ public:
     bool exact() const override { return true; }
     RoundingSlack slack() const override { return {}; }
     bool is_pair(std::uint32_t, std::uint32_t) const override { return true; }
+    std::size_t refused(const DoubtfulPairs&, std::uint32_t*) const override { return 0; }
+    void load_bounds(std::span<Entry>) const override { FAIL() << "expected entries that are complete"; }
 
 private:
     std::uint32_t second_begin_;

@@ -166,7 +166,7 @@ TEST(Sweep, HitsMustBeDeeperTheLargerTheNumbers) {
     EXPECT_EQ(certain_depths({other, set, SweepKind::cross}, {{0, 1, 0.5f}}), depths);
 }
 
-TEST(SweepOrder, LaysOutByLowEndThenPosition) {
+TEST(SweepOrder, SortsByLowEndThenPosition) {
     std::mt19937 random(6);
     for (const std::size_t count : {0, 1, 2, 24, 25, 500, 4096}) {
         for (const float far : {1.0f, 3e38f}) {  // one far box crowds all others into one bucket
@@ -177,11 +177,12 @@ TEST(SweepOrder, LaysOutByLowEndThenPosition) {
             }
             if (count > 0) entries[count / 2].max[2] = entries[count / 2].min[2] = far;
             SweepOrder order({});
-            SweepSet set;
-            order.lay_out({entries}, 2, set);
+            NoPairs none;
+            SerialExecutor serial(none);
+            const std::span<const SortKey> keys = order.sort({entries}, 2, serial);
             const SweepSet expected = sorted_set(entries, 2);
-            ASSERT_EQ(set.size(), count);
-            for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(set.object()[i], expected.object()[i]);
+            ASSERT_EQ(keys.size(), count);
+            for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(position_of(keys[i]), expected.object()[i]);
         }
     }
 }

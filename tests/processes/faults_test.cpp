@@ -24,7 +24,7 @@ using test::FaultKind;
 using test::How;
 using test::Moment;
 
-constexpr std::array fault_steps = {Step::encode, Step::count, Step::scatter, Step::scan, Step::order};
+constexpr std::array fault_steps = {Step::encode, Step::count, Step::scan, Step::order};
 constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
 constexpr unsigned max_faults_per_call = 2;  // per call: a third fault in one share would end the call
 constexpr unsigned max_tries = 20;

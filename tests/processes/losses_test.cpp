@@ -62,7 +62,7 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     const Scene scene("clustered", 6'000, 1);  // few enough objects for one worker
     test::MappedPlan plan;
     const auto engine = test::make_faulty_engine(3);
-    for (const Step step : {Step::encode, Step::count, Step::scatter, Step::scan, Step::order}) {
+    for (const Step step : {Step::encode, Step::count, Step::scan, Step::order}) {
         for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
             const Asked asked{.how = How::list, .order = Order::ascending};
             const Fault fault{
@@ -88,7 +88,7 @@ TEST_F(WorkerLosses, FailuresWithoutAMessageAreDescribed) {
     const Scene scene("clustered", 6'000, 1);
     test::MappedPlan plan;
     const auto engine = test::make_faulty_engine(2);
-    for (const Step step : {Step::encode, Step::scatter, Step::scan}) {
+    for (const Step step : {Step::encode, Step::count, Step::scan}) {
         plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
         try {
             (void)test::ask(*engine, scene, {});

@@ -30,7 +30,7 @@ using test::Scene;
 constexpr std::uint64_t objects = 60'000;
 constexpr std::uint64_t max_pairs = 2'000'000;
 constexpr unsigned worker_count = 2;
-constexpr std::uint32_t octree_blocks = 2 * worker_count;  // shares of encode, and of scatter, of the outermost octree
+constexpr std::uint32_t octree_blocks = 2 * worker_count;  // shares of encode of the outermost octree
 
 class NestedOctrees : public test::Processes {};
 
@@ -81,7 +81,6 @@ std::vector<Fault> nested_faults() {
         for (const Moment moment : {Moment::begin, Moment::end}) {
             for (const std::uint32_t later : {0u, 2u}) {
                 faults.push_back({Step::encode, kind, moment, 0, octree_blocks + later});
-                faults.push_back({Step::scatter, kind, moment, 0, octree_blocks + later});
             }
             faults.push_back({Step::count, kind, moment, 0, 1});
         }

@@ -24,8 +24,8 @@ public:
         }
         call.summary.entries = octree().entry_count();
         call.summary.steps.encode = octree().seconds().encode;
-        call.summary.steps.count = octree().seconds().count;
         call.summary.steps.scatter = octree().seconds().scatter;
+        call.summary.steps.count = octree().seconds().count;
     }
 };
 

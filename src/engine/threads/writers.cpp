@@ -66,12 +66,16 @@ public:
     Writer(detail::PairStorage& list, std::span<Pair>& block, std::vector<std::span<const Pair>>& runs)
         : list_(list), block_(block), runs_(runs) {}
 
-    void write(std::span<const Pair> pairs) override {
-        if (block_.size() < pairs.size()) {
+    std::span<Pair> room(std::size_t pairs) override {
+        if (block_.size() < pairs) {
             if (!block_.empty()) count_path(Path::list_block_full);
-            block_ = list_.take_block(pairs.size());
+            block_ = list_.take_block(pairs);
         }
-        std::copy(pairs.begin(), pairs.end(), block_.begin());
+        return block_.first(pairs);
+    }
+    void write(std::span<const Pair> pairs) override {
+        const std::span<Pair> to = room(pairs.size());
+        if (to.data() != pairs.data()) std::copy(pairs.begin(), pairs.end(), to.begin());
         const std::span<const Pair> written = block_.first(pairs.size());
         block_ = block_.subspan(pairs.size());
         if (!runs_.empty() && runs_.back().data() + runs_.back().size() == written.data()) {

@@ -1,13 +1,15 @@
 #include "octree/build/build_steps.hpp"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstring>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/build/batch_encoder.hpp"
+#include "octree/build/chunk_writer.hpp"
 #include "octree/build/octants_of.hpp"
 
 namespace octopair {
@@ -15,174 +17,160 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t check_interval = 1 << 15;  // objects between checks for a stop request
-constexpr std::size_t max_batch = default_tuning.build.batch;
-constexpr std::size_t prefetched = 32;           // objects: distance at which their places are prefetched
-constexpr std::size_t prefetched_ghosts = 8;     // ghosts: the same distance
-constexpr std::size_t ghosts_at_once = 1 << 14;  // ghosts committed at a time; more than a batch can have
+constexpr std::size_t timed_batches = 8;         // one batch in this many is timed
+using Clock = std::chrono::steady_clock;
 
-/// Collects the ghosts of a block, in the order in which they are found.
-class GhostList {
+double seconds_between(Clock::time_point begin, Clock::time_point end) {
+    return std::chrono::duration<double>(end - begin).count();
+}
+
+/// Encodes the objects of one block.
+class BlockEncoder {
 public:
-    GhostList(BuildMemory& memory, const ObjectBlock& block)
-        : ghosts_(memory.ghosts), begin_(max_ghosts * block.begin), end_(max_ghosts * block.end) {}
+    BlockEncoder(const BuildSteps& steps, std::size_t block)
+        : steps_(steps),
+          encoder_(steps.space, steps.directory, std::uint32_t(steps.memory.lists.lists())),
+          writer_(steps.memory.lists, block) {}
 
-    /// Makes room for the ghosts of one batch.
-    void prepare() {
-        if (size_ + max_ghosts * max_batch <= committed_) return;
-        const std::size_t more = std::min(ghosts_at_once, end_ - begin_ - committed_);
-        ghosts_.commit(begin_ + committed_, more);
-        committed_ += more;
+    /// Returns false if an object is not a valid box. Adds the time of the steps to `seconds` unless it is null.
+    bool add(std::size_t begin, std::size_t count, BuildMemory::Seconds* seconds) {
+        const auto start = seconds != nullptr ? Clock::now() : Clock::time_point();
+        if (!encode(begin, count)) return false;
+        const auto encoded = seconds != nullptr ? Clock::now() : Clock::time_point();
+        append_homes(count);
+        append_ghosts();
+        if (seconds != nullptr) {
+            seconds->encode += seconds_between(start, encoded);
+            seconds->scatter += seconds_between(encoded, Clock::now());
+        }
+        return true;
     }
-    void add(OctantIndex octant, unsigned begins) { ghosts_[begin_ + size_++] = Ghost(octant, begins); }
-    void end_box() { ghosts_[begin_ + size_ - 1].set_last(); }
-    std::size_t size() const { return size_; }
+    void finish() { writer_.finish(); }
 
 private:
-    Buffer<Ghost>& ghosts_;
-    std::size_t begin_, end_;
-    std::size_t size_ = 0;
-    std::size_t committed_ = 0;
+    bool encode(std::size_t begin, std::size_t count) {
+        plain_ = steps_.source.plain(begin, count);
+        if (!plain_.boxes.empty()) return encoder_.encode(plain_.boxes, plain_.first_object, batch_);
+        const std::span<Entry> entries = std::span(loaded_).first(count);
+        if (!steps_.source.load(begin, entries)) return false;
+        encoder_.encode(entries, batch_);
+        return true;
+    }
+
+    /// Returns the entry of a box of the batch, without class bits of this octree.
+    Entry whole_entry(std::uint32_t position) const {
+        if (plain_.boxes.empty()) return loaded_[position];
+        Entry entry{};
+        std::memcpy(&entry, &plain_.boxes[position], sizeof(Box3f));
+        entry.object = plain_.first_object + position;
+        return entry;
+    }
+
+    void append_homes(std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            writer_.append(batch_.lists[i], batch_.homes[i]);
+            if (i % 8 == 7) writer_.reset_discarded();
+        }
+        writer_.reset_discarded();
+    }
+
+    void append_ghosts() {
+        GhostGroup group;
+        const auto ghosts = std::uint32_t(steps_.memory.octants);
+        for (std::size_t first = 0; first < batch_.crossers; first += GhostGroup::most) {
+            const std::size_t count = std::min(batch_.crossers - first, GhostGroup::most);
+            encoder_.ghosts(batch_, {first, count}, group);
+            for (std::size_t k = 0; k < count; ++k) {
+                if ((group.left_out >> k & 1u) != 0) {
+                    append_ghosts_of(first + k);
+                    continue;
+                }
+                count_path(Path::ghost_entries);
+                const CellEntry& home = batch_.homes[batch_.crosser[first + k]];
+                for (std::size_t corner = 0; corner < GhostGroup::corners; ++corner) {
+                    if ((group.present[corner] >> k & 1u) == 0) continue;
+                    append_ghost(ghosts + group.octants[corner][k], group.entries[corner][k], home);
+                }
+            }
+        }
+    }
+
+    /// Finds the ghosts of one crosser by the general rule.
+    void append_ghosts_of(std::size_t crosser) {
+        const CellEntry& home = batch_.homes[batch_.crosser[crosser]];
+        const std::uint32_t home_octant = batch_.lists[batch_.crosser[crosser]];
+        CellBox box;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            box.lo[axis] = batch_.low[axis][crosser] >> SpaceMap::fine_bits;
+            box.hi[axis] = batch_.high[axis][crosser] >> SpaceMap::fine_bits;
+        }
+        count_path(home_octant == encoder_.no_list ? Path::kept_above_leaf : Path::ghosts_by_rule);
+        const Directory::Leaf leaf(batch_.leaf[crosser]);
+        const Entry whole = whole_entry(batch_.crosser[crosser]);
+        for_each_octant_of(box, steps_.directory, leaf, [&](OctantIndex octant, unsigned begins) {
+            if (octant == home_octant) return;
+            const OctantCells cells(steps_.space, steps_.directory.octants()[octant]);
+            Entry ghost = whole;
+            ghost.mask |= begins;  // added to the bits that it has (boxes/entry.hpp)
+            append_ghost(std::uint32_t(steps_.memory.ghost_list(octant)), cells.entry(ghost), home);
+        });
+    }
+
+    void append_ghost(std::uint32_t list, CellEntry ghost, [[maybe_unused]] const CellEntry& home) {
+        if constexpr (has_test_hooks) {
+            constexpr std::uint32_t class_bit = 1u << 15;
+            for (unsigned k = 0; k < 3; ++k) {
+                if ((home.ends[k] & class_bit) == 0) continue;
+                count_path(Path::class_bits_brought);
+                if (planted(Fault::begins_bit_cleared)) ghost.ends[k] &= ~class_bit;
+            }
+        }
+        writer_.append(list, ghost);
+    }
+
+    const BuildSteps& steps_;
+    BatchEncoder encoder_;
+    ChunkWriter writer_;
+    EncodedBatch batch_;
+    PlainBoxes plain_;                       // boxes of the batch, or none
+    std::array<Entry, max_encoded> loaded_;  // entries of the batch unless it has plain boxes
 };
 
 }  // namespace
 
 void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t octant_count, std::size_t octant_ranges) {
     octants = octant_count;
-    homes.resize_discard(objects);
-    ghosts.reserve_discard(max_ghosts * objects);
-    ghost_counts.resize_discard(blocks);
-    counts.resize_discard(2 * blocks * octants);
-    places.resize_discard(2 * blocks * octants);
+    lists.resize(blocks, 2 * octants, max_entries_per_object * ((objects + blocks - 1) / blocks));
     begins.resize_discard(octants);
     totals.resize_discard(octant_ranges);
     valid.resize_discard(blocks);
+    seconds.resize_discard(blocks);
 }
 
-void BuildSteps::encode(const NumberedBlock& block) const {
-    const auto above = OctantIndex(memory.octants);
-    const ObjectBlock& objects = block.objects;
-    std::vector<std::uint64_t> home_counts(above + 1, 0);  // last: boxes too large for the leaf that they begin in
-    std::vector<std::uint64_t> ghost_counts(above, 0);
-    GhostList ghosts(memory, objects);
+void BuildSteps::encode_and_scatter(const NumberedBlock& block) const {
     const std::size_t batch_size = tuning().build.batch;
-    std::array<Entry, max_batch> batch;
-    std::array<CellBox, max_batch> cells;
-    std::array<Directory::Leaf, max_batch> leaves;
-    std::array<std::uint32_t, max_batch> crossers;
-    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
-        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
-        const std::size_t count = std::min(batch_size, objects.end - begin);
-        if (const auto boxes = source.plain(begin, count); !boxes.empty()) {
-            space.cells(boxes, cells);
-        } else {
-            const std::span<Entry> entries = std::span(batch).first(count);
-            (void)source.load(begin, entries);
-            space.cells(entries, cells);
-        }
-        directory.leaves(std::span(cells).first(count), leaves);
-        std::size_t crossing = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            // No branch on whether a box crosses a border: its mispredictions cost more than all else in this loop.
-            const bool crosses = !within(cells[i], leaves[i].level());
-            const OctantIndex octant = natural_level(cells[i]) < leaves[i].level() ? above : leaves[i].octant();
-            memory.homes[begin + i] = Home(octant, crosses);
-            ++home_counts[octant];
-            crossers[crossing] = std::uint32_t(i);
-            crossing += crosses ? 1 : 0;
-        }
-        ghosts.prepare();
-        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
-            const OctantIndex home = memory.homes[begin + i].octant();
-            for_each_octant_of(cells[i], directory, leaves[i], [&](OctantIndex octant, unsigned begins) {
-                if (octant == home) return;
-                ++ghost_counts[octant];
-                ghosts.add(octant, begins);
-            });
-            count_path(home == above ? Path::kept_above_leaf : Path::ghost_entries);
-            ghosts.end_box();
-        }
+    memory.valid[block.number] = 0;
+    memory.seconds[block.number] = {};
+    BlockEncoder encoder(*this, block.number);
+    for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
+        if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
+        const bool timed = (begin - block.objects.begin) / batch_size % timed_batches == 0;
+        BuildMemory::Seconds* const seconds = timed ? &memory.seconds[block.number] : nullptr;
+        if (!encoder.add(begin, std::min(batch_size, block.objects.end - begin), seconds)) return;
     }
-    memory.ghost_counts[block.number] = ghosts.size();
-    std::copy_n(home_counts.begin(), above, memory.home_part(memory.counts, block.number).begin());
-    std::copy_n(ghost_counts.begin(), above, memory.ghost_part(memory.counts, block.number).begin());
+    encoder.finish();
+    memory.valid[block.number] = 1;
 }
 
-void BuildSteps::count(const NumberedOctants& octants, std::span<const std::size_t> blocks) const {
+void BuildSteps::count(const NumberedOctants& octants) const {
     std::uint64_t at = 0;
     for (OctantIndex octant = octants.begin; octant < octants.end; ++octant) {
         memory.begins[octant] = at;
-        for (const std::size_t block : blocks) {
-            memory.home_part(memory.places, block)[octant] = at;
-            at += memory.home_part(memory.counts, block)[octant];
-        }
-        for (const std::size_t block : blocks) {
-            memory.ghost_part(memory.places, block)[octant] = at;
-            at += memory.ghost_part(memory.counts, block)[octant];
-        }
+        const auto add = [&](std::span<const CellEntry> run) { at += run.size(); };
+        memory.lists.for_each_run(memory.home_list(octant), add);
+        memory.lists.for_each_run(memory.ghost_list(octant), add);
     }
     memory.totals[octants.number] = at;
-}
-
-namespace {
-
-/// Returns the index of the next entry of each octant, for one block.
-std::vector<std::uint64_t> places_of(std::span<const std::uint64_t> part, const ScatterTarget& target) {
-    std::vector<std::uint64_t> places(part.begin(), part.end());
-    for (const NumberedOctants& range : target.ranges) {
-        const std::uint64_t begin = target.range_begins[range.number];
-        for (OctantIndex octant = range.begin; octant < range.end; ++octant) places[octant] += begin;
-    }
-    return places;
-}
-
-}  // namespace
-
-void BuildSteps::scatter(const NumberedBlock& block, const ScatterTarget& target) const {
-    const auto above = OctantIndex(memory.octants);
-    const ObjectBlock& objects = block.objects;
-    const std::span<Entry> entries_out = target.entries;
-    auto home_at = places_of(memory.home_part(memory.places, block.number), target);
-    home_at.push_back(target.spare);
-    auto ghost_at = places_of(memory.ghost_part(memory.places, block.number), target);
-    const std::span<const Ghost> ghosts =
-        std::as_const(memory.ghosts).span().subspan(max_ghosts * objects.begin, memory.ghost_counts[block.number]);
-    const std::size_t batch_size = tuning().build.batch;
-    std::array<Entry, max_batch> batch;
-    std::array<std::uint32_t, max_batch> crossers;
-    std::size_t ghost = 0;
-    memory.valid[block.number] = 0;
-    for (std::size_t begin = objects.begin; begin < objects.end; begin += batch_size) {
-        if ((begin - objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
-        const std::span<Entry> entries(batch.data(), std::min(batch_size, objects.end - begin));
-        if (!source.load(begin, entries)) return;
-        const auto homes = std::as_const(memory.homes).span().subspan(begin, entries.size());
-        std::size_t crossing = 0;
-        for (std::size_t i = 0; i < entries.size(); ++i) {
-            const Home soon = homes[std::min(i + prefetched, homes.size() - 1)];
-            hwy::Prefetch(&entries_out[std::size_t(home_at[soon.octant()])]);
-            const OctantIndex octant = homes[i].octant();
-            std::uint64_t& at = home_at[octant];
-            entries_out[std::size_t(at)] = entries[i];
-            at += octant != above ? 1 : 0;
-            crossers[crossing] = std::uint32_t(i);
-            crossing += homes[i].crosses() ? 1 : 0;
-        }
-        for (const std::uint32_t i : std::span(crossers).first(crossing)) {
-            for (bool last = false; !last; ++ghost) {
-                last = ghosts[ghost].last();
-                if (ghosts.size() - ghost > prefetched_ghosts) {
-                    hwy::Prefetch(&entries_out[std::size_t(ghost_at[ghosts[ghost + prefetched_ghosts].octant()])]);
-                }
-                const OctantIndex octant = ghosts[ghost].octant();
-                Entry& entry = entries_out[std::size_t(ghost_at[octant]++)];
-                entry = entries[i];
-                if ((entry.mask & begins_before) != 0) count_path(Path::class_bits_brought);
-                if (planted(Fault::begins_bit_cleared)) entry.mask &= ~begins_before;
-                entry.mask |= ghosts[ghost].begins();  // added to the bits that it has (boxes/entry.hpp)
-            }
-        }
-    }
-    memory.valid[block.number] = 1;
 }
 
 }  // namespace octopair

@@ -6,6 +6,28 @@
 
 namespace octopair {
 
+std::uint64_t entry_count(const BuildMemory& memory, std::size_t block) {
+    std::uint64_t count = 0;
+    for (std::size_t list = 0; list < memory.lists.lists(); ++list) {
+        memory.lists.for_each_run(block, list, [&](std::span<const CellEntry> run) { count += run.size(); });
+    }
+    return count;
+}
+
+void sort_block(const BuildMemory& memory, std::size_t block, const MergedList& sorted) {
+    std::uint64_t at = 0;
+    const auto append = [&](std::span<const CellEntry> run) {
+        std::copy(run.begin(), run.end(), sorted.entries.data() + at);
+        at += run.size();
+    };
+    for (std::size_t octant = 0; octant < memory.octants; ++octant) {
+        sorted.home_begins[octant] = at;
+        memory.lists.for_each_run(block, memory.home_list(octant), append);
+        sorted.ghost_begins[octant] = at;
+        memory.lists.for_each_run(block, memory.ghost_list(octant), append);
+    }
+}
+
 std::uint64_t merge_lists(std::span<const SortedList> lists, const MergedList& merged, const std::stop_token& stop) {
     std::uint64_t at = 0;
     const auto append = [&](const SortedList& list, std::uint64_t begin, std::uint64_t end) {

@@ -100,7 +100,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     }
 }
 
-void MutableOctree::build(const LinearOctree& octree, const std::stop_token& stop) {
+void MutableOctree::build(const LinearOctree& octree, const PairRule& rule, const std::stop_token& stop) {
     clear();
     space_ = octree.space();
     directory_ = octree.directory();
@@ -111,11 +111,16 @@ void MutableOctree::build(const LinearOctree& octree, const std::stop_token& sto
     const std::uint64_t part = octree.entry_count() / 32;
     units_.reserve(part);
     std::uint64_t done = 0;
+    std::vector<Entry> entries;
     std::vector<CellBox> boxes;
     for (OctantIndex octant = 0; octant < octants.size(); ++octant) {
         if (stop.stop_requested()) clear();
         throw_if_stopped(stop);
-        const auto entries = octree.entries(octant);
+        entries.clear();
+        octree.for_each_run(octant, [&](std::span<const CellEntry> run) {
+            for (const CellEntry& entry : run) entries.push_back({{}, {}, entry.object, 0});
+        });
+        rule.load_bounds(entries);
         boxes.resize(entries.size());
         space_.cells(entries, boxes);
         const LeafGrid& grid = grids_.emplace_back(LeafGrid::cut(octants[octant], units_.units(), boxes));

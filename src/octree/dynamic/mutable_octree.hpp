@@ -31,6 +31,7 @@
 namespace octopair {
 
 class LinearOctree;
+class PairRule;
 
 /// An object that is added, moved or removed.
 struct OctreeChange {
@@ -75,9 +76,9 @@ public:
 
 class MutableOctree {
 public:
-    /// Replaces the contents by the entries of `octree`.
+    /// Replaces the contents by the entries of `octree`. `rule`: the rule of the octree's source.
     /// Throws: Error{cancelled}; the octree is then empty.
-    void build(const LinearOctree& octree, const std::stop_token& stop);
+    void build(const LinearOctree& octree, const PairRule& rule, const std::stop_token& stop);
     /// Removes all octants and entries, and keeps the memory.
     void clear();
     /// Removes all octants and entries, and frees the memory.

@@ -11,7 +11,7 @@
 // one bit mask over the rows for each column: block by block, columns ascending, for any width of the registers.
 //
 // sweep_rows_scalar is the specification. sweep_rows is its SIMD version, chosen for the processor at run time
-// (sweep_kernel.cpp). PairMaker runs whole sweeps for scan.cpp and recursive_sweep.cpp.
+// (sweep_kernel.cpp). PairMaker runs whole sweeps for recursive_sweep.cpp.
 //
 // Source: Lucchesi, Egbert, Harris 2014, section 2.3.1 (sweep and prune).
 #pragma once

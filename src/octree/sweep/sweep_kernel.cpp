@@ -18,6 +18,7 @@
 
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/simd_lanes-inl.hpp"
 #include "octree/sweep/sweep.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,30 +26,6 @@ namespace octopair {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <typename D, typename M>
-std::uint32_t bits_of(D d, M mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
-}
-
-/// For each set of lanes (as bits): the numbers of its lanes, ascending, and their count. Replaces Highway's own table, which
-/// g++ 12 copies on each use.
-struct LaneTable {
-    static constexpr std::size_t lanes = 8;
-    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};
-    std::array<std::uint8_t, 1 << lanes> count{};
-
-    constexpr LaneTable() {
-        for (std::size_t set = 0; set < of.size(); ++set) {
-            for (std::uint8_t lane = 0; lane < lanes; ++lane) {
-                if (set >> lane & 1u) of[set][count[set]++] = lane;
-            }
-        }
-    }
-};
-constexpr LaneTable lanes_in;
 
 /// Pointers to the bounds of a set, from box `first` on: on the sweep's axis (0) and on the two other axes (1, 2).
 struct Bounds {

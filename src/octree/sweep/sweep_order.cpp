@@ -63,11 +63,6 @@ std::span<const SortKey> SweepOrder::sort(const EntryList& list, unsigned axis, 
     return keys_.span();
 }
 
-void SweepOrder::lay_out(const EntryList& list, unsigned axis, SweepSet& set) {
-    sort_in_cache(list, axis);
-    set.assign(list.entries, keys_.span(), axis);
-}
-
 void SweepOrder::make_keys(const EntryList& list, unsigned axis) {
     keys_.resize_discard(list.size());
     for (std::size_t i = 0; i < list.size(); ++i) keys_[i] = sort_key(list[i].min[axis], list.position(i));
@@ -104,20 +99,6 @@ void SweepOrder::sort_in_cache(const EntryList& list, unsigned axis) {
         for (; at > 0 && keys_[at - 1] > key; --at) keys_[at] = keys_[at - 1];
         keys_[at] = key;
     }
-}
-
-std::uint64_t sampled_tests(const Sweep& sweep) {
-    const auto& [rows, columns, kind] = sweep;
-    const float* const lows = columns.low(0);
-    const float* const end = lows + columns.size();
-    std::uint64_t sum = 0;
-    std::size_t samples = 0;
-    const std::size_t stride = std::max(tuning().sweep.measured_row_stride, rows.size() / tuning().sweep.measured_rows);
-    for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
-        const float* const first = kind == SweepKind::self ? lows + i + 1 : std::lower_bound(lows, end, rows.low(0)[i]);
-        sum += std::uint64_t(std::upper_bound(first, end, rows.high(0)[i]) - first);
-    }
-    return samples == 0 ? 0 : sum * rows.size() / samples;
 }
 
 std::uint64_t estimated_hits(const EntryList& rows, const EntryList& columns, const std::stop_token& stop) {

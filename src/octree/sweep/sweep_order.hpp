@@ -39,9 +39,6 @@ public:
     /// Returns an estimate of the number of columns that a sweep along `axis` tests, summed over all rows.
     std::uint64_t tests(const EntryList& rows, const EntryList& columns, unsigned axis);
 
-    /// Lays the list out in the order (min on the axis, position). For sets that fit into the cache.
-    void lay_out(const EntryList& list, unsigned axis, SweepSet& set);
-
     /// Returns the keys of a list of any size in the order (min on the axis, position). The span is valid until the next call.
     std::span<const SortKey> sort(const EntryList& list, unsigned axis, Executor& executor);
 
@@ -66,9 +63,6 @@ private:
     std::vector<std::uint32_t> buckets_;  // bucket of each box
     Buffer<SortKey> keys_, scratch_;
 };
-
-/// Returns an estimate of the number of columns that a sweep tests, summed over all rows, from rows at fixed positions.
-std::uint64_t sampled_tests(const Sweep& sweep);
 
 /// Returns an estimate of the number of rows and columns that overlap, from a few rows at fixed positions.
 /// Throws: Error{cancelled}.

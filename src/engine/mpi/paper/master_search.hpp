@@ -66,7 +66,7 @@ private:
     std::array<ObjectArrays, 2> gathered_, distributed_;
     ListMaker maker_;
     ListExchange within_machines_{comm_, costs_}, to_master_{comm_, costs_};
-    Buffer<Entry> merged_;
+    Buffer<CellEntry> merged_;
     Buffer<std::uint64_t> merged_begins_;
 };
 

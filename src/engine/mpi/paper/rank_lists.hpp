@@ -26,8 +26,9 @@ public:
                     const std::stop_token& stop);
 
 private:
-    BuildMemory memory_{own_pages(), own_pages()};
-    Buffer<Entry> entries_;
+    BuildMemory memory_{own_pages()};
+    Buffer<CellEntry> entries_;
+    Buffer<std::uint64_t> begins_;  // of home entries and of ghosts, by octant
 };
 
 class ListExchange {
@@ -47,7 +48,7 @@ private:
     Communicator& comm_;
     RankCosts& costs_;
     Buffer<std::uint32_t> sent_counts_, received_counts_;
-    Buffer<Entry> received_;
+    Buffer<CellEntry> received_;
     Buffer<std::uint64_t> begins_;
 };
 

@@ -63,7 +63,7 @@ namespace {
 
 /// Stores the cells of objects [begin, begin + cells.size()) of a source. Returns false if one of the boxes is invalid.
 bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, std::span<CellBox> cells) {
-    if (const auto boxes = source.plain(begin, cells.size()); !boxes.empty()) {
+    if (const auto boxes = source.plain(begin, cells.size()).boxes; !boxes.empty()) {
         space.cells(boxes, cells);
         return are_boxes(boxes);
     }

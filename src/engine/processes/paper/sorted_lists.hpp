@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "engine/processes/shared_memory/arena.hpp"
+#include "octree/build/sorted_list.hpp"
 #include "octree/linear_octree.hpp"
 
 namespace octopair {
 
 /// Describes one list: offsets in the arena, and counts. Stored in the arena itself.
 struct SortedListHead {
-    std::uint64_t entries, entry_count;                ///< offset of the Entry array, and its length
+    std::uint64_t entries, entry_count;                ///< offset of the CellEntry array, and its length
     std::uint64_t home_begins, ghost_begins, octants;  ///< offsets of the arrays, one element an octant
     std::uint64_t valid, object_begin;                 ///< 1: all objects are valid boxes; first object
 };
@@ -38,7 +39,8 @@ private:
     OctreeLayout layout_;
     std::vector<NumberedBlock> blocks_;
     BuildMemory memory_;
-    std::vector<Buffer<Entry>> entries_;
+    std::vector<Buffer<CellEntry>> entries_;
+    std::vector<Buffer<std::uint64_t>> begins_;  // of home entries and of ghosts, by octant
     Buffer<SortedListHead> heads_;
 };
 

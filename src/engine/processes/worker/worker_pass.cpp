@@ -43,7 +43,7 @@ public:
         tick();
         return source_.load(begin, out);
     }
-    std::span<const Box3f> plain(std::size_t begin, std::size_t count) const override {
+    PlainBoxes plain(std::size_t begin, std::size_t count) const override {
         tick();
         return source_.plain(begin, count);
     }
@@ -93,17 +93,14 @@ struct WorkerProgram::Job {
           first(pass.first, regions),
           second(pass.second, regions),
           memory(regions.get(pass.arena_region)),
-          scratch_memory(regions.get(pass.pairs_region != 0 ? pass.pairs_region : pass.arena_region)),
           arena(*memory),
-          scratch(*scratch_memory),
           source(first.objects, pass.join != 0 ? &second.objects : nullptr, pass.margin),
-          octree(arena, scratch) {}
+          octree(arena) {}
 
     std::uint32_t number;
     Set first, second;
-    std::shared_ptr<SharedMemory> memory, scratch_memory;
+    std::shared_ptr<SharedMemory> memory;
     Arena arena;
-    Arena scratch;  ///< data that is not read after the sort; in the region that pairs are written to later
     BoxSource source;
     LinearOctree octree;
     bool built = false;
@@ -121,7 +118,7 @@ public:
     BuildExecutor(WorkSharing& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
-        constexpr std::array steps = {Step::encode, Step::count, Step::scatter};
+        constexpr std::array steps = {Step::encode, Step::count};
         const Step step = steps.at(step_++);
         if (built_) return;
         shares_.run(step, count, [&](const WorkSharing::Task& task) { body(std::size_t(task.index)); });
@@ -165,7 +162,7 @@ public:
     BuildPlace build_place(std::size_t entries) override {
         if (!worth_sharing(entries)) return Executor::build_place(entries);
         count_path(Path::nested_shared);
-        return {build_.emplace(shares_, width_, false), arena_, arena_};
+        return {build_.emplace(shares_, width_, false), arena_};
     }
 
 private:

@@ -1,0 +1,78 @@
+// Encoding of many boxes at once: octants and entries of a batch of boxes.
+//
+// Functions whose names end in _scalar are the specification of the SIMD versions (batch_encoder_kernel.cpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/cell_sweep/cell_entry.hpp"
+#include "octree/directory.hpp"
+#include "octree/space.hpp"
+
+namespace octopair {
+
+inline constexpr std::size_t max_encoded = 256;  ///< maximum number of boxes in a batch
+
+/// The home entries of a batch of boxes, and the boxes that reach beyond their home.
+struct EncodedBatch {
+    static constexpr std::size_t room = max_encoded + 8;  ///< SIMD versions write a few numbers behind the last one
+    alignas(64) std::array<CellEntry, room> homes;
+    std::array<std::uint32_t, room>
+        lists;  ///< home octant of each box; BatchEncoder::no_list if the box is too large for a leaf
+
+    /// By crosser: a box that reaches beyond the leaf that it begins in.
+    std::size_t crossers = 0;
+    /// Initialised, because SIMD versions read a few numbers behind the last one.
+    std::array<std::uint32_t, room> crosser = {};  ///< position in the batch, ascending
+    std::array<std::uint32_t, room> leaf = {};     ///< leaf that the box begins in, as Directory::Leaf::element()
+    std::array<std::array<std::uint32_t, room>, 3> low = {}, high = {};  ///< ends in fine cells, by coordinate axis
+};
+
+/// Crossers [begin, begin + count) of a batch.
+struct CrosserRange {
+    std::size_t begin, count;
+};
+
+/// The ghosts of a few crossers.
+struct GhostGroup {
+    static constexpr std::size_t most = 8, corners = 7;
+    alignas(64) std::array<std::array<CellEntry, most>, corners> entries;  ///< by corner of the box and crosser
+    std::array<std::array<std::uint32_t, most>, corners> octants;
+    std::array<std::uint8_t, corners> present;  ///< by corner: bit mask of the crossers that have this ghost
+    /// Bit mask of the crossers without ghosts here: a leaf is deep or finer than the home, or the box is too large for its home.
+    std::uint32_t left_out;
+};
+
+class BatchEncoder {
+public:
+    /// Borrows both. `no_list`: number for boxes without a home entry.
+    BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list);
+
+    /// Encodes boxes; `object`: number of the first one. Returns false if one of them is no valid box. Its entry is then unspecified.
+    bool encode(std::span<const Box3f> boxes, std::uint32_t object, EncodedBatch& batch) const;
+    bool encode_scalar(std::span<const Box3f> boxes, std::uint32_t object, EncodedBatch& batch) const;
+    /// Encodes entries. The entries of the batch have their objects and masks.
+    void encode(std::span<const Entry> entries, EncodedBatch& batch) const;
+    void encode_scalar(std::span<const Entry> entries, EncodedBatch& batch) const;
+
+    /// Makes the ghosts of at most GhostGroup::most crossers.
+    void ghosts(const EncodedBatch& batch, CrosserRange crossers, GhostGroup& group) const;
+    /// Leaves all crossers to the general rule (octants_of.hpp), which is the specification.
+    static void ghosts_scalar(CrosserRange crossers, GhostGroup& group);
+
+    SpaceMap map;
+    std::array<unsigned, 3> axes;  ///< coordinate axis of each axis of the sweep
+    Directory::LeafTable table;
+    std::uint32_t no_list;
+    /// By octant: OctantCells::deep_origin() of deep octants; empty if there are none.
+    std::vector<std::array<float, 4>> deep_origins;
+
+private:
+    const Space& space_;
+    const Directory& directory_;
+};
+
+}  // namespace octopair

@@ -1,0 +1,70 @@
+// ChunkLists: one list of entries for each octant and block of objects, in chunks of memory.
+//
+// One pass over the objects appends entries to the lists, without knowing their lengths. A reader visits the lists of an octant
+// in the order of blocks, so it sees the same entries for any number of blocks.
+//
+// ChunkWriter (build/chunk_writer.hpp) appends the entries of one block.
+//
+// Invariants
+//   A chunk has room for `chunk_size` entries, a power of two, and belongs to one list. next_ links the chunks of a list.
+//   Each block has its own range of the memory, of which it commits as much as it needs.
+//   Chunk 0 of a block belongs to no list: list number `lists` discards entries there. So position 0 means an empty list.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/memory.hpp"
+#include "octree/cell_sweep/cell_entry.hpp"
+
+namespace octopair {
+
+/// Objects [begin, end).
+struct ObjectBlock {
+    std::size_t begin = 0, end = 0;
+};
+
+class ChunkLists {
+public:
+    explicit ChunkLists(PageSource& pages) : entries_(pages), next_(pages), ends_(pages) {}
+
+    /// Makes room for `blocks` blocks with `lists` lists each. A block has at most `entries` entries.
+    void resize(std::size_t blocks, std::size_t lists, std::size_t max_entries_per_block);
+
+    std::size_t lists() const { return lists_; }
+
+    /// Calls visit(entries) for each run of adjacent entries of a list, in the order of blocks.
+    template <typename Visit>
+    void for_each_run(std::size_t list, Visit&& visit) const {
+        for (std::size_t block = 0; block < blocks_; ++block) for_each_run(block, list, visit);
+    }
+    template <typename Visit>
+    void for_each_run(std::size_t block, std::size_t list, Visit&& visit) const {
+        const Ends ends = ends_[block * lists_ + list];
+        if (ends.end == 0) return;
+        const CellEntry* const entries = entries_.data() + block * entries_per_block_;
+        const std::uint32_t* const next = next_.data() + block * chunks_per_block_;
+        const std::size_t last = (ends.end - 1) / chunk_size_;
+        for (std::size_t chunk = ends.first; chunk != last; chunk = next[chunk]) {
+            visit(std::span(entries + chunk * chunk_size_, chunk_size_));
+        }
+        visit(std::span(entries + last * chunk_size_, ends.end - last * chunk_size_));
+    }
+
+    static constexpr std::size_t min_chunk = 16;
+
+private:
+    friend class ChunkWriter;
+    /// First chunk of a list, and position behind its last entry; 0 if the list is empty.
+    struct Ends {
+        std::uint32_t first, end;
+    };
+
+    Buffer<CellEntry> entries_;
+    Buffer<std::uint32_t> next_;  // by chunk: next chunk of its list
+    Buffer<Ends> ends_;           // by block and list
+    std::size_t blocks_ = 0, lists_ = 0, chunk_size_ = min_chunk;
+    std::size_t entries_per_block_ = 0, chunks_per_block_ = 0;
+};
+
+}  // namespace octopair

@@ -1,0 +1,34 @@
+// CellPairMaker: turns the hits of cell sweeps into pairs of the caller's objects, for one share of the work.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/memory.hpp"
+#include "octree/cell_sweep/cell_sweep.hpp"
+#include "octree/executor.hpp"
+#include "octree/sweep/pair_maker.hpp"
+
+namespace octopair {
+
+/// Keeps its memory between sweeps. Thread safety: one thread at a time.
+class CellPairMaker {
+public:
+    /// Borrows `context`.
+    explicit CellPairMaker(const ScanContext& context);
+
+    /// Runs a sweep to its end and passes its pairs to `writer`.
+    /// Throws: Error{cancelled}.
+    void sweep(const CellSweep& sweep, const CertainGaps& gaps, ShareWriter& writer);
+
+private:
+    std::size_t drop_refused(JudgedHits& judged);
+    void check(std::span<const Pair> pairs) const;
+
+    const ScanContext& context_;
+    Buffer<CellHit> hits_;
+    Buffer<Pair> pairs_;
+    Buffer<std::uint32_t> doubtful_, refused_;
+};
+
+}  // namespace octopair
