@@ -13,7 +13,7 @@ SCALE, ORIGIN = 198, (252, 236)
 COLD = ("#7c93b8", "#5b7299", "#445879")
 WARM = ("#ffb454", "#f28c28", "#c4661a")
 STEPS = [("boxes", "what you own", "#7c93b8"), ("encode", "box → octal codes", "#38bdf8"),
-         ("count", "entries per octant", "#38bdf8"), ("scatter", "entries to places", "#38bdf8"),
+         ("scatter", "entries to octants", "#38bdf8"), ("count", "entries per octant", "#38bdf8"),
          ("scan", "each octant, once", "#38bdf8"), ("pairs", "exactly those that touch", "#f28c28")]
 
 
@@ -93,7 +93,7 @@ def main():
     boxes = make_boxes()
     hit = {i for i, a in enumerate(boxes) for j, b in enumerate(boxes) if i != j and overlap(a, b)}
     print(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
-          'role="img" aria-label="Boxes in an octree; encode, count, scatter and scan find the pairs that overlap">')
+          'role="img" aria-label="Boxes in an octree; encode, scatter, count and scan find the pairs that overlap">')
     print('<style>text{font-family:"DejaVu Sans",Verdana,sans-serif}.name{font-size:17px;font-weight:bold}'
           '.caption{font-size:14px;fill:#cbd5e1}.code{font-size:12.5px;fill:#94a3b8;text-anchor:end;'
           'font-family:"DejaVu Sans Mono",Menlo,monospace}</style>')

@@ -18,7 +18,7 @@ LAYERS = {
     "parallel": ("threads; the only layer that uses oneTBB", []),
     "geometry": ("points, vectors, poses", ["pose"]),
     "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "summary"]),
-    "octree": ("octal codes; encode, count, scatter, scan", ["octal_code"]),
+    "octree": ("octal codes; encode, scatter, count, scan", ["octal_code"]),
     "verification": ("a second algorithm that checks results", []),
     "engine": ("what all engines share", ["arrangement", "engine", "job", "pair_list"]),
     "engine/threads": ("the engine of threads", []),
