@@ -73,7 +73,7 @@ struct Tuning {
         std::uint64_t cheap_tests = 64;         ///< a sweep with at most this many tests per box is always good
         std::uint64_t tests_per_pair = 16;      ///< maximum number of tests per expected pair: two registers per pair
         std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
-        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times registers of columns: a few milliseconds
+        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns: a few milliseconds
         std::size_t hits = 1024;                ///< masks that a call of the kernel may write; at least 8
         std::size_t cell_hits = 2048;           ///< hits that are judged at a time; at least 128
         std::size_t max_cell_buckets = 2048;    ///< maximum of a sort by cells; a power of two
@@ -86,8 +86,7 @@ struct Tuning {
         std::size_t min_measured = 256;         ///< minimum number of boxes of a set that are sampled to measure it
         std::size_t max_measured = 4096;        ///< maximum number of boxes of a set that are sampled to measure it
         std::size_t tried_rows = 16;            ///< rows that are tested against the sampled columns to estimate hits
-        std::size_t measured_row_stride = 13;   ///< of a sorted set, the window of one row in this many is measured,
-        std::size_t measured_rows = 24;         ///< or about this many windows, whichever are fewer
+        std::size_t measured_row_stride = 13;   ///< the window of one row in this many is measured
     } sweep;
 
     /// Octrees that are updated (octree/dynamic/mutable_octree.cpp, octree/dynamic/leaf_grid.cpp).

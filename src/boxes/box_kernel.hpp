@@ -37,10 +37,9 @@ Box3d wide(const Box<Real>& box) {
 /// True if the closed boxes overlap.
 template <typename Real>
 bool overlap(const Box<Real>& a, const Box<Real>& b) {
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis])) return false;
-    }
-    return true;
+    bool all = true;
+    for (int axis = 0; axis < 3; ++axis) all &= a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis];
+    return all;
 }
 
 inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }

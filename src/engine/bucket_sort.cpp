@@ -46,28 +46,25 @@ const Pair& first_pair(const std::vector<PageString>& strings) {
 /// Writes pairs to pages, and appends a run for each page.
 class BucketSort::PageWriter {
 public:
-    PageWriter(Pages& pages, Runs& runs) : pages_(pages), runs_(runs) { take(); }
-    /// Returns the number of pairs that fit into the page.
-    std::size_t left() const { return page_pairs() - used_; }
+    PageWriter(Pages& pages, Runs& runs) : pages_(pages), runs_(runs) {}
+    /// Returns the number of pairs that fit into the page, at least 1. Takes a page if there is none.
+    std::size_t left() {
+        if (page_ == nullptr) page_ = pages_.take();
+        return page_pairs() - used_;
+    }
+    /// Requires: left() was called since the last pairs were written.
     Pair* next() { return page_ + used_; }
     void wrote(std::size_t pairs) {
         used_ += pairs;
-        if (left() > 0) return;
-        runs_.emplace_back(page_, used_);
-        take();
+        if (used_ == page_pairs()) finish();
     }
-    void add(const Pair& pair) {
-        *next() = pair;
-        wrote(1);
-    }
-    void finish() { used_ > 0 ? runs_.push_back({page_, used_}) : pages_.give_back(page_); }
-
-private:
-    void take() {
-        page_ = pages_.take();
+    void finish() {
+        if (used_ > 0) runs_.emplace_back(page_, used_);
+        page_ = nullptr;
         used_ = 0;
     }
 
+private:
     Pages& pages_;
     Runs& runs_;
     Pair* page_ = nullptr;
@@ -135,7 +132,7 @@ void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned b
     for (const PageString& string : strings) {
         for (std::size_t i = 0; i < string.pages().size(); ++i) {
             const std::span<const Pair> page = string.page(i);
-            // Two counters for each row: a counter that is increased in turn must wait for its last store.
+            // Two counters for each row: a counter cannot be read again before its last store is done.
             std::size_t k = 0;
             for (; k + 1 < page.size(); k += 2) {
                 ++ends[row_of(page[k])];
@@ -175,7 +172,7 @@ void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned b
 void BucketSort::write_rows(const Rows& rows, unsigned bits, Task& task) {
     PageWriter writer(pages_, task.sorted);
     std::uint32_t begin = 0;
-    for (std::size_t row = 0; row < rows.ends.size();) {
+    for (std::size_t row = 0; begin < rows.ends.back();) {
         // As many rows as fit into the page. Without any, a single row, which is long or goes beyond the page.
         const std::uint32_t page_end = begin + std::uint32_t(writer.left());
         std::size_t end = row;

@@ -83,7 +83,6 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.max_measured, {16, 40});
     to.one_of<std::size_t>(sweep.tried_rows, {1, 5});
     to.one_of<std::size_t>(sweep.measured_row_stride, {1, 3});
-    to.one_of<std::size_t>(sweep.measured_rows, {1, 5});
 }
 
 void shrink(Tuning::Dynamic& dynamic, Shrinker& to) {

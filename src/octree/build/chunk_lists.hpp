@@ -28,7 +28,7 @@ class ChunkLists {
 public:
     explicit ChunkLists(PageSource& pages) : entries_(pages), next_(pages), ends_(pages) {}
 
-    /// Makes room for `blocks` blocks with `lists` lists each. A block has at most `entries` entries.
+    /// Makes room for `blocks` blocks with `lists` lists each. No block has more than `max_entries_per_block` entries.
     void resize(std::size_t blocks, std::size_t lists, std::size_t max_entries_per_block);
 
     std::size_t lists() const { return lists_; }

@@ -101,7 +101,7 @@ std::uint64_t sampled_tests(const CellSweep& sweep) {
     const auto& [rows, columns, kind] = sweep;
     std::uint64_t sum = 0;
     std::size_t samples = 0;
-    const std::size_t stride = std::max(tuning().sweep.measured_row_stride, rows.size() / tuning().sweep.measured_rows);
+    const std::size_t stride = tuning().sweep.measured_row_stride;
     for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
         const CellEntry& row = rows.entries()[i];
         const std::uint64_t end = columns.bucket_end(row.high(0));

@@ -8,7 +8,7 @@
 // One cross sweep, and one cross_strict sweep with rows and columns exchanged, find each pair of two sets once.
 //
 // Hits may be a few too many: the test uses 8 of 15 bits on two axes. judge_hits() compares all bits. If ends differ by fewer
-// cells than their order needs to be certain, the hit is doubtful, and PairRule::refuse() decides with the caller's own numbers.
+// cells than their order needs to be certain, the hit is doubtful, and PairRule::refused() decides with the caller's own numbers.
 //
 // Rows are taken in blocks of 4. A block is tested against groups of 8 columns, in turn; within a group, hits are in the order
 // of rows, then of columns. So the order is the same for any width of the registers.
@@ -51,8 +51,8 @@ struct CellCursor {
 /// Minimum room for hits of cell_hits().
 inline constexpr std::size_t min_hit_room = 128;
 
-/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` is full. The sweep is done when
-/// cursor.row is not below the number of rows.
+/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` is full, or
+/// after a bounded number of tests. The sweep is done when cursor.row is not below the number of rows.
 /// Requires: `hits` has room for at least min_hit_room.
 std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
 std::size_t cell_hits_scalar(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);

@@ -13,6 +13,7 @@
 #include <bit>
 
 #include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "octree/cell_sweep/cell_sweep.hpp"
 #include "octree/simd_lanes-inl.hpp"
 
@@ -129,6 +130,7 @@ std::size_t cell_hits_of(const CellSweep& sweep, CellCursor& cursor, std::span<C
     const std::uint32_t* const first = sweep.columns.first_axis();
     CellHit* at = hits.data();
     CellHit* const last = hits.data() + (hits.size() - row_block * column_group - LaneTable::lanes);
+    std::size_t groups_left = tuning().sweep.tests_per_call;
     for (; cursor.row < sweep.rows.size(); cursor.row += row_block, cursor.in_row = false) {
         const std::size_t row = cursor.row;
         const bool begins = !cursor.in_row;
@@ -145,10 +147,11 @@ std::size_t cell_hits_of(const CellSweep& sweep, CellCursor& cursor, std::span<C
             at = test_group<Asked::after_row>(block, sweep.columns, column, at);
             column += column_group;
         }
-        for (; (first[column] & 0xFFFFu) <= reach && at <= last; column += column_group) {
+        for (; (first[column] & 0xFFFFu) <= reach && at <= last && groups_left > 0; column += column_group) {
+            --groups_left;
             at = test_group<usual>(block, sweep.columns, column, at);
         }
-        if (at > last) {
+        if (at > last || groups_left == 0) {
             cursor.column = column;
             break;
         }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "boxes/box_kernel.hpp"
 #include "octopair/queries.hpp"
 #include "scene/queries/box_distance.hpp"
 
@@ -24,12 +25,6 @@ inline bool is_ray(const Ray& ray) {
     return std::all_of(std::begin(ray.origin), std::end(ray.origin), finite) &&
            std::all_of(std::begin(ray.direction), std::end(ray.direction), finite) &&
            !std::all_of(std::begin(ray.direction), std::end(ray.direction), zero) && ray.longest >= 0;
-}
-
-inline bool overlap(const Box3d& a, const Box3d& b) {
-    bool all = true;
-    for (int axis = 0; axis < 3; ++axis) all &= a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis];
-    return all;
 }
 
 /// Returns (bound - origin) / direction, even if the difference is beyond float64.
