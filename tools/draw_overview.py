@@ -86,7 +86,7 @@ def draw_steps():
             yield f'<path d="M{x} {y - gap + 2}v{gap - 8}m-4 -1l4 5l4 -5" fill="none" stroke="#64748b" stroke-width="1.6"/>'
 
 
-EXAMPLES = ["min, max", "7 in {8,1}", "{8,1}: 2", "{8,1} → 7, 19", "7 × 19", "(7, 19)"]
+EXAMPLES = ["min, max", "7 in {8,1}", "{8,1} → 7, 19", "{8,1}: 2", "7 × 19", "(7, 19)"]
 
 
 def main():
