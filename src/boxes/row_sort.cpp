@@ -1,5 +1,6 @@
 // SIMD version of sort_rows(). Highway compiles it for each instruction set. The place of an object is the number of smaller
-// objects in its row. So no branch depends on the order of the objects.
+// objects in its row. So no branch depends on the order of the objects. Equal objects have equal places, which only a fault of
+// the caller can cause: the sum of the places tells, and the specification sorts the rows again.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/row_sort.cpp"
 #include <hwy/foreach_target.h>
@@ -18,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-void sort_rows_simd(const PairRows& rows, Pair* out) { sort_rows_scalar(rows, out); }
+bool sort_rows_simd(const PairRows&, Pair*) { return false; }
 
 #else
 
@@ -40,11 +41,13 @@ HWY_INLINE std::size_t count_less(const Lanes& lanes, const Lanes& value, std::s
     return std::size_t(std::popcount(std::uint32_t(bits[0]) & ((1u << count) - 1)));
 }
 
-void sort_rows_simd(const PairRows& rows, Pair* out) {
+/// Returns false if two objects of a row are equal. Then not all pairs are written.
+bool sort_rows_simd(const PairRows& rows, Pair* out) {
     const SignedWords d;
     const auto& [seconds, first_begin, ends, first_object] = rows;
     std::uint32_t begin = first_begin;
     const std::size_t lanes = hn::Lanes(d);
+    std::size_t missing = 0;  // sum of the places that objects have if they differ, less the sum of their places
     for (std::size_t row = 0; row < ends.size(); ++row) {
         const std::uint32_t a = first_object + std::uint32_t(row);
         const std::uint32_t* const objects = seconds + begin;
@@ -54,7 +57,9 @@ void sort_rows_simd(const PairRows& rows, Pair* out) {
             const auto all = load(objects);
             for (std::size_t i = 0; i < size; ++i) {
                 const auto value = hn::Set(d, std::int32_t(objects[i] ^ 0x80000000u));
-                out[count_less(all, value, size)] = {a, objects[i]};
+                const std::size_t place = count_less(all, value, size);
+                missing += i - place;
+                out[place] = {a, objects[i]};
             }
         } else {
             for (std::size_t i = 0; i < size; ++i) {
@@ -63,11 +68,13 @@ void sort_rows_simd(const PairRows& rows, Pair* out) {
                 for (std::size_t k = 0; k < size; k += lanes) {
                     place += count_less(load(objects + k), value, std::min(lanes, size - k));
                 }
+                missing += i - place;
                 out[place] = {a, objects[i]};
             }
         }
         out += size;
     }
+    return missing == 0;
 }
 
 #endif
@@ -82,7 +89,9 @@ namespace octopair {
 
 HWY_EXPORT(sort_rows_simd);
 
-void sort_rows(const PairRows& rows, Pair* out) { HWY_DYNAMIC_DISPATCH(sort_rows_simd)(rows, out); }
+void sort_rows(const PairRows& rows, Pair* out) {
+    if (!HWY_DYNAMIC_DISPATCH(sort_rows_simd)(rows, out)) sort_rows_scalar(rows, out);
+}
 
 void sort_rows_scalar(const PairRows& rows, Pair* out) {
     std::uint32_t at = rows.begin;

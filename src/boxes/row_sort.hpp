@@ -20,8 +20,8 @@ struct PairRows {
 };
 
 /// Sorts the second objects of each row, and writes the pairs of all rows to `out`, row after row.
-/// Requires: the objects of a row differ; a row has at most max_row_at_once objects; 16 more objects behind the last row can be
-/// read. Complexity: quadratic in the length of a row, divided by 8.
+/// Requires: a row has at most max_row_at_once objects; 16 more objects behind the last row can be read.
+/// Complexity: quadratic in the length of a row, divided by 8.
 void sort_rows(const PairRows& rows, Pair* out);
 /// Specification of sort_rows().
 void sort_rows_scalar(const PairRows& rows, Pair* out);

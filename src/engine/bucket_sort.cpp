@@ -96,8 +96,9 @@ void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, Task& ta
         count_path(Path::bucket_split);
         return split(std::move(strings), bits, task);
     }
-    count_path(Path::bucket_sorted);
-    sort_at_once(strings, bits, task);
+    const unsigned row_bits = bits - std::min(bits, plan_.keys().column_bits());
+    if (size << tuning().output.sparse_row_bits >> row_bits == 0) return sort_sparse(strings, task);
+    sort_rows_at_once(strings, bits, task);
 }
 
 void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& task) {
@@ -120,7 +121,29 @@ void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& t
     }
 }
 
-void BucketSort::sort_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task) {
+/// Sorts pairs that are few for their number of rows: most rows are empty.
+void BucketSort::sort_sparse(const std::vector<PageString>& strings, Task& task) {
+    count_path(Path::sparse_bucket_sorted);
+    sparse_.clear();
+    for (const PageString& string : strings) {
+        for (std::size_t i = 0; i < string.pages().size(); ++i) {
+            sparse_.insert(sparse_.end(), string.page(i).begin(), string.page(i).end());
+            task.spend(string.pages()[i]);
+        }
+    }
+    std::ranges::sort(sparse_, {}, [&](const Pair& pair) { return plan_.keys().key(pair); });
+    PageWriter writer(pages_, task.sorted);
+    for (std::span<const Pair> left = sparse_; !left.empty();) {
+        const auto part = left.first(std::min(left.size(), writer.left()));
+        std::ranges::copy(part, writer.next());
+        writer.wrote(part.size());
+        left = left.subspan(part.size());
+    }
+    writer.finish();
+}
+
+void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task) {
+    count_path(Path::bucket_sorted);
     const PairKeys& keys = plan_.keys();
     const unsigned column_bits = keys.column_bits();
     const std::uint32_t rows = bits > column_bits ? std::uint32_t(1) << (bits - column_bits) : 1;
@@ -210,23 +233,32 @@ void BucketSort::write_row(std::uint32_t row, std::span<const std::uint32_t> col
 std::span<const std::uint32_t> BucketSort::sorted_columns(std::span<const std::uint32_t> columns, unsigned bits) {
     const std::span<std::uint32_t> sorted = radix_.take(columns.size());
     const auto [least, greatest] = std::ranges::minmax(columns);
-    const std::size_t words = (greatest - least) / 64 + 1;
-    if ((greatest - least) / tuning().output.bitmap_columns >= columns.size()) {
-        std::ranges::copy(columns, sorted.begin());
-        return radix_.sort(0, bits);
+    if ((greatest - least) / tuning().output.bitmap_columns < columns.size()) {
+        count_path(Path::row_in_bitmap);
+        mark_columns(columns, least, greatest);
+        if (read_marks(least, sorted.data()) == columns.size()) return sorted;
+        // A pair stands there twice, which only a fault elsewhere can cause. It is kept, so that a check can find it.
     }
-    // Many of the possible columns are there: marks them in a bit map.
-    count_path(Path::row_in_bitmap);
-    bitmap_.assign(words, 0);
+    std::ranges::copy(columns, sorted.begin());
+    return radix_.sort(0, bits);
+}
+
+/// Sets the bits of the columns in the bit map. Its first bit is that of column `least`.
+void BucketSort::mark_columns(std::span<const std::uint32_t> columns, std::uint32_t least, std::uint32_t greatest) {
+    bitmap_.assign((greatest - least) / 64 + 1, 0);
     for (const std::uint32_t column : columns)
         bitmap_[(column - least) / 64] |= std::uint64_t(1) << (column - least) % 64;
-    std::uint32_t* out = sorted.data();
-    for (std::size_t word = 0; word < words; ++word) {
+}
+
+/// Writes the columns of the bit map in ascending order. Returns their number.
+std::size_t BucketSort::read_marks(std::uint32_t least, std::uint32_t* columns) const {
+    const std::uint32_t* const begin = columns;
+    for (std::size_t word = 0; word < bitmap_.size(); ++word) {
         const std::uint32_t first = least + std::uint32_t(word * 64);
         for (std::uint64_t set = bitmap_[word]; set != 0; set &= set - 1)
-            *out++ = first + std::uint32_t(std::countr_zero(set));
+            *columns++ = first + std::uint32_t(std::countr_zero(set));
     }
-    return sorted;
+    return std::size_t(columns - begin);
 }
 
 }  // namespace octopair

@@ -2,7 +2,7 @@
 //
 // 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a string of pages.
 // 2. Each bucket is gathered from all threads or workers and sorted independently: its pairs are counted by `a` and moved to
-//    their rows, then the objects `b` of each row are sorted.
+//    their rows, then the objects `b` of each row are sorted. If most rows are empty, the pairs are sorted as they are.
 //
 // Invariants
 //   Every key in bucket i is less than every key in bucket i + 1.
@@ -99,13 +99,17 @@ private:
         std::span<const std::uint32_t> ends;
         std::uint64_t first;
     };
-    void sort_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task);
+    void sort_sparse(const std::vector<PageString>& strings, Task& task);
+    void sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task);
     void write_rows(const Rows& rows, unsigned bits, Task& task);
     void write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits, PageWriter& writer);
     std::span<const std::uint32_t> sorted_columns(std::span<const std::uint32_t> columns, unsigned bits);
+    void mark_columns(std::span<const std::uint32_t> columns, std::uint32_t least, std::uint32_t greatest);
+    std::size_t read_marks(std::uint32_t least, std::uint32_t* columns) const;
 
     const BucketPlan& plan_;
     Pages& pages_;
+    std::vector<Pair> sparse_;             // pairs of a bucket with many empty rows
     Buffer<std::uint32_t> columns_;        // objects `b` of a bucket, row by row
     std::vector<std::uint32_t> row_ends_;  // by row of a bucket: position behind its last column; then second counters
     std::vector<std::uint64_t> bitmap_;    // columns of a long row

@@ -25,7 +25,8 @@ TEST(SortRows, KernelAndSpecificationAgree) {
                 // Small numbers, and numbers around the sign bit and the greatest number.
                 const std::uint32_t bases[] = {0, 0x7FFFFFF0, 0xFFFFFFC0};
                 const std::uint32_t object = bases[random() % 3] + std::uint32_t(random() % 64);
-                if (std::ranges::find(row, object) == row.end()) row.push_back(object);
+                const bool doubled_round = round % 4 == 0;
+                if (doubled_round || std::ranges::find(row, object) == row.end()) row.push_back(object);
             }
             seconds.insert(seconds.end(), row.begin(), row.end());
             ends.push_back(std::uint32_t(seconds.size()));

@@ -53,6 +53,17 @@ TEST_P(Ascending, KeysOfAnyWidth) {
     }
 }
 
+// A pair that is there twice is a fault of the search. A check of the result must be able to see it.
+TEST_P(Ascending, KeepsDoubledPairs) {
+    for (const std::uint32_t objects : {40u, 1000u, 1u << 20}) {
+        std::vector<Pair> pairs = random_pairs(20'000, objects, 0);
+        for (std::size_t i = 0, single = pairs.size(); i < single; i += 7) pairs.push_back(pairs[i]);
+        const auto found = sorted_by(GetParam(), pairs, {{0, objects}, objects});
+        std::sort(pairs.begin(), pairs.end());
+        EXPECT_TRUE(same_sequence(found, pairs)) << objects;
+    }
+}
+
 TEST_P(Ascending, BucketsTooLargeToSortAtOnce) {
     std::vector<Pair> pairs = random_pairs(10'000, 5'000'000, 600'000);
     const auto found = sorted_by(GetParam(), pairs, {{0, 5'000'000}, 5'000'000});

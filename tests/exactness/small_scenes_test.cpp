@@ -83,6 +83,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      pairs_counted,
                                      list_block_full,
                                      bucket_sorted,
+                                     sparse_bucket_sorted,
                                      bucket_split,
                                      long_row_sorted,
                                      row_in_bitmap,

@@ -104,6 +104,7 @@ void shrink(Tuning::Output& output, Shrinker& to) {
     to.one_of<unsigned>(output.bucket_split_bits, {1, 2});
     to.one_of<std::size_t>(output.sorted_at_once, {1, 3, 20});
     to.one_of<std::size_t>(output.bucket_pairs, {1, 3, 20});
+    to.one_of<unsigned>(output.sparse_row_bits, {0, 2, 20});
     to.one_of<std::size_t>(output.bitmap_columns, {1, 2, 64});
     to.one_of<std::size_t>(output.min_radix_sort, {1, 4});
     to.one_of<std::size_t>(output.shares_ahead, {1, 2});
