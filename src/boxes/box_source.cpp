@@ -113,7 +113,11 @@ void BoxSource::load_bounds(std::span<Entry> entries) const {
         };
         constexpr std::size_t ahead = 16;
         for (std::size_t i = 0; i < entries.size(); ++i) {
-            if (i + ahead < entries.size()) prefetch(box(entries[i + ahead]));
+            if (i + ahead < entries.size()) {
+                const Box3f* const next = box(entries[i + ahead]);
+                prefetch(next);
+                prefetch(&next->max[2]);  // a box may lie on two cache lines
+            }
             std::memcpy(&entries[i], box(entries[i]), sizeof(Box3f));
         }
         return;

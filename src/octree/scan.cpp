@@ -126,20 +126,18 @@ private:
 class JoinSource final : public EntrySource {
 public:
     explicit JoinSource(const SweepInput& join) : join_(join) {}
-    std::size_t size() const override { return join_.rows.size() + (join_.self ? 0 : join_.columns.size()); }
+    std::size_t size() const override { return join_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(begin + i);
+        const std::size_t rows = std::min(out.size(), join_.rows.size() - std::min(begin, join_.rows.size()));
+        if (rows > 0) join_.rows.load(begin, out.first(rows));
+        if (rows < out.size()) join_.columns.load(begin + rows - join_.rows.size(), out.subspan(rows));
         return true;
     }
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = at(positions[i]);
+        for (std::size_t i = 0; i < out.size(); ++i) load(positions[i], out.subspan(i, 1));
     }
 
 private:
-    const Entry& at(std::size_t i) const {
-        return i < join_.rows.size() ? join_.rows[i] : join_.columns[i - join_.rows.size()];
-    }
-
     const SweepInput& join_;
 };
 
@@ -148,7 +146,7 @@ private:
 class OctantScan {
 public:
     OctantScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
-        : octree_(octree), context_(context), executor_(executor), order_(context.stop) {}
+        : octree_(octree), context_(context), executor_(executor), chooser_(context.stop) {}
 
     void scan(OctantIndex octant, std::span<const Entry> handed) {
         if constexpr (has_test_hooks) {
@@ -158,7 +156,6 @@ public:
         cells_ = OctantCells(octree_.space(), octree_.octants()[octant]);
         gaps_ = certain_gaps(cells_, context_.rule);
         turns_ = 0;
-        crowd_.clear();
         if (runs_owner_ != octant) find_runs(octant, runs_);
         next_runs_.clear();
         if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, next_runs_);
@@ -183,18 +180,40 @@ private:
         if (laid_out) own_set_.assign(runs_, next_runs_);
         if (!laid_out) count_path(Path::own_too_large);
         if (own > 1 && !(laid_out && try_own_sweep())) {
-            const EntryList crowd{crowd_of_own()};
+            const EntryList crowd = crowd_of({false, any_set}, {});
             scan_crowded({crowd, crowd, true, {}});
         }
         if (!handed.empty() && !(laid_out && try_handed_sweep(handed))) {
-            scan_crowded({{handed}, {crowd_of_own()}, false, {}});
+            scan_crowded({crowd_of({true, any_set}, handed), crowd_of({false, any_set}, {}), false, {}});
         }
     }
 
-    /// Returns the octant's own entries with their bounds as coordinates.
-    std::span<const Entry> crowd_of_own() {
-        if (crowd_.empty()) crowd_ = whole_entries(octree_, octant_, context_.rule);
-        return crowd_;
+    /// A part of the entries that meet in an octant.
+    struct Part {
+        bool handed;        ///< the entries handed down; otherwise the own entries
+        std::uint32_t set;  ///< first_set or second_set of a join, or any_set
+
+        bool has(std::uint32_t mask) const { return set == any_set || (mask & set) != 0; }
+        std::size_t number() const { return (handed ? 2u : 0u) + (set == second_set ? 1u : 0u); }
+    };
+    static constexpr std::uint32_t any_set = 0;
+
+    /// Returns a part whose sweep on cells would cost too much. The list is valid until the next call for this part.
+    EntryList crowd_of(Part part, std::span<const Entry> handed) {
+        std::vector<EntryId>& crowd = crowd_of_part_[part.number()];
+        crowd.clear();
+        crowd.reserve(part.handed ? handed.size() : std::size_t(octree_.entry_count(octant_)));
+        const auto add = [&](const EntryId& id) {
+            if (part.has(id.mask)) crowd.push_back(id);
+        };
+        if (part.handed) {
+            for (const Entry& entry : handed) add({entry.object, entry.mask});
+        } else {
+            for (const auto run : runs_) {
+                for (const CellEntry& entry : run) add({entry.object, cells_.mask_of(entry)});
+            }
+        }
+        return {context_.rule, crowd};
     }
 
     bool try_own_sweep() {
@@ -225,45 +244,34 @@ private:
         ++turns_;
     }
 
-    /// A part of the entries that meet in an octant of a join.
-    struct Part {
-        bool handed;        ///< the entries handed down; otherwise the own entries
-        std::uint32_t set;  ///< first_set or second_set
-
-        std::size_t number() const { return (handed ? 2u : 0u) + (set == second_set ? 1u : 0u); }
-    };
-
     /// Finds the pairs between the two sets of a join. No set is swept against itself.
     void scan_join(std::span<const Entry> handed) {
-        for (Part own : {Part{false, first_set}, Part{false, second_set}}) {
-            std::vector<CellEntry>& cells = cells_of_part_[own.number()];
-            const std::size_t flag = own.set == first_set ? 0 : 1;
-            cells.clear();
-            for (const auto run : runs_) {
-                for (const CellEntry& entry : run) {
-                    if (entry.ends[flag] >> 31 != 0) cells.push_back(entry);
-                }
-            }
-        }
-        for (Part part : {Part{true, first_set}, Part{true, second_set}}) {
-            const EntryList list = of_set(handed, part);
-            cells_of_part_[part.number()].resize(list.size());
-            for (std::size_t i = 0; i < list.size(); ++i) {
-                cell_entries(cells_, {&list[i], 1}, &cells_of_part_[part.number()][i]);
-            }
+        for (const std::uint32_t set : {first_set, second_set}) {
+            collect_cells({false, set}, handed);
+            collect_cells({true, set}, handed);
         }
         join(handed, {false, first_set}, {false, second_set});
         join(handed, {true, first_set}, {false, second_set});
         join(handed, {true, second_set}, {false, first_set});
     }
 
-    EntryList of_set(std::span<const Entry> entries, Part part) {
-        std::vector<std::uint32_t>& positions = positions_[part.number()];
-        positions.clear();
-        for (std::uint32_t i = 0; i < entries.size(); ++i) {
-            if (entries[i].mask & part.set) positions.push_back(i);
+    /// Collects the entries of a part, or so many that they are too many for a sweep on cells.
+    void collect_cells(Part part, std::span<const Entry> handed) {
+        std::vector<CellEntry>& cells = cells_of_part_[part.number()];
+        cells.clear();
+        const std::size_t most = tuning().scan.max_swept_list + 1;
+        if (part.handed) {
+            for (const Entry& entry : handed) {
+                if (part.has(entry.mask) && cells.size() < most) cells.push_back(cells_.entry(entry));
+            }
+            return;
         }
-        return {entries, positions, false};
+        const std::size_t flag = part.set == first_set ? 0 : 1;  // CellEntry::ends
+        for (const auto run : runs_) {
+            for (const CellEntry& entry : run) {
+                if (entry.ends[flag] >> 31 != 0 && cells.size() < most) cells.push_back(entry);
+            }
+        }
     }
 
     void join(std::span<const Entry> handed, Part rows, Part columns) {
@@ -272,9 +280,7 @@ private:
         const bool done = try_lay_out(cells_of_part_[rows.number()], handed_set_) &&
                           try_lay_out(cells_of_part_[columns.number()], own_set_) && try_cross_sweeps();
         count_path(done ? Path::join_swept : Path::join_crowded);
-        if (done) return;
-        const auto whole = [&](Part part) { return of_set(part.handed ? handed : crowd_of_own(), part); };
-        scan_crowded({whole(rows), whole(columns), false, {}});
+        if (!done) scan_crowded({crowd_of(rows, handed), crowd_of(columns, handed), false, {}});
     }
 
     /// Returns false, with nothing done, if there are too many entries.
@@ -320,16 +326,15 @@ private:
     void scan_crowded(const SweepInput& join) {
         if (try_sweep(join)) return count_path(Path::crowd_swept);
         count_path(Path::crowd_parted);
-        const auto rows = part_by_shape(join.rows);
-        throw_if_stopped(context_.stop);
-        const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns);
+        const auto rows = part_by_shape(join.rows, context_.stop);
+        const auto columns = join.self ? decltype(rows){} : part_by_shape(join.columns, context_.stop);
         for (unsigned i = 0; i < rows.size(); ++i) {
-            const EntryList row_list{join.rows.entries, rows[i], false};
+            const EntryList row_list = join.rows.at(rows[i]);
             if (join.self) scan_crowded_part({row_list, row_list, true, {}}, true);
             const unsigned first = join.self && !planted(Fault::part_joined_twice) ? i + 1 : 0;
             for (unsigned k = first; k < rows.size(); ++k) {
                 if (join.self && k == i) continue;
-                const EntryList column_list{join.columns.entries, join.self ? rows[k] : columns[k], false};
+                const EntryList column_list = join.columns.at(join.self ? rows[k] : columns[k]);
                 scan_crowded_part({row_list, column_list, false, {}}, i == k);
             }
         }
@@ -347,7 +352,7 @@ private:
     }
 
     bool try_sweep(const SweepInput& join) {
-        const SweepChoice choice = choose_sweep(join, order_, context_.stop);
+        const SweepChoice choice = chooser_.choose(join);
         if (choice.good) tiled_sweep(context_, join, choice.axis, executor_);
         return choice.good;
     }
@@ -394,9 +399,8 @@ private:
     Executor& executor_;
     OctantIndex octant_ = 0;
     OctantIndex runs_owner_ = ~OctantIndex(0);
-    Runs runs_, next_runs_;     // entries of the scanned octant, and of the one behind it
-    std::vector<Entry> crowd_;  // result of crowd_of_own(), or empty
-    SweepOrder order_;
+    Runs runs_, next_runs_;  // entries of the scanned octant, and of the one behind it
+    SweepChooser chooser_;
     OctantCells cells_;
     CertainGaps gaps_;
     unsigned turns_ = 0;  // number of times that the own entries, and gaps_, were turned
@@ -404,8 +408,8 @@ private:
     std::vector<CellEntry> handed_cells_;
     CellSet own_set_;
     CellSet handed_set_;
+    std::array<std::vector<EntryId>, 4> crowd_of_part_;    // by Part::number()
     std::array<std::vector<CellEntry>, 4> cells_of_part_;  // of a join, by Part::number()
-    std::array<std::vector<std::uint32_t>, 4> positions_;  // of the entries of a part, if it is crowded
 };
 
 /// A run of octants in pre-order that is scanned as one share. A large octant is a share alone.

@@ -69,7 +69,7 @@ TEST_P(EngineMemory, EntriesAndBytesAnObjectAreBounded) {
     const double bytes = double(test::peak_rss() - before) / double(objects);
     RecordProperty("bytes_per_object", std::to_string(bytes));
     if (!test::sanitized) {
-        EXPECT_LE(bytes, 56);
+        EXPECT_LE(bytes, 44);
     }
     PairList list;
     Options options;

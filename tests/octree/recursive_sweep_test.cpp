@@ -8,26 +8,11 @@
 #include <random>
 #include <vector>
 
-#include "support/scale.hpp"
+#include "octree/given_rule.hpp"
+#include "octree/sweep/sweep_order.hpp"
 
 namespace octopair::test {
 namespace {
-
-/// Overlapping entries are pairs. Entries of two sets are pairs only across the sets.
-class PlainRule final : public PairRule {
-public:
-    explicit PlainRule(std::uint32_t second_begin) : second_begin_(second_begin) {}
-    bool join() const override { return second_begin_ > 0; }
-    std::uint32_t second_begin() const override { return second_begin_; }
-    bool exact() const override { return true; }
-    RoundingSlack slack() const override { return {}; }
-    bool is_pair(std::uint32_t, std::uint32_t) const override { return true; }
-    std::size_t refused(const DoubtfulPairs&, std::uint32_t*) const override { return 0; }
-    void load_bounds(std::span<Entry>) const override { FAIL() << "expected entries that are complete"; }
-
-private:
-    std::uint32_t second_begin_;
-};
 
 class CollectingWriter final : public ShareWriter {
 public:
@@ -86,17 +71,18 @@ protected:
 
     void expect_all_pairs(std::size_t count, Method method) const {
         const std::vector<Entry> entries = make_entries(GetParam(), count, unsigned(count));
-        expect_pairs({{entries}, {entries}, true}, 0, brute_force(entries, count, 0), method);
+        const std::vector<EntryId> ids = ids_of(entries);
+        const GivenRule one_set(entries, 0);
+        const EntryList all(one_set, ids);
+        expect_pairs(one_set, {all, all, true}, brute_force(entries, count, 0), method);
         const std::size_t half = count / 3;
-        const std::span<const Entry> all = entries;
-        expect_pairs({{all.first(half)}, {all.subspan(half)}, false}, std::uint32_t(half),
-                     brute_force(entries, half, half), method);
+        const GivenRule two_sets(entries, std::uint32_t(half));
+        const EntryList rows(two_sets, std::span(ids).first(half)), columns(two_sets, std::span(ids).subspan(half));
+        expect_pairs(two_sets, {rows, columns, false}, brute_force(entries, half, half), method);
     }
 
 private:
-    static void expect_pairs(const SweepInput& input, std::uint32_t second_begin, const Pairs& expected,
-                             Method method) {
-        const PlainRule rule(second_begin);
+    static void expect_pairs(const PairRule& rule, const SweepInput& input, const Pairs& expected, Method method) {
         const ScanContext context{rule, {}};
         CollectingWriter writer;
         SerialExecutor executor(writer);
@@ -131,20 +117,24 @@ TEST_P(SweepsOf, RecursiveSweepFindsAllPairs) {
 INSTANTIATE_TEST_SUITE_P(Shapes, SweepsOf,
                          ::testing::Values(Shape::cubes, Shape::rods, Shape::coincident, Shape::lattice));
 
-TEST(ChooseSweep, TakesTheAxisThatSeparatesBest) {
+TEST(SweepChooser, TakesTheAxisThatSeparatesBest) {
     std::vector<Entry> plates(3'000);  // thin only on y
     for (std::size_t i = 0; i < plates.size(); ++i) {
         plates[i] = {{0, float(i), 0}, {1, float(i) + 0.5f, 1}, std::uint32_t(i), 0};
     }
-    SweepOrder order({});
-    const SweepChoice choice = choose_sweep({{plates}, {plates}, true}, order, {});
+    const GivenRule rule(plates, 0);
+    const std::vector<EntryId> ids = ids_of(plates);
+    const EntryList all(rule, ids);
+    const SweepChoice choice = SweepChooser({}).choose({all, all, true});
     EXPECT_EQ(choice.axis, 1u);
     EXPECT_TRUE(choice.good);
 }
 
 TEST(PartByShape, PartsBoxesByTheAxesOnWhichTheyAreLong) {
     const std::vector<Entry> rods = make_entries(Shape::rods, 90, 1);
-    const auto parts = part_by_shape({rods});
+    const GivenRule rule(rods, 0);
+    const std::vector<EntryId> ids = ids_of(rods);
+    const auto parts = part_by_shape({rule, ids}, {});
     std::size_t all = 0;
     for (unsigned axes = 0; axes < 8; ++axes) {
         all += parts[axes].size();

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "octree/given_rule.hpp"
 #include "octree/sweep/sweep_order.hpp"
 #include "support/compare.hpp"
 
@@ -33,11 +34,11 @@ std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::
 }
 
 SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
-    std::vector<SortKey> order(entries.size());
-    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = sort_key(entries[i].min[axis], i);
-    std::sort(order.begin(), order.end());
+    std::vector<Entry> sorted = entries;
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [axis](const Entry& a, const Entry& b) { return a.min[axis] < b.min[axis]; });
     SweepSet set;
-    set.assign(entries, order, axis);
+    set.assign(sorted, axis);
     return set;
 }
 
@@ -179,7 +180,9 @@ TEST(SweepOrder, SortsByLowEndThenPosition) {
             SweepOrder order({});
             NoPairs none;
             SerialExecutor serial(none);
-            const std::span<const SortKey> keys = order.sort({entries}, 2, serial);
+            const GivenRule rule(entries, 0);
+            const std::vector<EntryId> ids = ids_of(entries);
+            const std::span<const SortKey> keys = order.sort({rule, ids}, 2, serial);
             const SweepSet expected = sorted_set(entries, 2);
             ASSERT_EQ(keys.size(), count);
             for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(position_of(keys[i]), expected.object()[i]);

@@ -8,6 +8,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/sweep/sweep_order.hpp"
 
 namespace octopair {
 
@@ -25,23 +26,66 @@ std::size_t tile_count(std::size_t size) {
     return size == 0 ? 0 : size <= 2 * tile ? 1 : (size + tile - 1) / tile;
 }
 
-/// Sweep of a share: a tile of rows against the tiles of columns that it reaches.
+/// Entries in the order of a sweep, divided into tiles.
+struct SortedTiles {
+    EntryList entries;
+    std::span<const SortKey> keys;
+
+    std::size_t size() const { return tile_count(keys.size()); }
+    float begin(std::size_t t) const { return low_of(tile_of(keys, t).front()); }
+    float last(std::size_t t) const { return low_of(tile_of(keys, t).back()); }
+};
+
+/// The boxes of one tile at a time.
+class LoadedTile {
+public:
+    LoadedTile(const SortedTiles& tiles, unsigned axis) : tiles_(tiles), axis_(axis) {}
+
+    /// Loads a tile, unless it is the tile of the last call.
+    const SweepSet& load(std::size_t t) {
+        if (t == loaded_) return set_;
+        tiles_.entries.load(tile_of(tiles_.keys, t), entries_);
+        set_.assign(entries_.span(), axis_);
+        loaded_ = t;
+        return set_;
+    }
+
+private:
+    const SortedTiles& tiles_;
+    unsigned axis_;
+    std::size_t loaded_ = ~std::size_t(0);
+    Buffer<Entry> entries_;
+    SweepSet set_;
+};
+
+/// Sweep of tiles of rows, each against the tiles of columns that it reaches.
 struct TileSweep {
     const ScanContext& context;
-    std::span<const Entry> row_entries;
-    std::span<const SortKey> rows;
-    std::span<const Entry> column_entries;
-    std::span<const SortKey> columns;
+    SortedTiles rows;
+    SortedTiles columns;
     unsigned axis;
     SweepKind kind;
     Orientation orientation;
 
-    void run(std::size_t t, ShareWriter& writer) const {
-        PairMaker maker(context, writer);
-        SweepSet row_set;
-        SweepSet column_set;
-        const auto row_tile = tile_of(rows, t);
-        row_set.assign(row_entries, row_tile, axis);
+    /// Sweeps in shares of a few tiles of rows: these mostly reach the same tiles of columns.
+    void run(Executor& executor) const {
+        const std::size_t tiles = rows.size();
+        const std::size_t share = std::clamp<std::size_t>(tiles / (shares_per_thread * executor.width()), 1, max_share);
+        executor.for_each_writing((tiles + share - 1) / share, [&](std::size_t i, ShareWriter& writer) {
+            PairMaker maker(context, writer);
+            LoadedTile row_tile(rows, axis), column_tile(columns, axis);
+            for (std::size_t t = i * share; t < std::min((i + 1) * share, tiles); ++t) {
+                sweep(t, row_tile.load(t), column_tile, maker);
+            }
+            maker.flush();
+        });
+    }
+
+private:
+    static constexpr std::size_t shares_per_thread = 4, max_share = 8;
+
+    /// Sweeps tile `t` of the rows.
+    void sweep(std::size_t t, const SweepSet& row_set, LoadedTile& column_tile, PairMaker& maker) const {
         float reach = -FLT_MAX;
         for (std::size_t i = 0; i < row_set.size(); ++i) reach = std::max(reach, row_set.high(0)[i]);
         std::size_t first = 0;
@@ -49,35 +93,32 @@ struct TileSweep {
             maker.sweep({row_set, row_set, SweepKind::self}, orientation);
             first = t + 1;
         }
-        const float begin = low_of(row_tile.front());
-        for (std::size_t c = first; c < tile_count(columns.size()); ++c) {
-            const auto column_tile = tile_of(columns, c);
-            if (low_of(column_tile.back()) < begin) {
+        for (std::size_t c = first; c < columns.size(); ++c) {
+            if (columns.last(c) < rows.begin(t)) {
                 count_path(Path::tile_skipped);
                 continue;
             }
-            const float tile_begin = low_of(column_tile.front());
-            if (tile_begin > reach || (planted(Fault::tile_end_open) && tile_begin == reach)) break;
-            column_set.assign(column_entries, column_tile, axis);
+            const float begin = columns.begin(c);
+            if (begin > reach || (planted(Fault::tile_end_open) && begin == reach)) break;
+            const SweepSet& column_set = column_tile.load(c);
             maker.sweep({row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind}, orientation);
         }
-        maker.flush();
     }
 };
 
 /// A SweepInput between rows and columns that owns its positions.
 struct OwnedJoin {
-    std::span<const Entry> row_entries;
-    std::span<const Entry> column_entries;
+    EntryList row_entries;
+    EntryList column_entries;
     std::shared_ptr<const std::vector<std::uint32_t>> rows;
     std::shared_ptr<const std::vector<std::uint32_t>> columns;
     Orientation orientation = {};
     unsigned settled = 0;               // number of settled axes: their orientation is given, they need no more splits
     std::array<unsigned, 3> axes = {};  // in the order in which they are settled
 
-    SweepInput join() const {
-        return {{row_entries, *rows, false}, {column_entries, *columns, false}, false, orientation};
-    }
+    EntryList row_list() const { return row_entries.at(*rows); }
+    EntryList column_list() const { return column_entries.at(*columns); }
+    SweepInput join() const { return {row_list(), column_list(), false, orientation}; }
     std::size_t size() const { return rows->size() + columns->size(); }
 };
 
@@ -89,12 +130,11 @@ std::shared_ptr<const Positions> shared_positions(Positions positions) {
 
 /// Appends the rows that span `range` on the axis to parts[0], and the other rows that overlap the range to parts[1].
 void part_by_span(const OwnedJoin& join, unsigned axis, std::array<float, 2> range, std::array<Positions, 2>& parts) {
-    for (const std::uint32_t i : *join.rows) {
-        const Entry& row = join.row_entries[i];
-        if (row.max[axis] < range[0] || row.min[axis] > range[1]) continue;
+    join.row_list().for_each([&](std::uint32_t position, const Entry& row) {
+        if (row.max[axis] < range[0] || row.min[axis] > range[1]) return;
         const bool spans = row.min[axis] <= range[0] && row.max[axis] >= range[1];
-        parts[spans ? 0 : 1].push_back(i);
-    }
+        parts[spans ? 0 : 1].push_back(position);
+    });
 }
 
 /// Returns a value near the median of the columns' low ends: some columns begin before the value, others do not.
@@ -102,7 +142,7 @@ void part_by_span(const OwnedJoin& join, unsigned axis, std::array<float, 2> ran
 float split_value(const OwnedJoin& join, unsigned axis, std::array<float, 2> range) {
     std::vector<float> lows;
     lows.reserve(join.columns->size());
-    for (const std::uint32_t i : *join.columns) lows.push_back(join.column_entries[i].min[axis]);
+    join.column_list().for_each([&](std::uint32_t, const Entry& column) { lows.push_back(column.min[axis]); });
     const auto median = lows.begin() + std::ptrdiff_t(lows.size() / 2);
     std::nth_element(lows.begin(), median, lows.end());
     if (*median > range[0]) return *median;
@@ -116,10 +156,10 @@ std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
     std::vector<OwnedJoin> made;
     const unsigned axis = join.axes[join.settled];
     std::array<float, 2> range = {FLT_MAX, -FLT_MAX};
-    for (const std::uint32_t i : *join.columns) {
-        range[0] = std::min(range[0], join.column_entries[i].min[axis]);
-        range[1] = std::max(range[1], join.column_entries[i].min[axis]);
-    }
+    join.column_list().for_each([&](std::uint32_t, const Entry& column) {
+        range[0] = std::min(range[0], column.min[axis]);
+        range[1] = std::max(range[1], column.min[axis]);
+    });
     std::array<Positions, 2> parts;
     part_by_span(join, axis, range, parts);
 
@@ -145,13 +185,13 @@ std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
         count_path(Path::recursion_halved);
         const float split = split_value(join, axis, range);
         Positions low_rows, high_rows, low_columns, high_columns;
-        for (const std::uint32_t i : parts[1]) {
-            if (join.row_entries[i].min[axis] < split) low_rows.push_back(i);
-            if (join.row_entries[i].max[axis] >= split) high_rows.push_back(i);
-        }
-        for (const std::uint32_t i : *join.columns) {
-            (join.column_entries[i].min[axis] < split ? low_columns : high_columns).push_back(i);
-        }
+        join.row_entries.at(parts[1]).for_each([&](std::uint32_t position, const Entry& row) {
+            if (row.min[axis] < split) low_rows.push_back(position);
+            if (row.max[axis] >= split) high_rows.push_back(position);
+        });
+        join.column_list().for_each([&](std::uint32_t position, const Entry& column) {
+            (column.min[axis] < split ? low_columns : high_columns).push_back(position);
+        });
         OwnedJoin half = join;
         half.rows = shared_positions(std::move(low_rows));
         half.columns = shared_positions(std::move(low_columns));
@@ -164,38 +204,17 @@ std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
     return made;
 }
 
-/// choose_sweep() restricted to `axes`.
-SweepChoice choose_sweep_of(const SweepInput& join, SweepOrder& order, const std::stop_token& stop,
-                            std::span<const unsigned> axes) {
-    const std::size_t size = join.rows.size() + (join.self ? 0 : join.columns.size());
-    SweepChoice choice;
-    std::uint64_t least = ~std::uint64_t(0);
-    for (const unsigned axis : axes) {
-        std::uint64_t tests = order.tests(join.rows, join.columns, axis);
-        if (!join.self) tests += order.tests(join.columns, join.rows, axis);
-        if (tests < least) {
-            least = tests;
-            choice.axis = axis;
-        }
-    }
-    const Tuning::Sweep& limits = tuning().sweep;
-    choice.good = size <= limits.small_set || least <= limits.cheap_tests * size ||
-                  least / limits.tests_per_pair <= estimated_hits(join.rows, join.columns, stop);
-    return choice;
-}
-
 class Recursion {
 public:
     Recursion(const ScanContext& context, Executor& executor)
-        : context_(context), executor_(executor), order_(context.stop) {}
+        : context_(context), executor_(executor), chooser_(context.stop) {}
 
     void run(const OwnedJoin& join) {
         throw_if_stopped(context_.stop);
         // On settled axes all rows and columns overlap, so a sweep along such an axis thins nothing.
         const std::span<const unsigned> open = std::span(join.axes).subspan(join.settled);
         if (open.empty()) count_path(Path::recursion_settled);
-        const SweepChoice choice =
-            open.empty() ? SweepChoice{0, true} : choose_sweep_of(join.join(), order_, context_.stop, open);
+        const SweepChoice choice = open.empty() ? SweepChoice{0, true} : chooser_.choose(join.join(), open);
         if (choice.good) {
             count_path(Path::recursion_swept);
             return tiled_sweep(context_, join.join(), choice.axis, executor_);
@@ -223,87 +242,65 @@ public:
 private:
     const ScanContext& context_;
     Executor& executor_;
-    SweepOrder order_;
+    SweepChooser chooser_;
 };
 
 }  // namespace
 
-std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list) {
-    std::array<double, 3> reach{};
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        float first = FLT_MAX;
-        float last = -FLT_MAX;
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            first = std::min(first, list[i].min[axis]);
-            last = std::max(last, list[i].max[axis]);
+std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list, const std::stop_token& stop) {
+    std::array<float, 3> first = {FLT_MAX, FLT_MAX, FLT_MAX}, last = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    throw_if_stopped(stop);
+    list.for_each([&](std::uint32_t, const Entry& box) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            first[axis] = std::min(first[axis], box.min[axis]);
+            last[axis] = std::max(last[axis], box.max[axis]);
         }
-        reach[axis] = double(last) - double(first);
-    }
-    const auto shape_of = [&](const Entry& box) {
+    });
+    std::vector<std::uint8_t> shape_of(list.size());
+    std::array<std::size_t, 8> counts{};
+    std::uint8_t* next = shape_of.data();
+    throw_if_stopped(stop);
+    list.for_each([&](std::uint32_t, const Entry& box) {
         unsigned shape = 0;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            shape |= unsigned((double(box.max[axis]) - double(box.min[axis])) * 4 > reach[axis]) << axis;
+            const double reach = double(last[axis]) - double(first[axis]);
+            shape |= unsigned((double(box.max[axis]) - double(box.min[axis])) * 4 > reach) << axis;
         }
-        return shape;
-    };
-    std::array<std::size_t, 8> counts{};
-    for (std::size_t i = 0; i < list.size(); ++i) ++counts[shape_of(list[i])];
+        *next++ = std::uint8_t(shape);
+        ++counts[shape];
+    });
     std::array<std::vector<std::uint32_t>, 8> shapes;
+    throw_if_stopped(stop);
     for (unsigned shape = 0; shape < 8; ++shape) shapes[shape].reserve(counts[shape]);
-    for (std::size_t i = 0; i < list.size(); ++i) shapes[shape_of(list[i])].push_back(list.position(i));
+    for (std::size_t i = 0; i < list.size(); ++i) shapes[shape_of[i]].push_back(list.position(i));
     return shapes;
-}
-
-SweepChoice choose_sweep(const SweepInput& join, SweepOrder& order, const std::stop_token& stop) {
-    constexpr std::array<unsigned, 3> all = {0, 1, 2};
-    return choose_sweep_of(join, order, stop, all);
 }
 
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor) {
     SweepOrder row_order(context.stop);
-    const auto rows = row_order.sort(join.rows, axis, executor);
-    count_path(tile_count(rows.size()) > 1 ? Path::tiles : Path::one_tile);
+    const SortedTiles rows{join.rows, row_order.sort(join.rows, axis, executor)};
+    count_path(rows.size() > 1 ? Path::tiles : Path::one_tile);
     if (join.self) {
-        const TileSweep sweep{context,         join.rows.entries, rows, join.rows.entries, rows, axis,
-                              SweepKind::self, join.orientation};
-        executor.for_each_writing(tile_count(rows.size()),
-                                  [&](std::size_t t, ShareWriter& writer) { sweep.run(t, writer); });
-        return;
+        return TileSweep{context, rows, rows, axis, SweepKind::self, join.orientation}.run(executor);
     }
     SweepOrder column_order(context.stop);
-    const auto columns = column_order.sort(join.columns, axis, executor);
-    const TileSweep forth{context,          join.rows.entries, rows, join.columns.entries, columns, axis,
-                          SweepKind::cross, join.orientation};
-    const TileSweep back{context,
-                         join.columns.entries,
-                         columns,
-                         join.rows.entries,
-                         rows,
-                         axis,
-                         SweepKind::cross_strict,
-                         reversed(join.orientation)};
-    executor.for_each_writing(tile_count(rows.size()),
-                              [&](std::size_t t, ShareWriter& writer) { forth.run(t, writer); });
-    executor.for_each_writing(tile_count(columns.size()),
-                              [&](std::size_t t, ShareWriter& writer) { back.run(t, writer); });
+    const SortedTiles columns{join.columns, column_order.sort(join.columns, axis, executor)};
+    TileSweep{context, rows, columns, axis, SweepKind::cross, join.orientation}.run(executor);
+    TileSweep{context, columns, rows, axis, SweepKind::cross_strict, reversed(join.orientation)}.run(executor);
 }
 
 void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor) {
-    SweepOrder order(context.stop);
-    std::array<std::pair<std::uint64_t, unsigned>, 3> costs;
-    for (unsigned axis = 0; axis < 3; ++axis) costs[axis] = {order.tests(join.rows, join.columns, axis), axis};
-    std::sort(costs.begin(), costs.end());
     const auto positions = [](const EntryList& list) {
         Positions all(list.size());
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = list.position(i);
         return shared_positions(std::move(all));
     };
     OwnedJoin whole;
-    whole.row_entries = join.rows.entries;
-    whole.column_entries = join.columns.entries;
+    whole.row_entries = join.rows;
+    whole.column_entries = join.columns;
     whole.rows = positions(join.rows);
     whole.columns = join.self ? whole.rows : positions(join.columns);
-    whole.axes = {costs[0].second, costs[1].second, costs[2].second};
+    whole.axes = SweepChooser(context.stop).by_cost(join);
     whole.orientation[whole.axes[0]] = 1;
     Recursion recursion(context, executor);
     recursion.run(whole);

@@ -20,33 +20,17 @@
 #include <array>
 #include <vector>
 
-#include "octree/sweep/pair_maker.hpp"
-#include "octree/sweep/sweep_order.hpp"
+#include "octree/executor.hpp"
+#include "octree/sweep/sweep_choice.hpp"
 
 namespace octopair {
-
-/// A search for the overlapping pairs within a set (`self`), or between rows and columns.
-struct SweepInput {
-    EntryList rows;
-    EntryList columns;  ///< the list of rows if `self`
-    bool self = false;
-    Orientation orientation = {};
-};
-
-/// The cheapest axis. `good`: a sweep along this axis has few tests for each box, or few for each pair.
-struct SweepChoice {
-    unsigned axis = 0;
-    bool good = false;
-};
-
-/// Throws: Error{cancelled}.
-SweepChoice choose_sweep(const SweepInput& join, SweepOrder& order, const std::stop_token& stop);
 
 /// Throws: Error{cancelled}.
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor);
 
 /// Returns the positions of a list, parted by the axes (as bits) on which a box is longer than a quarter of the list's extent.
-std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list);
+/// Throws: Error{cancelled}.
+std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list, const std::stop_token& stop);
 
 /// Requires: `join` has no orientation.
 /// Throws: Error{cancelled}.

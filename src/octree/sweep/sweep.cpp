@@ -24,8 +24,8 @@ bool hit(const Sweep& sweep, std::size_t row, std::size_t column) {
 
 }  // namespace
 
-void SweepSet::assign(std::span<const Entry> entries, std::span<const SortKey> order, unsigned axis) {
-    size_ = order.size();
+void SweepSet::assign(std::span<const Entry> entries, unsigned axis) {
+    size_ = entries.size();
     stride_ = (size_ + padding + 15) / 16 * 16;
     axes_ = {axis, (axis + 1) % 3, (axis + 2) % 3};
     numbers_.resize_discard(6 * stride_);
@@ -39,7 +39,7 @@ void SweepSet::assign(std::span<const Entry> entries, std::span<const SortKey> o
     }
     arrays[6] = words + stride_;
     arrays[7] = words;
-    split_entries(entries, order, arrays);
+    split_entries(entries, arrays);
     // NaN compares false with everything, so padding ends each loop over columns and hits nothing. High ends on the sweep's
     // axis are padded with -infinity, because a block of rows takes their maximum.
     for (std::size_t k = 0; k < 6; ++k) {

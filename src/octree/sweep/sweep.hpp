@@ -25,7 +25,6 @@
 #include "base/memory.hpp"
 #include "boxes/entry.hpp"
 #include "octopair/objects.hpp"
-#include "octree/sweep/sort_key.hpp"
 
 namespace octopair {
 
@@ -33,8 +32,8 @@ class SweepSet {
 public:
     static constexpr std::size_t padding = 32;  ///< number of columns that may be read beyond the end
 
-    /// Stores the entries at the keys' positions, in the order of the keys. `axis`: the axis of the keys.
-    void assign(std::span<const Entry> entries, std::span<const SortKey> order, unsigned axis);
+    /// Stores the entries. Requires: they ascend by their low ends on the axis.
+    void assign(std::span<const Entry> entries, unsigned axis);
 
     std::size_t size() const { return size_; }
     /// Returns the bounds on the sweep's axis (0) or on one of the two other axes (1, 2).
@@ -58,9 +57,9 @@ private:
 /// Destination array of each 32-bit number of an Entry.
 using EntryArrays = std::array<std::uint32_t*, sizeof(Entry) / sizeof(std::uint32_t)>;
 
-/// Writes the numbers of the entries at the keys' positions to separate arrays.
+/// Writes the numbers of the entries to separate arrays.
 /// Requires: each array is aligned to 16 bytes and has room for 3 more numbers.
-void split_entries(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays);
+void split_entries(std::span<const Entry> entries, const EntryArrays& arrays);
 
 /// Number of rows that are tested together.
 inline constexpr std::size_t block_size = 8;

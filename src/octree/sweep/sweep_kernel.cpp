@@ -267,10 +267,10 @@ void keep_deep_simd(const Sweep& sweep, const Depths& depths, std::span<HitMask>
 
 #if HWY_TARGET == HWY_SCALAR
 
-void split_entries_simd(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays) {
-    for (std::size_t i = 0; i < order.size(); ++i) {
+void split_entries_simd(std::span<const Entry> entries, const EntryArrays& arrays) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
         std::array<std::uint32_t, sizeof(Entry) / sizeof(std::uint32_t)> numbers;
-        std::memcpy(numbers.data(), &entries[position_of(order[i])], sizeof(Entry));
+        std::memcpy(numbers.data(), &entries[i], sizeof(Entry));
         for (std::size_t k = 0; k < numbers.size(); ++k) arrays[k][i] = numbers[k];
     }
 }
@@ -288,12 +288,11 @@ HWY_INLINE void store_turned(D d, const V (&rows)[4], std::uint32_t* const* arra
     hn::Store(hn::InterleaveUpper(d, upper02, upper13), d, arrays[3] + at);
 }
 
-void split_entries_simd(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays) {
+void split_entries_simd(std::span<const Entry> entries, const EntryArrays& arrays) {
     const hn::FixedTag<std::uint32_t, 4> d;
-    for (std::size_t i = 0; i < order.size(); i += 4) {
+    for (std::size_t i = 0; i < entries.size(); i += 4) {
         const auto at = [&](std::size_t k) {
-            return reinterpret_cast<const std::uint32_t*>(
-                &entries[position_of(order[std::min(i + k, order.size() - 1)])]);
+            return reinterpret_cast<const std::uint32_t*>(&entries[std::min(i + k, entries.size() - 1)]);
         };
         const std::uint32_t* const from[4] = {at(0), at(1), at(2), at(3)};
         store_turned(d, {hn::Load(d, from[0]), hn::Load(d, from[1]), hn::Load(d, from[2]), hn::Load(d, from[3])},
@@ -344,8 +343,8 @@ void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits
     HWY_DYNAMIC_DISPATCH(keep_deep_simd)(sweep, depths, hits);
 }
 
-void split_entries(std::span<const Entry> entries, std::span<const SortKey> order, const EntryArrays& arrays) {
-    HWY_DYNAMIC_DISPATCH(split_entries_simd)(entries, order, arrays);
+void split_entries(std::span<const Entry> entries, const EntryArrays& arrays) {
+    HWY_DYNAMIC_DISPATCH(split_entries_simd)(entries, arrays);
 }
 
 std::string sweep_instruction_set() {

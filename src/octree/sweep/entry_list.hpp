@@ -1,0 +1,67 @@
+// EntryList: a crowd of entries, without their bounds.
+//
+// A crowd can be the whole scene. So it holds 8 bytes an entry, and the bounds are loaded from the caller's boxes, some at a
+// time, whenever a step needs them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/memory.hpp"
+#include "boxes/pair_rule.hpp"
+#include "octree/sample.hpp"
+#include "octree/sweep/sort_key.hpp"
+
+namespace octopair {
+
+/// An entry without its bounds.
+struct EntryId {
+    std::uint32_t object;
+    std::uint32_t mask;
+};
+
+/// Entries of a span: all, or those at some positions. Borrows the spans and the pair rule.
+class EntryList {
+public:
+    EntryList() = default;
+    EntryList(const PairRule& rule, std::span<const EntryId> ids) : rule_(&rule), ids_(ids) {}
+
+    /// Returns the list of the entries at these positions of the span.
+    EntryList at(std::span<const std::uint32_t> positions) const;
+
+    std::size_t size() const { return all_ ? ids_.size() : positions_.size(); }
+    /// Returns the position in the span of entry `i`.
+    std::uint32_t position(std::size_t i) const { return all_ ? std::uint32_t(i) : positions_[i]; }
+
+    /// Loads the entries from `begin` on.
+    void load(std::size_t begin, std::span<Entry> out) const;
+    /// Loads the sampled entries.
+    void load(const Sample& sample, std::vector<Entry>& out) const;
+    /// Loads the entries at the keys' positions in the span, in the order of the keys.
+    void load(std::span<const SortKey> keys, Buffer<Entry>& out) const;
+
+    /// Calls body(position in the span, entry) for each entry, in order.
+    template <typename Body>
+    void for_each(Body&& body) const {
+        std::array<Entry, 128> some;
+        for (std::size_t begin = 0; begin < size(); begin += some.size()) {
+            const std::size_t count = std::min(some.size(), size() - begin);
+            load(begin, std::span(some).first(count));
+            for (std::size_t i = 0; i < count; ++i) body(position(begin + i), some[i]);
+        }
+    }
+
+private:
+    Entry without_bounds(std::size_t position) const { return {{}, {}, ids_[position].object, ids_[position].mask}; }
+
+    const PairRule* rule_ = nullptr;
+    std::span<const EntryId> ids_;
+    std::span<const std::uint32_t> positions_ = {};
+    bool all_ = true;
+};
+
+}  // namespace octopair
