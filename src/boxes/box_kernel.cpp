@@ -203,14 +203,16 @@ constexpr std::size_t prefetched_pairs = 12;  // distance at which boxes are pre
 template <typename Real, typename Overlaps>
 std::size_t refused_of(const DoubtfulPairs& doubtful, const BoxesOfPairs<Real>& boxes, const Overlaps& overlaps,
                        std::uint32_t* out) {
-    const auto prefetch = [&](std::size_t k) HWY_ATTR {
-        hwy::Prefetch(&boxes.a(doubtful[k]));
-        hwy::Prefetch(&boxes.b(doubtful[k]));
-    };
-    for (std::size_t k = 0; k < doubtful.size() && k < prefetched_pairs; ++k) prefetch(k);
     std::size_t count = 0;
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
-        if (k + prefetched_pairs < doubtful.size()) prefetch(k + prefetched_pairs);
+        if (k + prefetched_pairs < doubtful.size()) {
+            // Not in a function of its own: GCC drops calls of a function that only prefetches.
+            const Pair& next = doubtful[k + prefetched_pairs];
+            hwy::Prefetch(&boxes.a(next));
+            hwy::Prefetch(&boxes.a(next).max[2]);  // a box may lie on two cache lines
+            hwy::Prefetch(&boxes.b(next));
+            hwy::Prefetch(&boxes.b(next).max[2]);
+        }
         out[count] = doubtful.positions[k];
         count += overlaps(boxes.a(doubtful[k]), boxes.b(doubtful[k])) ? 0 : 1;
     }
