@@ -34,9 +34,11 @@ std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::
 }
 
 SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
-    std::vector<Entry> sorted = entries;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [axis](const Entry& a, const Entry& b) { return a.min[axis] < b.min[axis]; });
+    std::vector<SortKey> order(entries.size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = sort_key(entries[i].min[axis], i);
+    std::sort(order.begin(), order.end());
+    std::vector<Entry> sorted;
+    for (const SortKey key : order) sorted.push_back(entries[position_of(key)]);
     SweepSet set;
     set.assign(sorted, axis);
     return set;
