@@ -28,7 +28,8 @@ namespace octopair {
     /* octree/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
     path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \
-    path(join_swept) path(join_crowded) path(swept_on_other_axis) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
+    path(join_swept) path(join_crowded) path(swept_on_other_axis) path(crowd_whole) path(crowd_swept) \
+    path(crowd_parted) path(part_swept) path(part_recursive) \
     path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) path(nested_join) \
     path(not_nested_largest) path(not_nested_growth) path(not_nested_depth) \
     /* octree/sweep/recursive_sweep.cpp */ \

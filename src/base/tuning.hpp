@@ -61,6 +61,7 @@ struct Tuning {
         std::size_t shares_per_thread = 64;       ///< number of shares per thread
         std::size_t max_swept_list = 65535;       ///< maximum entries of a set that is swept on cells; not more
         std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in a sweep on cells
+        double max_whole_crowd = 0.25;            ///< maximum part of an octree's entries that are held whole
         double max_part_in_octant = 0.75;         ///< maximum part of the entries in one octant of a nested octree
         double max_growth = 4;                    ///< maximum growth of entries by nesting, multiplied along its path
         unsigned max_nesting = 8;                 ///< maximum depth of nesting: octrees within octants of octrees

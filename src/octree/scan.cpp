@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <mutex>
 #include <vector>
 
@@ -156,6 +157,7 @@ public:
         cells_ = OctantCells(octree_.space(), octree_.octants()[octant]);
         gaps_ = certain_gaps(cells_, context_.rule);
         turns_ = 0;
+        for (Crowd& crowd : crowd_of_part_) crowd.clear();
         if (runs_owner_ != octant) find_runs(octant, runs_);
         next_runs_.clear();
         if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, next_runs_);
@@ -198,22 +200,43 @@ private:
     };
     static constexpr std::uint32_t any_set = 0;
 
-    /// Returns a part whose sweep on cells would cost too much. The list is valid until the next call for this part.
+    /// The entries of a part whose sweep on cells would cost too much.
+    struct Crowd {
+        std::vector<Entry> whole;
+        std::vector<EntryId> ids;
+
+        void clear() {
+            whole.clear();
+            ids.clear();
+        }
+    };
+
+    /// Returns a part of the octant's entries. The list is valid until the next octant is scanned.
     EntryList crowd_of(Part part, std::span<const Entry> handed) {
-        std::vector<EntryId>& crowd = crowd_of_part_[part.number()];
-        crowd.clear();
-        crowd.reserve(part.handed ? handed.size() : std::size_t(octree_.entry_count(octant_)));
-        const auto add = [&](const EntryId& id) {
-            if (part.has(id.mask)) crowd.push_back(id);
-        };
+        if (part.handed && part.set == any_set) return EntryList(handed);
+        Crowd& crowd = crowd_of_part_[part.number()];
+        if (crowd.whole.empty() && crowd.ids.empty()) collect(part, handed, crowd);
+        return crowd.ids.empty() ? EntryList(crowd.whole) : EntryList(context_.rule, crowd.ids);
+    }
+
+    void collect(Part part, std::span<const Entry> handed, Crowd& crowd) {
         if (part.handed) {
-            for (const Entry& entry : handed) add({entry.object, entry.mask});
-        } else {
-            for (const auto run : runs_) {
-                for (const CellEntry& entry : run) add({entry.object, cells_.mask_of(entry)});
+            std::ranges::copy_if(handed, std::back_inserter(crowd.whole),
+                                 [part](const Entry& entry) { return part.has(entry.mask); });
+            return;
+        }
+        const auto own = octree_.entry_count(octant_);
+        const bool whole = double(own) <= tuning().scan.max_whole_crowd * double(octree_.entry_count());
+        whole ? crowd.whole.reserve(std::size_t(own)) : crowd.ids.reserve(std::size_t(own));
+        for (const auto run : runs_) {
+            for (const CellEntry& entry : run) {
+                const std::uint32_t mask = cells_.mask_of(entry);
+                if (!part.has(mask)) continue;
+                whole ? crowd.whole.push_back({{}, {}, entry.object, mask}) : crowd.ids.push_back({entry.object, mask});
             }
         }
-        return {context_.rule, crowd};
+        if (whole) count_path(Path::crowd_whole);
+        context_.rule.load_bounds(crowd.whole);
     }
 
     bool try_own_sweep() {
@@ -408,7 +431,7 @@ private:
     std::vector<CellEntry> handed_cells_;
     CellSet own_set_;
     CellSet handed_set_;
-    std::array<std::vector<EntryId>, 4> crowd_of_part_;    // by Part::number()
+    std::array<Crowd, 4> crowd_of_part_;                   // by Part::number(); empty until they are needed
     std::array<std::vector<CellEntry>, 4> cells_of_part_;  // of a join, by Part::number()
 };
 

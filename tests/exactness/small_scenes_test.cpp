@@ -47,6 +47,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      join_swept,
                                      join_crowded,
                                      swept_on_other_axis,
+                                     crowd_whole,
                                      crowd_swept,
                                      crowd_parted,
                                      part_swept,

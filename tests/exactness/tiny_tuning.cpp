@@ -58,6 +58,7 @@ void shrink(Tuning::Scan& scan, Shrinker& to) {
     to.one_of<std::size_t>(scan.shares_per_thread, {1, 3});
     to.one_of<std::size_t>(scan.max_swept_list, {1, 4, 16, 50});
     to.one_of<std::uint64_t>(scan.max_tests_per_box, {0, 1, 3, 8});
+    to.one_of<double>(scan.max_whole_crowd, {0, 0.25, 1});
     to.one_of<double>(scan.max_part_in_octant, {0.6, 0.8, 0.95, 1});
     to.one_of<double>(scan.max_growth, {1.5, 4, 16});
     to.one_of<unsigned>(scan.max_nesting, {1, 2, 3, 5, 8});

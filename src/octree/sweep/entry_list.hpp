@@ -1,7 +1,7 @@
-// EntryList: a crowd of entries, without their bounds.
+// EntryList: a crowd of entries.
 //
-// A crowd can be the whole scene. So it holds 8 bytes an entry, and the bounds are loaded from the caller's boxes, some at a
-// time, whenever a step needs them.
+// A crowd can be the whole scene. Then it holds only 8 bytes an entry, and the bounds are loaded from the caller's boxes, some at
+// a time, whenever a step needs them. A smaller crowd is made of whole entries, whose bounds lie closer together in memory.
 #pragma once
 
 #include <algorithm>
@@ -28,12 +28,13 @@ struct EntryId {
 class EntryList {
 public:
     EntryList() = default;
+    explicit EntryList(std::span<const Entry> whole) : whole_(whole) {}
     EntryList(const PairRule& rule, std::span<const EntryId> ids) : rule_(&rule), ids_(ids) {}
 
     /// Returns the list of the entries at these positions of the span.
     EntryList at(std::span<const std::uint32_t> positions) const;
 
-    std::size_t size() const { return all_ ? ids_.size() : positions_.size(); }
+    std::size_t size() const { return all_ ? whole_.size() + ids_.size() : positions_.size(); }
     /// Returns the position in the span of entry `i`.
     std::uint32_t position(std::size_t i) const { return all_ ? std::uint32_t(i) : positions_[i]; }
 
@@ -47,6 +48,10 @@ public:
     /// Calls body(position in the span, entry) for each entry, in order.
     template <typename Body>
     void for_each(Body&& body) const {
+        if (rule_ == nullptr) {
+            for (std::size_t i = 0; i < size(); ++i) body(position(i), whole_[position(i)]);
+            return;
+        }
         std::array<Entry, 128> some;
         for (std::size_t begin = 0; begin < size(); begin += some.size()) {
             const std::size_t count = std::min(some.size(), size() - begin);
@@ -56,9 +61,12 @@ public:
     }
 
 private:
-    Entry without_bounds(std::size_t position) const { return {{}, {}, ids_[position].object, ids_[position].mask}; }
+    /// Loads the entries at the positions position_at(0), position_at(1), and so on.
+    template <typename PositionAt>
+    void load_at(const PositionAt& position_at, std::span<Entry> out) const;
 
-    const PairRule* rule_ = nullptr;
+    std::span<const Entry> whole_;
+    const PairRule* rule_ = nullptr;  // of ids_; null if the entries are whole
     std::span<const EntryId> ids_;
     std::span<const std::uint32_t> positions_ = {};
     bool all_ = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/stop.hpp"
@@ -39,19 +40,19 @@ struct SortedTiles {
 /// The boxes of one tile at a time.
 class LoadedTile {
 public:
-    LoadedTile(const SortedTiles& tiles, unsigned axis) : tiles_(tiles), axis_(axis) {}
+    LoadedTile(const SortedTiles& tiles, unsigned axis) : tiles_(&tiles), axis_(axis) {}
 
     /// Loads a tile, unless it is the tile of the last call.
     const SweepSet& load(std::size_t t) {
         if (t == loaded_) return set_;
-        tiles_.entries.load(tile_of(tiles_.keys, t), entries_);
+        tiles_->entries.load(tile_of(tiles_->keys, t), entries_);
         set_.assign(entries_.span(), axis_);
         loaded_ = t;
         return set_;
     }
 
 private:
-    const SortedTiles& tiles_;
+    const SortedTiles* tiles_;
     unsigned axis_;
     std::size_t loaded_ = ~std::size_t(0);
     Buffer<Entry> entries_;
@@ -76,6 +77,8 @@ struct TileSweep {
             LoadedTile row_tile(rows, axis), column_tile(columns, axis);
             for (std::size_t t = i * share; t < std::min((i + 1) * share, tiles); ++t) {
                 sweep(t, row_tile.load(t), column_tile, maker);
+                // A set's last tile of columns is often the next tile of rows.
+                if (kind == SweepKind::self) std::swap(row_tile, column_tile);
             }
             maker.flush();
         });
