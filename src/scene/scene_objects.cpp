@@ -209,17 +209,17 @@ void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Tra
     }
 }
 
-void SceneObjects::finish_step() {
+bool SceneObjects::finish_step() {
     if (changes_ == Changes::kept) log_.clear(table_);
     for (const std::uint32_t index : removed_) table_.release(index);
     removed_.clear();
     moved_ = 0;
-    finish_sweeps();
+    return finish_sweeps();
 }
 
 /// Sets each swept object to the box at the end of its sweep. The log counts this as a change of the next step.
-void SceneObjects::finish_sweeps() {
-    if (swept_.empty()) return;
+bool SceneObjects::finish_sweeps() {
+    if (swept_.empty()) return false;
     prepare(swept_.size());
     for (const Swept& swept : swept_) {
         if (!table_.contains(swept.id)) continue;
@@ -229,6 +229,7 @@ void SceneObjects::finish_sweeps() {
         ++moved_;
     }
     swept_.clear();
+    return true;
 }
 
 }  // namespace octopair

@@ -35,8 +35,9 @@ public:
     void move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept);
     void remove(std::span<const ObjectId> ids);
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
-    /// Ends a step: frees the indices of removed objects and sets swept objects to their new boxes.
-    void finish_step();
+    /// Ends a step: frees the indices of removed objects and sets swept objects to their new boxes. Returns true if boxes of
+    /// objects have changed.
+    bool finish_step();
 
     const ObjectTable& table() const { return table_; }
     const ChangeLog& log() const { return log_; }
@@ -62,7 +63,7 @@ private:
     template <typename Real>
     void sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes);
     void drop_swept(std::uint32_t index);
-    void finish_sweeps();
+    bool finish_sweeps();
 
     bool float64_;
     ObjectTable table_;

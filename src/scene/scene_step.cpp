@@ -73,7 +73,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
         throw;
     }
     std::swap(changes_, found_);
-    objects_.finish_step();
+    if (objects_.finish_step()) octree_matches_now_ = linear_matches_now_ = false;
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
     return result_;

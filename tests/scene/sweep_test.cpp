@@ -1,7 +1,11 @@
 // Tests figure 2 of the paper: between two frames, a fast object moves from one side of another object to the far side.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "octopair/octopair.hpp"
+#include "samples/scenes.hpp"
 
 namespace octopair::test {
 namespace {
@@ -52,6 +56,23 @@ TEST_F(FastBullet, IsNotSweptIfItIsMovedAfterAll) {
     EXPECT_TRUE(scene_.step().began.empty());
     scene_.sweep(bullet(), std::span(&far, 1));
     EXPECT_EQ(scene_.step().began.size(), 1u);
+}
+
+// After a step of sweeps, the boxes are no longer those that the step searched.
+TEST(SweptObjects, AreFoundOnceByQueriesAfterTheStep) {
+    auto boxes = samples::make_scene("uniform", 20'000, 1);
+    std::vector<ObjectId> ids(boxes.size());
+    Scene scene{{1}};
+    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    (void)scene.step();
+    std::rotate(boxes.begin(), boxes.begin() + 1, boxes.end());  // each object goes to the place of another
+    scene.sweep(std::span(ids).first(2'000), std::span<const Box3f>(boxes).first(2'000));
+    scene.move(std::span(ids).subspan(2'000), std::span<const Box3f>(boxes).subspan(2'000));
+    (void)scene.step();
+    const Box3d world{{-1, -1, -1}, {2, 2, 2}};
+    std::vector<std::uint32_t> all(boxes.size());
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(scene.overlaps(world), all);
 }
 
 }  // namespace
