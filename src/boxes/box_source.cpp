@@ -1,6 +1,7 @@
 #include "boxes/box_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <charconv>
 #include <cmath>
@@ -104,29 +105,66 @@ std::size_t BoxSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out
     return refused_one_by_one(doubtful, out);
 }
 
+namespace {
+
+constexpr std::size_t boxes_ahead = 16;  // distance at which boxes are prefetched
+
+/// Prefetches a box, which may lie on two cache lines.
+template <typename Real>
+inline void prefetch_box(const Box<Real>& box) {
+    prefetch(&box);
+    prefetch(&box.max[2]);
+}
+
+/// Collects the boxes of some entries, and rounds them together.
+template <typename Real>
+void load_rounded(std::span<const Box<Real>> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                  std::span<Entry> entries, std::uint32_t first_object) {
+    constexpr std::size_t most = 32;
+    std::array<Box<Real>, most> some;
+    std::array<double, most> paddings;
+    std::array<Entry, most> rounded;
+    for (std::size_t begin = 0; begin < entries.size(); begin += most) {
+        const std::size_t count = std::min(most, entries.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t ahead = begin + i + boxes_ahead;
+            if (ahead < entries.size()) prefetch_box(boxes[entries[ahead].object - first_object]);
+            const std::uint32_t index = entries[begin + i].object - first_object;
+            some[i] = boxes[index];
+            paddings[i] = padding.empty() ? 0 : padding[index];
+        }
+        const auto used = std::span<const double>(paddings).first(padding.empty() ? 0 : count);
+        (void)round_boxes(std::span<const Box<Real>>(some).first(count), used, rounding,
+                          std::span(rounded).first(count));
+        for (std::size_t i = 0; i < count; ++i) std::memcpy(&entries[begin + i], &rounded[i], sizeof(Box3f));
+    }
+}
+
+}  // namespace
+
 void BoxSource::load_bounds(std::span<Entry> entries) const {
     if (form_.exact) {
-        const auto box = [&](const Entry& entry) {
+        const auto box = [&](const Entry& entry) -> const Box3f& {
             const bool in_first = entry.object < first_size_;
             const Objects& set = in_first ? *first_ : *second_;
-            return &std::get<std::span<const Box3f>>(set.boxes)[in_first ? entry.object : entry.object - first_size_];
+            return std::get<std::span<const Box3f>>(set.boxes)[in_first ? entry.object : entry.object - first_size_];
         };
-        constexpr std::size_t ahead = 16;
         for (std::size_t i = 0; i < entries.size(); ++i) {
-            if (i + ahead < entries.size()) {
-                const Box3f* const next = box(entries[i + ahead]);
-                prefetch(next);
-                prefetch(&next->max[2]);  // a box may lie on two cache lines
-            }
-            std::memcpy(&entries[i], box(entries[i]), sizeof(Box3f));
+            if (i + boxes_ahead < entries.size()) prefetch_box(box(entries[i + boxes_ahead]));
+            std::memcpy(&entries[i], &box(entries[i]), sizeof(Box3f));
         }
         return;
     }
-    for (Entry& entry : entries) {
-        double padding = 0;
-        const Box3d wide = box(entry.object, padding);
-        const Entry rounded = form_.rounding.entry(wide, padding);
-        std::memcpy(&entry, &rounded, sizeof(Box3f));
+    while (!entries.empty()) {
+        const bool in_first = entries.front().object < first_size_;
+        const auto is_other = [&](const Entry& entry) { return (entry.object < first_size_) != in_first; };
+        const auto run = std::size_t(std::ranges::find_if(entries, is_other) - entries.begin());
+        const Objects& set = in_first ? *first_ : *second_;
+        const auto first_object = std::uint32_t(in_first ? 0 : first_size_);
+        std::visit(
+            [&](auto boxes) { load_rounded(boxes, set.padding, form_.rounding, entries.first(run), first_object); },
+            set.boxes);
+        entries = entries.subspan(run);
     }
 }
 

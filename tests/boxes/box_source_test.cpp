@@ -154,6 +154,45 @@ TEST(BoxSource, EntriesHoldTheirBoxes) {
     }
 }
 
+/// Entries whose bounds are loaded again, in any order, are those that load() gives.
+void expect_same_bounds(const BoxSource& source, std::mt19937& random) {
+    std::vector<Entry> all(source.size());
+    ASSERT_TRUE(source.load(0, all));
+    std::vector<Entry> entries;
+    for (std::size_t i = 0; i < 3 * all.size(); ++i) {
+        const Entry& entry = all[random() % all.size()];
+        entries.push_back({{}, {}, entry.object, entry.mask});
+    }
+    source.load_bounds(entries);
+    for (const Entry& entry : entries) ASSERT_EQ(std::memcmp(&entry, &all[entry.object], sizeof(Entry)), 0);
+}
+
+TEST(BoxSource, BoundsAreLoadedAgain) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-10, 10), length(0, 3);
+    std::vector<Box3d> wide(200);
+    std::vector<Box3f> narrow(wide.size());
+    std::vector<double> padding(wide.size());
+    for (std::size_t i = 0; i < wide.size(); ++i) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            wide[i].min[axis] = place(random);
+            wide[i].max[axis] = wide[i].min[axis] + length(random);
+            narrow[i].min[axis] = float(wide[i].min[axis]);
+            narrow[i].max[axis] = float(wide[i].max[axis]);
+        }
+        padding[i] = length(random);
+    }
+    const std::array<Objects, 4> sets = {
+        Objects{std::span<const Box3f>(narrow)}, Objects{std::span<const Box3f>(narrow), padding},
+        Objects{std::span<const Box3d>(wide)}, Objects{std::span<const Box3d>(wide), padding}};
+    for (const double margin : {0.0, 0.1}) {
+        for (const Objects& first : sets) {
+            expect_same_bounds({first, nullptr, margin}, random);
+            for (const Objects& second : sets) expect_same_bounds({first, &second, margin}, random);
+        }
+    }
+}
+
 TEST(BoxSource, EntriesHoldBoxesAtTheEndOfTheRange) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> place(-DBL_MAX / 4, DBL_MAX / 4);
