@@ -116,10 +116,18 @@ inline void prefetch_box(const Box<Real>& box) {
     prefetch(&box.max[2]);
 }
 
+/// Boxes of the objects from `first_object` on. `padding`: empty for none.
+template <typename Real>
+struct BoxSet {
+    std::span<const Box<Real>> boxes;
+    std::span<const double> padding;
+    std::uint32_t first_object;
+};
+
 /// Collects the boxes of some entries, and rounds them together.
 template <typename Real>
-void load_rounded(std::span<const Box<Real>> boxes, std::span<const double> padding, const OutwardRounding& rounding,
-                  std::span<Entry> entries, std::uint32_t first_object) {
+void load_rounded(const BoxSet<Real>& set, const OutwardRounding& rounding, std::span<Entry> entries) {
+    const auto& [boxes, padding, first_object] = set;
     constexpr std::size_t most = 32;
     std::array<Box<Real>, most> some;
     std::array<double, most> paddings;
@@ -161,9 +169,10 @@ void BoxSource::load_bounds(std::span<Entry> entries) const {
         const auto run = std::size_t(std::ranges::find_if(entries, is_other) - entries.begin());
         const Objects& set = in_first ? *first_ : *second_;
         const auto first_object = std::uint32_t(in_first ? 0 : first_size_);
-        std::visit(
-            [&](auto boxes) { load_rounded(boxes, set.padding, form_.rounding, entries.first(run), first_object); },
-            set.boxes);
+        const auto load = [&]<typename Real>(std::span<const Box<Real>> boxes) {
+            load_rounded<Real>({boxes, set.padding, first_object}, form_.rounding, entries.first(run));
+        };
+        std::visit(load, set.boxes);
         entries = entries.subspan(run);
     }
 }
