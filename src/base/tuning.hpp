@@ -111,8 +111,8 @@ struct Tuning {
         unsigned bucket_split_bits = 6;                 ///< log2 of the number of parts of a bucket that is split
         std::size_t sorted_at_once = 1 << 20;           ///< a bucket with more pairs is split
         std::size_t bucket_pairs = 1 << 17;             ///< expected number of pairs per bucket, at most
-        unsigned sparse_row_bits = 5;      ///< log2 of the rows per pair from which most rows are taken to be empty
-        std::size_t bitmap_columns = 64;   ///< a long row is sorted by a bit map if it has one in this many columns
+        unsigned sparse_row_bits = 5;      ///< log2 of rows per pair: with more, pairs are sorted by comparison
+        std::size_t bitmap_columns = 64;   ///< a long row with a pair in one of this many columns: bit map
         std::size_t min_radix_sort = 512;  ///< keys: fewer are sorted by comparison
         std::size_t shares_ahead = 4;      ///< shares per thread that a stream computes ahead of the sink
     } output;

@@ -206,7 +206,7 @@ std::size_t refused_of(const DoubtfulPairs& doubtful, const BoxesOfPairs<Real>& 
     std::size_t count = 0;
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
         if (k + prefetched_pairs < doubtful.size()) {
-            // Not in a function of its own: GCC drops calls of a function that only prefetches.
+            // Not in a lambda: GCC drops calls of a function that only prefetches, if it is not inlined early.
             const Pair& next = doubtful[k + prefetched_pairs];
             hwy::Prefetch(&boxes.a(next));
             hwy::Prefetch(&boxes.a(next).max[2]);  // a box may lie on two cache lines

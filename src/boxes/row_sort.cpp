@@ -1,6 +1,6 @@
 // SIMD version of sort_rows(). Highway compiles it for each instruction set. The place of an object is the number of smaller
-// objects in its row. So no branch depends on the order of the objects. Equal objects have equal places, which only a fault of
-// the caller can cause: the sum of the places tells, and the specification sorts the rows again.
+// objects in its row. So no branch depends on the order of the objects. If two objects of a row are equal, which only a fault
+// elsewhere can cause, they get one place, and the sum of all places is too small. Then the specification sorts the rows again.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/row_sort.cpp"
 #include <hwy/foreach_target.h>
@@ -47,7 +47,7 @@ bool sort_rows_simd(const PairRows& rows, Pair* out) {
     const auto& [seconds, first_begin, ends, first_object] = rows;
     std::uint32_t begin = first_begin;
     const std::size_t lanes = hn::Lanes(d);
-    std::size_t missing = 0;  // sum of the places that objects have if they differ, less the sum of their places
+    std::size_t missing = 0;  // sum of the places 0, 1, 2, ... of each row, less the sum of the places that were given
     for (std::size_t row = 0; row < ends.size(); ++row) {
         const std::uint32_t a = first_object + std::uint32_t(row);
         const std::uint32_t* const objects = seconds + begin;

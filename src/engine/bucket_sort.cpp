@@ -237,7 +237,7 @@ std::span<const std::uint32_t> BucketSort::sorted_columns(std::span<const std::u
         count_path(Path::row_in_bitmap);
         mark_columns(columns, least, greatest);
         if (read_marks(least, sorted.data()) == columns.size()) return sorted;
-        // A pair stands there twice, which only a fault elsewhere can cause. It is kept, so that a check can find it.
+        // The row has a pair twice, which only a fault elsewhere can cause. Both are kept, so that a check can find them.
     }
     std::ranges::copy(columns, sorted.begin());
     return radix_.sort(0, bits);

@@ -200,7 +200,7 @@ private:
     };
     static constexpr std::uint32_t any_set = 0;
 
-    /// The entries of a part whose sweep on cells would cost too much.
+    /// The entries of a part whose sweep on cells would cost too much: whole, or without bounds.
     struct Crowd {
         std::vector<Entry> whole;
         std::vector<EntryId> ids;
@@ -219,6 +219,7 @@ private:
         return crowd.ids.empty() ? EntryList(crowd.whole) : EntryList(context_.rule, crowd.ids);
     }
 
+    /// Collects whole entries, unless they are so many that ids take their place.
     void collect(Part part, std::span<const Entry> handed, Crowd& crowd) {
         if (part.handed) {
             std::ranges::copy_if(handed, std::back_inserter(crowd.whole),

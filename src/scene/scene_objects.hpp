@@ -63,6 +63,7 @@ private:
     template <typename Real>
     void sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes);
     void drop_swept(std::uint32_t index);
+    /// Returns false if no object was swept.
     bool finish_sweeps();
 
     bool float64_;

@@ -74,7 +74,9 @@ protected:
         const std::vector<EntryId> ids = ids_of(entries);
         const GivenRule one_set(entries, 0);
         const EntryList all(one_set, ids);
+        const EntryList whole{std::span<const Entry>(entries)};
         expect_pairs(one_set, {all, all, true}, brute_force(entries, count, 0), method);
+        expect_pairs(one_set, {whole, whole, true}, brute_force(entries, count, 0), method);
         const std::size_t half = count / 3;
         const GivenRule two_sets(entries, std::uint32_t(half));
         const EntryList rows(two_sets, std::span(ids).first(half)), columns(two_sets, std::span(ids).subspan(half));

@@ -3,8 +3,9 @@
 // part_by_shape parts boxes by the axes on which they are long. Two families of rods defeat every sweep of the whole set;
 // one sweep along the axis on which both families are thin joins them.
 //
-// tiled_sweep runs one sweep along an axis over large sets. A share is 4,096 rows, which are swept against one tile of columns
-// after another. So scratch memory does not grow with the set, and one crowded octant occupies all threads.
+// tiled_sweep runs one sweep along an axis over large sets. A tile of 4,096 rows is swept against one tile of columns after
+// another. A share is up to 8 tiles of rows. So scratch memory does not grow with the set, and one crowded octant occupies all
+// threads.
 //
 // recursive_sweep is the guaranteed fallback, O(m log^2 m + pairs), for sets that no axis and no split can thin (rods that
 // cross). It settles one axis after the other:

@@ -1,8 +1,7 @@
 // SweepOrder: sorts boxes for a sweep.
 //
 // Invariant
-//   All results are functions of the boxes alone (integer sums, total orders). So the choice of the axis, and with it the
-//   order of the pairs, is the same for any number of threads.
+//   The order is total: by low end, then by position. So it is the same for any number of threads.
 #pragma once
 
 #include <cstdint>
