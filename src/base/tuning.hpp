@@ -29,9 +29,10 @@ struct Tuning {
     /// How objects are sampled when the octree is planned (octree/linear_octree.cpp, octree/space.cpp).
     struct Sampling {
         std::size_t stride = 64;            ///< one object in this many is sampled
+        std::size_t min_objects = 16;       ///< minimum number of sampled objects, unless there are fewer
         std::size_t max_objects = 1 << 21;  ///< maximum number of sampled objects
         std::size_t max_stride = 2048;     ///< one in this many at least, whatever the maximum: as many crowd an octant
-        std::size_t space_objects = 4096;  ///< maximum number of sampled objects that fit the space, for its quantiles
+        std::size_t space_objects = 1024;  ///< maximum number of sampled objects that fit the space, for its quantiles
     } sampling;
 
     /// When an octant is split (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.

@@ -52,7 +52,7 @@ std::vector<Entry> sample_of(const EntrySource& source) {
 
 Sample octant_sample(std::uint64_t objects) {
     const Tuning::Sampling& sampling = tuning().sampling;
-    return {std::size_t(objects), sampling.stride,
+    return {std::size_t(objects), std::clamp<std::size_t>(objects / sampling.min_objects, 1, sampling.stride),
             std::max(sampling.max_objects, std::size_t(objects) / sampling.max_stride)};
 }
 

@@ -10,7 +10,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/cell_sweep/cell_pair_maker.hpp"
+#include "octree/scan_memory.hpp"
 #include "octree/sweep/recursive_sweep.hpp"
 
 namespace octopair {
@@ -142,12 +142,13 @@ private:
     const SweepInput& join_;
 };
 
-/// Scans single octants, and keeps its memory between them.
+/// Scans single octants.
 /// Thread safety: one thread at a time.
 class OctantScan {
 public:
-    OctantScan(const LinearOctree& octree, const ScanContext& context, Executor& executor)
-        : octree_(octree), context_(context), executor_(executor), chooser_(context.stop) {}
+    /// Borrows all arguments but `context`.
+    OctantScan(const LinearOctree& octree, const ScanContext& context, ScanMemory& memory, Executor& executor)
+        : octree_(octree), context_(context), memory_(memory), executor_(executor), chooser_(context.stop) {}
 
     void scan(OctantIndex octant, std::span<const Entry> handed) {
         if constexpr (has_test_hooks) {
@@ -158,18 +159,16 @@ public:
         gaps_ = certain_gaps(cells_, context_.rule);
         turns_ = 0;
         for (Crowd& crowd : crowd_of_part_) crowd.clear();
-        if (runs_owner_ != octant) find_runs(octant, runs_);
-        next_runs_.clear();
-        if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, next_runs_);
+        if (runs_owner_ != octant) find_runs(octant, memory_.runs);
+        memory_.next_runs.clear();
+        if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, memory_.next_runs);
         context_.rule.join() ? scan_join(handed) : scan_self(handed);
-        std::swap(runs_, next_runs_);
+        std::swap(memory_.runs, memory_.next_runs);
         runs_owner_ = octant + 1;
     }
 
 private:
-    using Runs = std::vector<std::span<const CellEntry>>;
-
-    void find_runs(OctantIndex octant, Runs& runs) const {
+    void find_runs(OctantIndex octant, ScanMemory::Runs& runs) const {
         runs.clear();
         octree_.for_each_run(octant, [&](std::span<const CellEntry> run) { runs.push_back(run); });
     }
@@ -179,7 +178,7 @@ private:
         const std::size_t own = std::size_t(octree_.entry_count(octant_));
         if (own + handed.size() < 2) return;
         const bool laid_out = own <= tuning().scan.max_swept_list;
-        if (laid_out) own_set_.assign(runs_, next_runs_);
+        if (laid_out) memory_.own_set.assign(memory_.runs, memory_.next_runs);
         if (!laid_out) count_path(Path::own_too_large);
         if (own > 1 && !(laid_out && try_own_sweep())) {
             const EntryList crowd = crowd_of({false, any_set}, {});
@@ -229,7 +228,7 @@ private:
         const auto own = octree_.entry_count(octant_);
         const bool whole = double(own) <= tuning().scan.max_whole_crowd * double(octree_.entry_count());
         whole ? crowd.whole.reserve(std::size_t(own)) : crowd.ids.reserve(std::size_t(own));
-        for (const auto run : runs_) {
+        for (const auto run : memory_.runs) {
             for (const CellEntry& entry : run) {
                 const std::uint32_t mask = cells_.mask_of(entry);
                 if (!part.has(mask)) continue;
@@ -241,10 +240,10 @@ private:
     }
 
     bool try_own_sweep() {
-        bool done = try_sweep({{own_set_, own_set_, SweepKind::self}});
+        bool done = try_sweep({{memory_.own_set, memory_.own_set, SweepKind::self}});
         for (unsigned axis = 1; !done && axis < 3; ++axis) {
             turn_own();
-            done = try_sweep({{own_set_, own_set_, SweepKind::self}});
+            done = try_sweep({{memory_.own_set, memory_.own_set, SweepKind::self}});
             if (done) count_path(Path::swept_on_other_axis);
         }
         count_path(done ? Path::own_swept : Path::own_window_too_wide);
@@ -252,10 +251,10 @@ private:
     }
 
     bool try_handed_sweep(std::span<const Entry> handed) {
-        handed_cells_.resize(handed.size());
-        cell_entries(cells_, handed, handed_cells_.data());
-        const bool laid_out = try_lay_out(handed_cells_, handed_set_);
-        for (unsigned turn = 0; laid_out && turn < turns_; ++turn) handed_set_.turn();
+        memory_.handed_cells.resize(handed.size());
+        cell_entries(cells_, handed, memory_.handed_cells.data());
+        const bool laid_out = try_lay_out(memory_.handed_cells, memory_.handed_set);
+        for (unsigned turn = 0; laid_out && turn < turns_; ++turn) memory_.handed_set.turn();
         const bool done = laid_out && try_cross_sweeps();
         count_path(done ? Path::handed_swept : laid_out ? Path::handed_window_too_wide : Path::handed_too_large);
         return done;
@@ -263,7 +262,7 @@ private:
 
     /// Sorts the octant's own entries along the next axis.
     void turn_own() {
-        own_set_.turn();
+        memory_.own_set.turn();
         std::ranges::rotate(gaps_.cells, gaps_.cells.begin() + 1);
         ++turns_;
     }
@@ -281,7 +280,7 @@ private:
 
     /// Collects the entries of a part, or so many that they are too many for a sweep on cells.
     void collect_cells(Part part, std::span<const Entry> handed) {
-        std::vector<CellEntry>& cells = cells_of_part_[part.number()];
+        std::vector<CellEntry>& cells = memory_.cells_of_part[part.number()];
         cells.clear();
         const std::size_t most = tuning().scan.max_swept_list + 1;
         if (part.handed) {
@@ -291,7 +290,7 @@ private:
             return;
         }
         const std::size_t flag = part.set == first_set ? 0 : 1;  // CellEntry::ends
-        for (const auto run : runs_) {
+        for (const auto run : memory_.runs) {
             for (const CellEntry& entry : run) {
                 if (entry.ends[flag] >> 31 != 0 && cells.size() < most) cells.push_back(entry);
             }
@@ -299,10 +298,10 @@ private:
     }
 
     void join(std::span<const Entry> handed, Part rows, Part columns) {
-        if (cells_of_part_[rows.number()].empty() || cells_of_part_[columns.number()].empty()) return;
+        if (memory_.cells_of_part[rows.number()].empty() || memory_.cells_of_part[columns.number()].empty()) return;
         gaps_ = certain_gaps(cells_, context_.rule);
-        const bool done = try_lay_out(cells_of_part_[rows.number()], handed_set_) &&
-                          try_lay_out(cells_of_part_[columns.number()], own_set_) && try_cross_sweeps();
+        const bool done = try_lay_out(memory_.cells_of_part[rows.number()], memory_.handed_set) &&
+                          try_lay_out(memory_.cells_of_part[columns.number()], memory_.own_set) && try_cross_sweeps();
         count_path(done ? Path::join_swept : Path::join_crowded);
         if (!done) scan_crowded({crowd_of(rows, handed), crowd_of(columns, handed), false, {}});
     }
@@ -317,13 +316,13 @@ private:
     /// Sweeps the two sets against each other, along the first of three axes on which the sweep is cheap.
     bool try_cross_sweeps() {
         const auto try_axis = [&] {
-            return try_sweep(
-                {{handed_set_, own_set_, SweepKind::cross}, {own_set_, handed_set_, SweepKind::cross_strict}});
+            return try_sweep({{memory_.handed_set, memory_.own_set, SweepKind::cross},
+                              {memory_.own_set, memory_.handed_set, SweepKind::cross_strict}});
         };
         bool done = try_axis();
         for (unsigned axis = 1; !done && axis < 3; ++axis) {
             turn_own();
-            handed_set_.turn();
+            memory_.handed_set.turn();
             done = try_axis();
             if (done) count_path(Path::swept_on_other_axis);
         }
@@ -420,20 +419,16 @@ private:
 
     const LinearOctree& octree_;
     ScanContext context_;
+    ScanMemory& memory_;
     Executor& executor_;
     OctantIndex octant_ = 0;
     OctantIndex runs_owner_ = ~OctantIndex(0);
-    Runs runs_, next_runs_;  // entries of the scanned octant, and of the one behind it
     SweepChooser chooser_;
     OctantCells cells_;
     CertainGaps gaps_;
     unsigned turns_ = 0;  // number of times that the own entries, and gaps_, were turned
-    CellPairMaker pair_maker_{context_};
-    std::vector<CellEntry> handed_cells_;
-    CellSet own_set_;
-    CellSet handed_set_;
-    std::array<Crowd, 4> crowd_of_part_;                   // by Part::number(); empty until they are needed
-    std::array<std::vector<CellEntry>, 4> cells_of_part_;  // of a join, by Part::number()
+    CellPairMaker pair_maker_{context_, memory_.pair_maker};
+    std::array<Crowd, 4> crowd_of_part_;  // by Part::number(); empty until they are needed
 };
 
 /// A run of octants in pre-order that is scanned as one share. A large octant is a share alone.
@@ -471,7 +466,8 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
     KeptEntries kept(octree, context.rule);
     const auto scan_share = [&](const Share& share, Executor& within) {
         HandedDown handed(octree, kept, planted(Fault::nested_space_moved) && context.nesting > 0 ? 1 : 0);
-        OctantScan scans(octree, context, within);
+        const ScanMemoryPool::Lent memory = context.memory.lend();
+        OctantScan scans(octree, context, *memory, within);
         for (OctantIndex octant = share.begin; octant < share.end; ++octant) {
             const Handed& above = handed.at(octant);
             if (octree.entry_count(octant) > 0) scans.scan(octant, above);

@@ -18,6 +18,7 @@
 #include "octopair/scene.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "octree/linear_octree.hpp"
+#include "octree/scan_memory.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_search.hpp"
 #include "scene/pair_history.hpp"
@@ -60,6 +61,7 @@ private:
     ChangeSearch search_;
     SceneQueries queries_;
     LinearOctree linear_;
+    ScanMemoryPool scan_memory_;
     MutableOctree octree_;
     /// Number of refills of linear_ since its octants were chosen. At the maximum, the next build chooses them anew.
     unsigned refills_ = tuning().scene.max_refills;

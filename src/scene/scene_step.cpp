@@ -95,7 +95,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
     fresh.reset();
     AscendingExecutor ascending(team_, fresh, {{0, objects_.table().indices()}, objects_.table().indices()});
-    scan(linear_, {source, stop}, ascending, {});
+    scan(linear_, {source, stop, scan_memory_}, ascending, {});
     ascending.append_sorted(stop);
     full_seconds_ = seconds_since(begin);
     const double guess =

@@ -28,6 +28,7 @@ private:
 
 void shrink(Tuning::Sampling& sampling, Shrinker& to) {
     to.one_of<std::size_t>(sampling.stride, {1, 1, 2, 3, 7});
+    to.one_of<std::size_t>(sampling.min_objects, {1, 1, 3});
     to.one_of<std::size_t>(sampling.max_objects, {8, 20, 1000});
     to.one_of<std::size_t>(sampling.max_stride, {1, 2, 5});
     to.one_of<std::size_t>(sampling.space_objects, {1, 5, 60});
@@ -148,6 +149,7 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
+    tuning.sampling.min_objects = 1;
     tuning.scan.max_swept_list = 1;
     tuning.scan.max_tests_per_box = 0;
     tuning.scan.max_part_in_octant = 0.9;

@@ -226,6 +226,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Scene, ::testing::ValuesIn(kinds()), [](const au
 });
 
 TEST(OctantSample, HasMoreOfMoreObjects) {
+    EXPECT_EQ(octant_sample(100).stride(), 6u);  // at least 16 objects, so that most boxes lie within the space
+    EXPECT_EQ(octant_sample(5).stride(), 1u);
     EXPECT_EQ(octant_sample(1'000'000).stride(), 64u);
     EXPECT_EQ(octant_sample(1'000'000'000).stride(), 476u);  // at most 2^21 objects are sampled
     const Sample large = octant_sample(10'000'000'000);

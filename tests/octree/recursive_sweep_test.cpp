@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "octree/given_rule.hpp"
+#include "octree/scan_memory.hpp"
 #include "octree/sweep/sweep_order.hpp"
 
 namespace octopair::test {
@@ -85,7 +86,8 @@ protected:
 
 private:
     static void expect_pairs(const PairRule& rule, const SweepInput& input, const Pairs& expected, Method method) {
-        const ScanContext context{rule, {}};
+        ScanMemoryPool memory;
+        const ScanContext context{rule, {}, memory};
         CollectingWriter writer;
         SerialExecutor executor(writer);
         method(context, input, executor);

@@ -4,6 +4,7 @@
 #include "engine/search.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/scan.hpp"
+#include "octree/scan_memory.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {
@@ -26,11 +27,12 @@ protected:
     /// Scans the whole octree once.
     virtual void scan_into(Call& call, Executor& executor, double progress);
     /// Scans `octants` once.
-    static void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
+    void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
 
 private:
     Team team_;
     LinearOctree octree_;
+    ScanMemoryPool scan_memory_;
 };
 
 }  // namespace octopair

@@ -9,25 +9,25 @@
 
 namespace octopair {
 
-CellPairMaker::CellPairMaker(const ScanContext& context) : context_(context) {
+CellPairMaker::CellPairMaker(const ScanContext& context, Memory& memory) : context_(context), memory_(memory) {
     const std::size_t room = tuning().sweep.cell_hits + judged_room;
-    hits_.resize_discard(room);
-    pairs_.resize_discard(room);
-    doubtful_.resize_discard(room);
-    refused_.resize_discard(room);
+    memory.hits.resize_discard(room);
+    memory.pairs.resize_discard(room);
+    memory.doubtful.resize_discard(room);
+    memory.refused.resize_discard(room);
 }
 
 void CellPairMaker::sweep(const CellSweep& sweep, const CertainGaps& gaps, ShareWriter& writer) {
     CellCursor cursor;
     const std::uint32_t second_begin = context_.rule.second_begin();
-    const std::span<CellHit> room = hits_.span().first(hits_.size() - judged_room);
+    const std::span<CellHit> room = memory_.hits.span().first(memory_.hits.size() - judged_room);
     while (cursor.row < sweep.rows.size()) {
         const std::span<CellHit> hits = room.first(cell_hits(sweep, cursor, room));
-        std::span<Pair> memory = writer.counting() ? std::span<Pair>() : writer.room(hits.size() + judged_room);
-        if (memory.empty()) memory = pairs_.span();
-        JudgedHits judged{.pairs = memory.data(), .doubtful = doubtful_.data()};
+        std::span<Pair> room_for_pairs = writer.counting() ? std::span<Pair>() : writer.room(hits.size() + judged_room);
+        if (room_for_pairs.empty()) room_for_pairs = memory_.pairs.span();
+        JudgedHits judged{.pairs = room_for_pairs.data(), .doubtful = memory_.doubtful.data()};
         judge_hits(sweep, hits, gaps, judged);
-        const std::span<Pair> pairs = memory.first(drop_refused(judged));
+        const std::span<Pair> pairs = room_for_pairs.first(drop_refused(judged));
         if (has_test_hooks && context_.outermost) check(pairs);
         if (writer.counting()) {
             count_path(Path::pairs_counted);
@@ -51,7 +51,7 @@ std::size_t CellPairMaker::drop_refused(JudgedHits& judged) {
     count_path(Path::cell_hit_doubtful);
     const std::span<const Pair> pairs{judged.pairs, judged.pair_count};
     const std::span<const std::uint32_t> doubtful{judged.doubtful, judged.doubtful_count};
-    const auto refused = refused_.span().first(context_.rule.refused({pairs, doubtful}, refused_.data()));
+    const auto refused = memory_.refused.span().first(context_.rule.refused({pairs, doubtful}, memory_.refused.data()));
     if (refused.empty()) return pairs.size();
     count_path(Path::cell_hit_refused);
     Pair* at = judged.pairs + refused.front();

@@ -11,11 +11,17 @@
 
 namespace octopair {
 
-/// Keeps its memory between sweeps. Thread safety: one thread at a time.
+/// Thread safety: one thread at a time.
 class CellPairMaker {
 public:
-    /// Borrows `context`.
-    explicit CellPairMaker(const ScanContext& context);
+    /// Memory for the hits that are judged at a time.
+    struct Memory {
+        Buffer<CellHit> hits;
+        Buffer<Pair> pairs;
+        Buffer<std::uint32_t> doubtful, refused;
+    };
+    /// Borrows `context` and `memory`.
+    CellPairMaker(const ScanContext& context, Memory& memory);
 
     /// Runs a sweep to its end and passes its pairs to `writer`.
     /// Throws: Error{cancelled}.
@@ -26,9 +32,7 @@ private:
     void check(std::span<const Pair> pairs) const;
 
     const ScanContext& context_;
-    Buffer<CellHit> hits_;
-    Buffer<Pair> pairs_;
-    Buffer<std::uint32_t> doubtful_, refused_;
+    Memory& memory_;
 };
 
 }  // namespace octopair

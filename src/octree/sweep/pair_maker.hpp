@@ -38,10 +38,13 @@ struct OutermostOctant {
     void check(const Entry& a, const Entry& b) const;
 };
 
+class ScanMemoryPool;
+
 /// Parameters of a scan, the same for all shares.
 struct ScanContext {
     const PairRule& rule;
     std::stop_token stop;
+    ScanMemoryPool& memory;
     unsigned nesting = 0;  ///< number of octrees around the scanned one
     double growth = 1;     ///< product, over the nested octrees, of their entries / the entries that they are made of
     std::optional<OutermostOctant> outermost = {};  ///< set only with test hooks

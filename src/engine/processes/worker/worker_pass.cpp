@@ -279,7 +279,7 @@ void WorkerProgram::scan(const Context& context) {
 
 void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {
     ScanExecutor executor(context.shares, context.pass.workers, output, job_->arena);
-    octopair::scan(job_->octree, {job_->source, context.stop}, executor,
+    octopair::scan(job_->octree, {job_->source, context.stop, scan_memory_}, executor,
                    [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
 }
 

@@ -11,6 +11,7 @@
 #include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
 #include "octree/linear_octree.hpp"
+#include "octree/scan_memory.hpp"
 
 namespace octopair {
 
@@ -47,6 +48,7 @@ private:
     ControlBlockView& view_;
     WorkerRegions& regions_;
     std::unique_ptr<Job> job_;
+    ScanMemoryPool scan_memory_;
 };
 
 }  // namespace octopair
