@@ -105,7 +105,7 @@ struct Tuning {
         std::uint64_t min_buffer_bytes = 1 << 20;       ///< bytes: minimum that Options::buffer_bytes is raised to
         std::size_t batch = 1 << 13;                    ///< smaller batches are collected before a sink receives them
         std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list, so that progress grows in small steps
-        std::size_t list_block = 1 << 15;               ///< pairs per memory block of a PairList; at least 64 pages
+        std::size_t list_block = 1 << 15;               ///< minimum pairs per block of a PairList; at least 64 pages
         std::size_t page = 512;                         ///< pairs per page of a bucket of the ascending order
         unsigned bucket_row_bits = 12;                  ///< log2 of the number of objects per bucket
         unsigned bucket_bits = 10;                      ///< log2 of the maximum number of buckets

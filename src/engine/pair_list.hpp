@@ -36,6 +36,8 @@ struct PairStorage {
     void append(std::span<const Pair> pairs);
 
 private:
+    std::size_t growth() const;
+
     std::mutex mutex_;
     std::function<void(std::uint64_t)> room_;
     std::vector<Buffer<Pair>> blocks_;

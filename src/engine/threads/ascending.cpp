@@ -21,7 +21,7 @@ private:
     Pair* fresh() override {
         constexpr std::size_t pages_at_once = 64;  // a whole block
         if (--left_ < 0) throw OverBudget{};
-        if (block_.empty()) block_ = list_.take_block(pages_at_once * page_pairs()).first(pages_at_once * page_pairs());
+        if (block_.size() < page_pairs()) block_ = list_.take_block(pages_at_once * page_pairs());
         Pair* page = block_.data();
         block_ = block_.subspan(page_pairs());
         return page;
