@@ -251,12 +251,16 @@ private:
     }
 
     bool try_handed_sweep(std::span<const Entry> handed) {
+        if (handed.size() > tuning().scan.max_swept_list) {
+            count_path(Path::handed_too_large);
+            return false;
+        }
         memory_.handed_cells.resize(handed.size());
         cell_entries(cells_, handed, memory_.handed_cells.data());
-        const bool laid_out = try_lay_out(memory_.handed_cells, memory_.handed_set);
-        for (unsigned turn = 0; laid_out && turn < turns_; ++turn) memory_.handed_set.turn();
-        const bool done = laid_out && try_cross_sweeps();
-        count_path(done ? Path::handed_swept : laid_out ? Path::handed_window_too_wide : Path::handed_too_large);
+        (void)try_lay_out(memory_.handed_cells, memory_.handed_set);
+        for (unsigned turn = 0; turn < turns_; ++turn) memory_.handed_set.turn();
+        const bool done = try_cross_sweeps();
+        count_path(done ? Path::handed_swept : Path::handed_window_too_wide);
         return done;
     }
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "octree/cell_sweep/cell_pair_maker.hpp"
@@ -13,13 +13,13 @@
 
 namespace octopair {
 
-/// Its contents mean nothing to the next user.
+/// Memory of one share at a time, apart from crowds. The contents are undefined when it is lent.
 struct ScanMemory {
     using Runs = std::vector<std::span<const CellEntry>>;
-    Runs runs, next_runs;
-    CellSet own_set, handed_set;
-    std::vector<CellEntry> handed_cells;
-    std::array<std::vector<CellEntry>, 4> cells_of_part;
+    Runs runs, next_runs;                                 // entries of the scanned octant, and of the next octant
+    CellSet own_set, handed_set;                          // own entries, and entries handed down, ready for a sweep
+    std::vector<CellEntry> handed_cells;                  // entries handed down, with cells of the octant
+    std::array<std::vector<CellEntry>, 4> cells_of_part;  // entries of a join, by OctantScan::Part::number()
     CellPairMaker::Memory pair_maker;
 };
 
@@ -27,29 +27,35 @@ struct ScanMemory {
 class ScanMemoryPool {
     struct GiveBack {
         ScanMemoryPool* pool;
-        void operator()(ScanMemory* memory) const { pool->give_back(std::unique_ptr<ScanMemory>(memory)); }
+        void operator()(ScanMemory* memory) const noexcept { pool->give_back(memory); }
     };
 
 public:
-    /// Returns to the pool when it is destroyed, which must be before the pool is.
+    /// Gives the memory back when it is destroyed. Requires: the pool still exists then.
     using Lent = std::unique_ptr<ScanMemory, GiveBack>;
 
+    /// Throws: std::bad_alloc.
     Lent lend() {
         const std::lock_guard lock(mutex_);
-        if (free_.empty()) free_.push_back(std::make_unique<ScanMemory>());
+        if (free_.empty()) {
+            free_.reserve(allocated_ + 1);  // so that give_back() needs no memory
+            free_.push_back(std::make_unique<ScanMemory>());
+            ++allocated_;
+        }
         Lent lent(free_.back().release(), GiveBack{this});
         free_.pop_back();
         return lent;
     }
 
 private:
-    void give_back(std::unique_ptr<ScanMemory> memory) {
+    void give_back(ScanMemory* memory) noexcept {
         const std::lock_guard lock(mutex_);
-        free_.push_back(std::move(memory));
+        free_.emplace_back(memory);
     }
 
     std::mutex mutex_;
     std::vector<std::unique_ptr<ScanMemory>> free_;
+    std::size_t allocated_ = 0;  // free ones and lent ones
 };
 
 }  // namespace octopair

@@ -89,5 +89,28 @@ TEST(Space, AFarOutBoxDoesNotStretchIt) {
     EXPECT_NE(space.map().cell(0.25f, 1), space.map().cell(0.2501f, 1));
 }
 
+TEST(SpaceSample, MeasuresQuantilesAndExtremes) {
+    std::mt19937 random(11);
+    for (std::size_t size = 1; size < 300; size += size < 5 ? 1 : 37) {
+        std::vector<SpaceSample::Interval> intervals(size);
+        std::vector<double> lows, highs, extents;
+        for (SpaceSample::Interval& interval : intervals) {
+            interval.low = float(random() % 1000);
+            interval.high = interval.low + float(random() % 50);
+            lows.push_back(double(interval.low));
+            highs.push_back(double(interval.high));
+            extents.push_back(double(interval.high) - double(interval.low));
+        }
+        for (auto* values : {&lows, &highs, &extents}) std::ranges::sort(*values);
+        const auto measured = [&](SpaceSample::Measure what) { return SpaceSample::measure(intervals, what); };
+        EXPECT_EQ(measured(SpaceSample::Measure::low).quantile, lows[size / 64]);
+        EXPECT_EQ(measured(SpaceSample::Measure::low).extreme, lows.front());
+        EXPECT_EQ(measured(SpaceSample::Measure::high).quantile, highs[size - 1 - size / 64]);
+        EXPECT_EQ(measured(SpaceSample::Measure::high).extreme, highs.back());
+        EXPECT_EQ(measured(SpaceSample::Measure::extent).quantile, extents[size / 2]);
+        EXPECT_EQ(measured(SpaceSample::Measure::extent).extreme, extents.back());
+    }
+}
+
 }  // namespace
 }  // namespace octopair::test

@@ -19,7 +19,7 @@ public:
 
 private:
     Pair* fresh() override {
-        constexpr std::size_t pages_at_once = 64;  // a whole block
+        constexpr std::size_t pages_at_once = 64;  // at least
         if (--left_ < 0) throw OverBudget{};
         if (block_.size() < page_pairs()) block_ = list_.take_block(pages_at_once * page_pairs());
         Pair* page = block_.data();

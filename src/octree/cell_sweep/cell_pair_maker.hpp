@@ -14,7 +14,7 @@ namespace octopair {
 /// Thread safety: one thread at a time.
 class CellPairMaker {
 public:
-    /// Memory for the hits that are judged at a time.
+    /// Memory of sweep(). The constructor sets its size.
     struct Memory {
         Buffer<CellHit> hits;
         Buffer<Pair> pairs;

@@ -44,9 +44,9 @@ class ScanMemoryPool;
 struct ScanContext {
     const PairRule& rule;
     std::stop_token stop;
-    ScanMemoryPool& memory;
-    unsigned nesting = 0;  ///< number of octrees around the scanned one
-    double growth = 1;     ///< product, over the nested octrees, of their entries / the entries that they are made of
+    ScanMemoryPool& memory;  ///< lends memory to each share
+    unsigned nesting = 0;    ///< number of octrees around the scanned one
+    double growth = 1;       ///< product, over the nested octrees, of their entries / the entries that they are made of
     std::optional<OutermostOctant> outermost = {};  ///< set only with test hooks
 };
 
