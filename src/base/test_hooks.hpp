@@ -23,7 +23,7 @@ namespace octopair {
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
     /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
-    path(build_one_block) path(build_blocks) path(count_ranges) path(kept_above_leaf) path(ghost_entries) path(ghosts_by_rule) \
+    path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) path(ghost_entries) path(ghosts_by_rule) \
     path(refilled) path(class_bits_brought) \
     /* octree/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
@@ -54,7 +54,7 @@ namespace octopair {
     path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
     path(relay_found_again) \
     /* scene/ */ \
-    path(step_full) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_rebuilt) \
+    path(step_full) path(step_idle) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_rebuilt) \
     path(octree_for_queries) path(pairs_waited) path(pairs_merged)
 // clang-format on
 

@@ -78,6 +78,7 @@ void Directory::make_table(const Space& space) {
     }
     table_size_ = {rows(level, 0), rows(level, 1), rows(level, 2)};
     table_shift_ = deepest - level;
+    last_shift_ = deepest - depth;
     table_.resize(std::size_t(table_size_[0]) * table_size_[1] * table_size_[2]);
     fill_table(0, {{}, table_size_, level, 0});
 }
@@ -110,9 +111,10 @@ void Directory::fill_table(OctantIndex index, const Table& table) {
 std::uint32_t Directory::add_table(OctantIndex index, const Table& table) {
     count_path(Path::table_further);
     const std::size_t begin = table_.size();
-    table_.resize(begin + (std::size_t(1) << 3 * table_levels));
-    constexpr std::uint32_t side = 1u << table_levels;
-    const unsigned level = std::min(table.level + table_levels, deepest);
+    const unsigned levels = leaf_table().levels_below(deepest - table.level);
+    table_.resize(begin + (std::size_t(1) << 3 * levels));
+    const std::uint32_t side = 1u << levels;
+    const unsigned level = table.level + levels;
     for (const OctantIndex child : children_[octants_[index].children]) {
         fill_table(child, {octants_[index].lo, {side, side, side}, level, begin});
     }

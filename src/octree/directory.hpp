@@ -78,11 +78,16 @@ public:
     /// The tables of leaf(), for SIMD versions. See the comment at the tables below.
     struct LeafTable {
         const std::uint32_t* elements;
+        std::size_t size;
         std::array<std::uint32_t, 3> sizes;
-        unsigned shift;
+        unsigned shift;       ///< an octant of the first table has 2^shift cells on each axis
+        unsigned last_shift;  ///< the finest leaf has 2^last_shift cells on each axis
+
+        /// Returns the number of levels of a table below an octant of 2^`of` cells on each axis.
+        unsigned levels_below(unsigned of) const { return std::min(of - last_shift, max_levels); }
+        static constexpr unsigned max_levels = 3;
     };
-    LeafTable leaf_table() const { return {table_.data(), table_size_, table_shift_}; }
-    static constexpr unsigned table_levels = 3;
+    LeafTable leaf_table() const { return {table_.data(), table_.size(), table_size_, table_shift_, last_shift_}; }
     static constexpr unsigned octant_bits = 26;
     static constexpr std::uint32_t max_octants = (std::uint32_t(1) << octant_bits) - 1;
     static constexpr std::uint32_t further = (deepest + 1) << octant_bits;
@@ -113,8 +118,8 @@ private:
     std::vector<std::array<OctantIndex, 8>> children_;
 
     // Lookup from cells to leaves. The first table has the octants of one level, row-major. An octant that is divided further
-    // has a table of the next three levels, and so on. An element is a leaf with its level, or `further` plus the
-    // position where the octant's table begins.
+    // has a table of the next three levels, and so on; no table has levels below the finest leaf. An element is a leaf with
+    // its level, or `further` plus the position where the octant's table begins.
     std::uint32_t first_element(const Cell& cell) const {
         const std::uint32_t x = cell[0] >> table_shift_, y = cell[1] >> table_shift_, z = cell[2] >> table_shift_;
         return table_[(z * table_size_[1] + y) * table_size_[0] + x];
@@ -122,15 +127,15 @@ private:
     /// Returns the element of `cell` in the table that `element` refers to. Lowers `shift` to that table: its octants have
     /// 2^shift cells on each axis.
     std::uint32_t further_element(std::uint32_t element, const Cell& cell, unsigned& shift) const {
-        const unsigned bits = std::min(shift, table_levels);
-        const unsigned mask = (1u << bits) - 1;
-        shift -= bits;
+        const unsigned levels = leaf_table().levels_below(shift);
+        const unsigned mask = (1u << levels) - 1;
+        shift -= levels;
         const std::uint32_t x = cell[0] >> shift & mask, y = cell[1] >> shift & mask, z = cell[2] >> shift & mask;
-        return table_[element - further + ((z << table_levels | y) << table_levels | x)];
+        return table_[element - further + ((z << levels | y) << levels | x)];
     }
     std::vector<std::uint32_t> table_;
     std::array<std::uint32_t, 3> table_size_ = {1, 1, 1};
-    unsigned table_shift_ = deepest;
+    unsigned table_shift_ = deepest, last_shift_ = deepest;
 };
 
 }  // namespace octopair

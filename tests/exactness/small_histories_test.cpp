@@ -57,7 +57,7 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
     using enum Path;
     EXPECT_EQ(
         test::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,
-                               unit_of_inner, step_full, step_incremental, step_too_dear, log_overflowed,
+                               unit_of_inner, step_full, step_idle, step_incremental, step_too_dear, log_overflowed,
                                octree_rebuilt, octree_for_queries, pairs_waited, pairs_merged, refilled}),
         "");
 }

@@ -30,6 +30,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                      table_further,
                                      build_one_block,
                                      build_blocks,
+                                     scattered_twice,
                                      count_ranges,
                                      kept_above_leaf,
                                      ghost_entries,

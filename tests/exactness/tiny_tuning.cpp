@@ -51,6 +51,11 @@ void shrink(Tuning::Build& build, Shrinker& to) {
     to.one_of<std::size_t>(build.batch, {1, 3, 16});
     to.one_of<std::size_t>(build.max_chunk, {16, 32});
     to.one_of<std::size_t>(build.chunk_part, {1, 4});
+    to.one_of<std::size_t>(build.staged_lists, {1, 50, 1000});
+    to.one_of<std::size_t>(build.max_groups, {1, 3, 16});
+    to.one_of<std::size_t>(build.staged_per_list, {1, 2});
+    to.one_of<std::size_t>(build.stage_chunk, {1, 5});
+    to.one_of<std::size_t>(build.max_near_table, {1, 1 << 17});
 }
 
 void shrink(Tuning::Scan& scan, Shrinker& to) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/tuning.hpp"
 #include "boxes/box_kernel.hpp"
 #include "octree/build/batch_encoder.hpp"
 #include "octree/build/octants_of.hpp"
@@ -8,7 +9,12 @@
 namespace octopair {
 
 BatchEncoder::BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list_number)
-    : map(space.map()), table(directory.leaf_table()), no_list(no_list_number), space_(space), directory_(directory) {
+    : map(space.map()),
+      table(directory.leaf_table()),
+      large_table(table.size > tuning().build.max_near_table),
+      no_list(no_list_number),
+      space_(space),
+      directory_(directory) {
     for (unsigned k = 0; k < 3; ++k) axes[k] = (space.long_axis() + k) % 3;
     const std::span<const Octant> octants = directory.octants();
     const auto is_deep = [](const Octant& octant) { return octant.level > OctantCells::max_fine_level; };

@@ -83,31 +83,45 @@ struct Constants {
 
     /// Returns the elements (Directory::Leaf::element()) of the leaves that hold fine cells.
     HWY_INLINE Lanes leaves(const Lanes& x, const Lanes& y, const Lanes& z) const {
-        const Words d;
-        const hn::RebindToSigned<Words> indices;
-        const int shift = int(table.shift + SpaceMap::fine_bits);
-        const auto row =
-            hn::Add(hn::Mul(hn::ShiftRightSame(z, shift), hn::Set(d, table.sizes[1])), hn::ShiftRightSame(y, shift));
-        const auto at = hn::Add(hn::Mul(row, hn::Set(d, table.sizes[0])), hn::ShiftRightSame(x, shift));
-        auto found = hn::GatherIndex(d, table.elements, hn::BitCast(indices, at));
-        const auto further = hn::Set(d, Directory::further);
-        const auto is_deeper = [&](const Lanes& element)
-                                   HWY_ATTR { return hn::Gt(element, hn::Set(d, Directory::further - 1)); };
+        auto found = gather(first_position(x, y, z));
         auto deeper = is_deeper(found);
-        for (unsigned left = table.shift; HWY_UNLIKELY(!hn::AllFalse(d, deeper));) {
-            const unsigned bits = std::min(left, Directory::table_levels);
-            left -= bits;
-            const auto digits = [&](const Lanes& cell) HWY_ATTR {
-                return hn::And(hn::ShiftRightSame(cell, int(left + SpaceMap::fine_bits)), hn::Set(d, (1u << bits) - 1));
-            };
-            constexpr int levels = int(Directory::table_levels);
-            const auto in_table =
-                hn::Or(hn::ShiftLeft<2 * levels>(digits(z)), hn::Or(hn::ShiftLeft<levels>(digits(y)), digits(x)));
-            const auto next = hn::IfThenElseZero(deeper, hn::Add(hn::Sub(found, further), in_table));
-            found = hn::IfThenElse(deeper, hn::GatherIndex(d, table.elements, hn::BitCast(indices, next)), found);
+        for (unsigned left = table.shift; HWY_UNLIKELY(!hn::AllFalse(Words(), deeper));) {
+            const auto next = next_position(found, left, x, y, z);
+            left -= table.levels_below(left);
+            found = hn::IfThenElse(deeper, gather(next), found);
             deeper = is_deeper(found);
         }
         return found;
+    }
+
+    HWY_INLINE Lanes gather(const Lanes& positions) const {
+        const hn::RebindToSigned<Words> indices;
+        return hn::GatherIndex(Words(), table.elements, hn::BitCast(indices, positions));
+    }
+    static HWY_INLINE hn::Mask<Words> is_deeper(const Lanes& element) {
+        return hn::Gt(element, hn::Set(Words(), Directory::further - 1));
+    }
+    /// Returns the positions of fine cells in the first table.
+    HWY_INLINE Lanes first_position(const Lanes& x, const Lanes& y, const Lanes& z) const {
+        const Words d;
+        const int shift = int(table.shift + SpaceMap::fine_bits);
+        const auto row =
+            hn::Add(hn::Mul(hn::ShiftRightSame(z, shift), hn::Set(d, table.sizes[1])), hn::ShiftRightSame(y, shift));
+        return hn::Add(hn::Mul(row, hn::Set(d, table.sizes[0])), hn::ShiftRightSame(x, shift));
+    }
+    /// Returns the positions of fine cells in the tables that `found` refers to, below octants of 2^`left` cells on each axis;
+    /// 0 for a leaf.
+    HWY_INLINE Lanes next_position(const Lanes& found, unsigned left, const Lanes& x, const Lanes& y,
+                                   const Lanes& z) const {
+        const Words d;
+        const unsigned levels = table.levels_below(left);
+        const auto digits = [&](const Lanes& cell) HWY_ATTR {
+            return hn::And(hn::ShiftRightSame(cell, int(left - levels + SpaceMap::fine_bits)),
+                           hn::Set(d, (1u << levels) - 1));
+        };
+        const auto in_table = hn::Or(hn::ShiftLeftSame(digits(z), int(2 * levels)),
+                                     hn::Or(hn::ShiftLeftSame(digits(y), int(levels)), digits(x)));
+        return hn::IfThenElseZero(is_deeper(found), hn::Add(hn::Sub(found, hn::Set(d, Directory::further)), in_table));
     }
 
     Directory::LeafTable table;
@@ -249,6 +263,35 @@ HWY_INLINE void home_entries(const BatchEncoder& encoder, const Loaded& box, con
     words[3] = box.object;
 }
 
+HWY_INLINE void low_cells(const Constants& constants, const Loaded& box, Lanes (&cells)[3]) {
+    for (unsigned axis = 0; axis < 3; ++axis) cells[axis] = constants.fine_cell(box.low[axis], axis);
+}
+
+/// Prefetches the elements that the leaves of boxes are looked up in: those of all boxes in the first table, then those in the
+/// tables below. So the look-ups of many boxes wait for memory at the same time.
+template <typename Item>
+HWY_NOINLINE void prefetch_leaves(const Constants& constants, std::span<const Item> items) {
+    const Words d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t whole = items.size() / lanes * lanes;
+    alignas(64) std::array<std::uint32_t, max_encoded> positions;
+    const auto prefetch_positions = [&](std::size_t i, const Lanes& at) HWY_ATTR {
+        hn::Store(at, d, positions.data() + i);
+        for (std::size_t k = i; k < i + lanes; ++k) hwy::Prefetch(constants.table.elements + positions[k]);
+    };
+    Lanes low[3];
+    for (std::size_t i = 0; i < whole; i += lanes) {
+        low_cells(constants, load_lanes(items.data() + i, 0), low);
+        prefetch_positions(i, constants.first_position(low[0], low[1], low[2]));
+    }
+    if (constants.table.shift == constants.table.last_shift) return;
+    for (std::size_t i = 0; i < whole; i += lanes) {
+        low_cells(constants, load_lanes(items.data() + i, 0), low);
+        const auto found = constants.gather(hn::Load(d, positions.data() + i));
+        prefetch_positions(i, constants.next_position(found, constants.table.shift, low[0], low[1], low[2]));
+    }
+}
+
 constexpr std::size_t read_ahead = 1536;  // bytes: distance at which boxes are prefetched
 
 template <typename Item>
@@ -257,6 +300,7 @@ bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, std:
     const Words d;
     const std::size_t lanes = hn::Lanes(d);
     const Constants constants(encoder);
+    if (encoder.large_table) prefetch_leaves(constants, items);
     auto good = hn::Eq(hn::Zero(Floats()), hn::Zero(Floats()));
     std::size_t crossers = 0;
     alignas(64) std::array<Item, LaneTable::lanes> rest;

@@ -11,6 +11,7 @@
 #include "octree/build/batch_encoder.hpp"
 #include "octree/build/chunk_writer.hpp"
 #include "octree/build/octants_of.hpp"
+#include "octree/build/staged_writer.hpp"
 
 namespace octopair {
 
@@ -24,7 +25,8 @@ double seconds_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double>(end - begin).count();
 }
 
-/// Encodes the objects of one block.
+/// Encodes the objects of one block. `Writer`: ChunkWriter or StagedWriter.
+template <typename Writer>
 class BlockEncoder {
 public:
     BlockEncoder(const BuildSteps& steps, std::size_t block)
@@ -45,6 +47,8 @@ public:
         }
         return true;
     }
+    bool full() const { return writer_.full(); }
+    void flush() { writer_.flush(); }
     void finish() { writer_.finish(); }
 
 private:
@@ -130,7 +134,7 @@ private:
 
     const BuildSteps& steps_;
     BatchEncoder encoder_;
-    ChunkWriter writer_;
+    Writer writer_;
     EncodedBatch batch_;
     PlainBoxes plain_;                       // boxes of the batch, or none
     std::array<Entry, max_encoded> loaded_;  // entries of the batch unless it has plain boxes
@@ -148,15 +152,29 @@ void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t oc
 }
 
 void BuildSteps::encode_and_scatter(const NumberedBlock& block) const {
+    if (memory.lists.lists() < tuning().build.staged_lists) {
+        encode_and_scatter_with<ChunkWriter>(block);
+    } else {
+        count_path(Path::scattered_twice);
+        encode_and_scatter_with<StagedWriter>(block);
+    }
+}
+
+template <typename Writer>
+void BuildSteps::encode_and_scatter_with(const NumberedBlock& block) const {
     const std::size_t batch_size = tuning().build.batch;
     memory.valid[block.number] = 0;
     memory.seconds[block.number] = {};
-    BlockEncoder encoder(*this, block.number);
+    BlockEncoder<Writer> encoder(*this, block.number);
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop);
         const bool timed = (begin - block.objects.begin) / batch_size % timed_batches == 0;
         BuildMemory::Seconds* const seconds = timed ? &memory.seconds[block.number] : nullptr;
         if (!encoder.add(begin, std::min(batch_size, block.objects.end - begin), seconds)) return;
+        if (!encoder.full()) continue;
+        const auto start = Clock::now();
+        encoder.flush();
+        memory.seconds[block.number].scatter += seconds_between(start, Clock::now()) / double(timed_batches);
     }
     encoder.finish();
     memory.valid[block.number] = 1;

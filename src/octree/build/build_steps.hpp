@@ -73,6 +73,10 @@ struct BuildSteps {
     /// Throws: Error{cancelled}.
     void encode_and_scatter(const NumberedBlock& block) const;
     void count(const NumberedOctants& octants) const;
+
+private:
+    template <typename Writer>
+    void encode_and_scatter_with(const NumberedBlock& block) const;
 };
 
 }  // namespace octopair

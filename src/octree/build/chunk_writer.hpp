@@ -24,8 +24,13 @@ public:
         entries_[at] = entry;
         heads_[list] = at + 1;
     }
+    /// Prefetches the line that the next entry of the list is written to.
+    void prefetch_end(std::uint32_t list) const { prefetch(entries_ + heads_[list]); }
     /// Must be called after at most ChunkLists::min_chunk - 1 entries were discarded.
     void reset_discarded() { heads_[of_.lists_] = 1; }
+    /// An entry is in its list as soon as it is appended: nothing is staged (StagedWriter).
+    static constexpr bool full() { return false; }
+    void flush() {}
     /// Makes the lists readable.
     void finish();
 
