@@ -10,6 +10,7 @@
 #include <hwy/cache_control.h>
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <variant>
 #include <vector>
@@ -45,6 +46,13 @@ public:
     ObjectId id(std::uint32_t index) const { return {index, slots_[index].generation}; }
 
     Box3d box(std::uint32_t index) const { return boxes64_.empty() ? wide(boxes32_[index]) : boxes64_[index]; }
+    /// True if the object has this box, bit for bit.
+    bool has_box(std::uint32_t index, const Box3f& box) const {
+        return std::memcmp(&boxes32_[index], &box, sizeof box) == 0;
+    }
+    bool has_box(std::uint32_t index, const Box3d& box) const {
+        return std::memcmp(&boxes64_[index], &box, sizeof box) == 0;
+    }
     double padding(std::uint32_t index) const { return padded_ ? paddings_[index] : 0; }
     Traits traits(std::uint32_t index) const { return with_traits_ ? traits_[index] : Traits{}; }
     ObjectState state(std::uint32_t index) const { return {alive(index), box(index), padding(index), traits(index)}; }

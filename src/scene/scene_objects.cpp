@@ -116,6 +116,7 @@ void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const dou
         ids[i] = table_.create(boxes[i], paddings.empty() ? 0 : paddings[i], traits_at(traits, i));
         log_.note(table_, ids[i].index, false);
     }
+    added_ += ids.size();
 }
 
 void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
@@ -135,14 +136,13 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
     const bool any_swept = !swept_.empty();
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const std::uint32_t index = ids[i].index;
-        if (!log_.overflowed()) {
-            if (i + ahead < ids.size()) table_.prefetch(ids[i + ahead].index);
-            log_.note(table_, index, true);
-        }
+        if (i + ahead < ids.size()) table_.prefetch(ids[i + ahead].index);
         if (any_swept) drop_swept(index);
+        if (table_.has_box(index, boxes[i])) continue;
+        log_.note(table_, index, true);
         table_.set_box(index, boxes[i]);
+        ++moved_;
     }
-    moved_ += ids.size();
 }
 
 template <typename Real>
@@ -213,7 +213,7 @@ bool SceneObjects::finish_step() {
     if (changes_ == Changes::kept) log_.clear(table_);
     for (const std::uint32_t index : removed_) table_.release(index);
     removed_.clear();
-    moved_ = 0;
+    moved_ = added_ = 0;
     return finish_sweeps();
 }
 

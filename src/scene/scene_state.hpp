@@ -49,6 +49,8 @@ public:
 
 private:
     // Defined in scene_step.cpp.
+    bool find_nothing(const std::stop_token& stop);
+    bool expects_few_changes() const;
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
@@ -66,6 +68,7 @@ private:
     /// Number of refills of linear_ since its octants were chosen. At the maximum, the next build chooses them anew.
     unsigned refills_ = tuning().scene.max_refills;
     EntryRounding rounding_;
+    bool has_stepped_ = false;               // a step has succeeded
     bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
     bool octree_matches_now_ = false;        // octree_ holds the current objects
     bool linear_matches_now_ = false;        // linear_ holds the current objects

@@ -5,6 +5,7 @@
 #include <new>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "engine/threads/ascending.hpp"
@@ -52,31 +53,46 @@ Scene::State::State(const SceneOptions& options)
 const StepResult& Scene::State::step(const std::stop_token& stop) {
     if (recorder_) recorder_->begin_step();
     const auto begin = std::chrono::steady_clock::now();
-    const double changed = double(objects_.log().previous_states().size());
-    const double expected = changed * seconds_a_change_;
     const std::uint64_t before = history_.size();
-    // Exact entries were not widened by paddings.
-    const bool unlike = rounding_.exact && objects_.table().any_padding();
-    const bool cheap = chooses_incremental(expected <= max_search_cost * full_seconds_);
-    bool full =
-        !octree_matches_last_step_ || unlike || objects_.log().overflowed() || !cheap || history_.is_inconsistent();
+    bool full = false;
     try {
-        history_.prepare(octree_matches_last_step_);
-        const bool found = !full && find_changes(stop);
-        if (!found) find_all(stop);
-        count_path(found ? Path::step_incremental : Path::step_full);
-        full = !found;
+        if (!find_nothing(stop)) {
+            history_.prepare(octree_matches_last_step_);
+            full = !(expects_few_changes() && find_changes(stop));
+            if (full) find_all(stop);
+            count_path(full ? Path::step_full : Path::step_incremental);
+        }
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     } catch (const Error& error) {
         if (error.code() == ErrorCode::engine_failed) drop_octrees();
         throw;
     }
+    has_stepped_ = true;
     std::swap(changes_, found_);
     if (objects_.finish_step()) octree_matches_now_ = linear_matches_now_ = false;
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
     return result_;
+}
+
+/// Runs a step in which no object has changed. Returns false if one has, or if no step has succeeded yet.
+bool Scene::State::find_nothing(const std::stop_token& stop) {
+    const bool idle = has_stepped_ && !objects_.changed() && !history_.is_inconsistent();
+    if (!idle || !chooses_incremental(true)) return false;
+    throw_if_stopped(stop);
+    found_.clear();
+    count_path(Path::step_idle);
+    return true;
+}
+
+/// Returns whether an incremental step is possible, and expected to be cheaper than a full one.
+bool Scene::State::expects_few_changes() const {
+    const double expected = double(objects_.log().previous_states().size()) * seconds_a_change_;
+    const bool cheap = chooses_incremental(expected <= max_search_cost * full_seconds_);
+    // Exact entries were not widened by paddings.
+    const bool unlike = rounding_.exact && objects_.table().any_padding();
+    return octree_matches_last_step_ && !unlike && !objects_.log().overflowed() && cheap && !history_.is_inconsistent();
 }
 
 /// Discards both octrees after a search with wrong results. The next step builds all from the objects.
