@@ -16,6 +16,8 @@ public:
 
     /// Begins a stage of `work` units, during which the fraction grows linearly to `end`.
     void stage(double end, std::uint64_t work);
+    /// Returns the fraction at the end of the stage.
+    double end() const { return end_; }
     /// Counts `work` units as done, and reports to the sink about every hundredth. Thread safety: any thread.
     void add(std::uint64_t work);
     /// Reports 1 to the sink.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <random>
 #include <vector>
 
@@ -37,7 +38,11 @@ std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, co
         const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
         writer.write(std::span(pairs).subspan(begin, end - begin));
     });
-    executor.append_sorted({});
+    const std::uint64_t wanted = executor.pairs();
+    std::atomic<std::uint64_t> sorted = 0;
+    executor.append_sorted({}, [&](std::uint64_t of_bucket) { sorted += of_bucket; });
+    EXPECT_EQ(sorted, wanted);
+    EXPECT_EQ(list.size(), wanted);
     EXPECT_EQ(list.size(), list.to_vector().size());
     return list.to_vector();
 }

@@ -64,14 +64,27 @@ public:
 
     BucketWriter writer(unsigned worker) { return {plan_, *workers_[worker]}; }
 
-    void append_sorted(Team& team, const std::stop_token& stop) {
+    std::uint64_t pairs() const {
+        std::uint64_t all = 0;
+        for (const auto& worker : workers_) {
+            for (const PageString& found : worker->found) all += found.size();
+        }
+        return all;
+    }
+
+    void append_sorted(Team& team, const std::stop_token& stop, const OnSorted& on_sorted) {
         pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting a bucket takes a few more pages
         std::vector<BucketSort::Runs> sorted(plan_.buckets());
         team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
             std::vector<PageString> strings;
             strings.reserve(workers_.size());
-            for (const auto& other : workers_) strings.push_back(std::exchange(other->found[bucket], {}));
+            std::uint64_t pairs = 0;
+            for (const auto& other : workers_) {
+                pairs += other->found[bucket].size();
+                strings.push_back(std::exchange(other->found[bucket], {}));
+            }
             sorted[bucket] = workers_[worker]->sort.sort(std::move(strings), stop);
+            if (on_sorted) on_sorted(pairs);
         });
         for (const auto& runs : sorted) {
             for (const auto run : runs) list_.append(run);
@@ -98,6 +111,10 @@ void AscendingExecutor::for_each_writing(std::size_t count,
     });
 }
 
-void AscendingExecutor::append_sorted(const std::stop_token& stop) { buckets_->append_sorted(team(), stop); }
+std::uint64_t AscendingExecutor::pairs() const { return buckets_->pairs(); }
+
+void AscendingExecutor::append_sorted(const std::stop_token& stop, const OnSorted& on_sorted) {
+    buckets_->append_sorted(team(), stop, on_sorted);
+}
 
 }  // namespace octopair

@@ -22,9 +22,13 @@ public:
 
     /// Throws: OverBudget.
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
+    /// Returns the number of pairs in the buckets.
+    std::uint64_t pairs() const;
+    /// Called with the number of pairs of each sorted bucket, on any thread of the team.
+    using OnSorted = std::function<void(std::uint64_t)>;
     /// Sorts the buckets and appends their pairs to the list. Requires: called once, after the scan.
-    /// Throws: Error{cancelled}.
-    void append_sorted(const std::stop_token& stop);
+    /// Throws: Error{cancelled}; what `on_sorted` throws.
+    void append_sorted(const std::stop_token& stop, const OnSorted& on_sorted = {});
 
 private:
     class Buckets;
