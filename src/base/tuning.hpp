@@ -52,13 +52,17 @@ struct Tuning {
         std::size_t counts_per_range = 1 << 16;  ///< minimum number of merged counts per share
         std::size_t batch = 256;                 ///< objects loaded at a time, so that they stay in the L1 cache
         std::size_t max_chunk = 64;              ///< entries per chunk of a list; a power of two, at least 16
-        std::size_t chunk_part = 4;          ///< with larger chunks, one entry in this many could be unused; at least 1
-        std::size_t staged_lists = 1 << 15;  ///< entries of at least this many lists are scattered in two passes
-        std::size_t max_groups = 512;        ///< maximum number of groups of lists that the first pass scatters to
-        std::size_t staged_per_list = 16;    ///< mean number of entries per list that are staged between the passes
-        std::size_t stage_chunk = 256;       ///< entries per chunk of a group; at most 2048
-        std::size_t max_near_table = 1 << 17;  ///< elements: a larger table of leaves is prefetched
+        std::size_t chunk_part = 4;  ///< with larger chunks, one entry in this many could be unused; at least 1
     } build;
+
+    /// Builds whose lists and tables exceed the caches and the TLB (octree/build/staged_writer.cpp, octree/build/batch_encoder.cpp).
+    struct Large {
+        std::size_t lists = 1 << 15;     ///< entries of at least this many lists are scattered in two passes
+        std::size_t groups = 512;        ///< maximum number of groups of lists that the first pass scatters to
+        std::size_t staged = 16;         ///< mean number of entries per list that are staged between the passes
+        std::size_t chunk = 256;         ///< staged entries per chunk of a group
+        std::size_t elements = 1 << 17;  ///< a larger table of leaves is prefetched
+    } large;
 
     /// How the octants of a linear octree are scanned (octree/scan.cpp).
     struct Scan {

@@ -51,11 +51,6 @@ void shrink(Tuning::Build& build, Shrinker& to) {
     to.one_of<std::size_t>(build.batch, {1, 3, 16});
     to.one_of<std::size_t>(build.max_chunk, {16, 32});
     to.one_of<std::size_t>(build.chunk_part, {1, 4});
-    to.one_of<std::size_t>(build.staged_lists, {1, 50, 1000});
-    to.one_of<std::size_t>(build.max_groups, {1, 3, 16});
-    to.one_of<std::size_t>(build.staged_per_list, {1, 2});
-    to.one_of<std::size_t>(build.stage_chunk, {1, 5});
-    to.one_of<std::size_t>(build.max_near_table, {1, 1 << 17});
 }
 
 void shrink(Tuning::Scan& scan, Shrinker& to) {
@@ -151,6 +146,14 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
     to.one_of<std::size_t>(scene.share_queries, {1, 2});
 }
 
+void shrink(Tuning::Large& large, Shrinker& to) {
+    to.one_of<std::size_t>(large.lists, {1, 50, 1000});
+    to.one_of<std::size_t>(large.groups, {1, 3, 16});
+    to.one_of<std::size_t>(large.staged, {1, 2});
+    to.one_of<std::size_t>(large.chunk, {1, 5});
+    to.one_of<std::size_t>(large.elements, {1, 1 << 17});
+}
+
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
@@ -179,6 +182,7 @@ Tuning tiny_tuning(std::uint64_t seed) {
     shrink(tuning.processes, to);
     shrink(tuning.ranks, to);
     shrink(tuning.scene, to);
+    shrink(tuning.large, to);  // last, so that the seeds of earlier findings keep the other values
     if (seed % 3 == 0) favour_crowds(tuning);
     if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds its own nested octrees
     return tuning;

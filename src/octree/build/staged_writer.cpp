@@ -7,13 +7,13 @@
 namespace octopair {
 
 StagedWriter::StagedWriter(ChunkLists& of, std::size_t block) : writer_(of, block) {
-    const Tuning::Build& build = tuning().build;
+    const Tuning::Large& large = tuning().large;
     const std::size_t lists = of.lists() + 1;
-    while (lists >> group_bits_ > build.max_groups) ++group_bits_;
+    while (lists >> group_bits_ > large.groups) ++group_bits_;
     groups_.resize((lists >> group_bits_) + 1);
-    chunk_size_ = build.stage_chunk;
+    chunk_size_ = large.chunk;
     needed_ = groups_.size() + max_batch / chunk_size_;
-    chunks_ = needed_ + lists * build.staged_per_list / chunk_size_;
+    chunks_ = needed_ + lists * large.staged / chunk_size_;
     stage_.resize_discard(chunks_ * chunk_size_);
     next_.resize(chunks_);
 }
