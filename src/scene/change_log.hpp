@@ -44,6 +44,11 @@ public:
         previous_states_.back().state.exists = existed;
     }
 
+    /// Returns the state of an object at the last step if it has changed since, otherwise null.
+    const ObjectState* previous_state(const ObjectTable& table, std::uint32_t index) const {
+        const std::uint32_t mark = table.mark(index);
+        return mark == ObjectTable::none ? nullptr : &previous_states_[mark].state;
+    }
     std::span<const PreviousState> previous_states() const { return previous_states_; }
     /// Returns whether more objects changed than the log holds.
     bool overflowed() const { return overflowed_; }

@@ -116,7 +116,7 @@ void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const dou
         ids[i] = table_.create(boxes[i], paddings.empty() ? 0 : paddings[i], traits_at(traits, i));
         log_.note(table_, ids[i].index, false);
     }
-    added_ += ids.size();
+    changed_ |= !ids.empty();
 }
 
 void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
@@ -141,7 +141,7 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
         if (table_.has_box(index, boxes[i])) continue;
         log_.note(table_, index, true);
         table_.set_box(index, boxes[i]);
-        ++moved_;
+        changed_ = true;
     }
 }
 
@@ -155,7 +155,7 @@ void SceneObjects::sweep_to(std::span<const ObjectId> ids, std::span<const Box<R
         swept_.push_back({ids[i], wide(boxes[i])});
         table_.set_box(index, joined(table_.box(index), wide(boxes[i])));
     }
-    moved_ += ids.size();
+    changed_ |= !ids.empty();
 }
 
 void SceneObjects::drop_swept(std::uint32_t index) {
@@ -187,7 +187,7 @@ void SceneObjects::remove(std::span<const ObjectId> ids) {
         drop_swept(id.index);
         table_.kill(id.index);
         removed_.push_back(id.index);
-        ++moved_;
+        changed_ = true;
     }
 }
 
@@ -205,7 +205,7 @@ void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Tra
     for (std::size_t i = 0; i < ids.size(); ++i) {
         log_.note(table_, ids[i].index, true);
         table_.set_traits(ids[i].index, traits_at(traits, i));
-        ++moved_;
+        changed_ = true;
     }
 }
 
@@ -213,7 +213,7 @@ bool SceneObjects::finish_step() {
     if (changes_ == Changes::kept) log_.clear(table_);
     for (const std::uint32_t index : removed_) table_.release(index);
     removed_.clear();
-    moved_ = added_ = 0;
+    changed_ = false;
     return finish_sweeps();
 }
 
@@ -226,7 +226,7 @@ bool SceneObjects::finish_sweeps() {
         swept_at_[swept.id.index] = ObjectTable::none;
         log_.note(table_, swept.id.index, true);
         table_.set_box(swept.id.index, swept.place);
-        ++moved_;
+        changed_ = true;
     }
     swept_.clear();
     return true;

@@ -41,11 +41,9 @@ public:
 
     const ObjectTable& table() const { return table_; }
     const ChangeLog& log() const { return log_; }
-    /// Returns the number of changes of objects since the last step. Added objects do not count.
-    std::uint64_t moved() const { return moved_; }
     /// Returns whether any object was added or changed since the last step. An object that is moved to where it is does not
     /// change.
-    bool changed() const { return moved_ + added_ > 0; }
+    bool changed() const { return changed_; }
     /// Returns the indices of objects that were removed since the last step.
     std::span<const std::uint32_t> removed() const { return removed_; }
     std::span<const Swept> swept() const { return swept_; }
@@ -78,7 +76,7 @@ private:
     std::vector<Swept> swept_;
     /// By object index: position in swept_, or `none`. Empty before the first sweep.
     std::vector<std::uint32_t> swept_at_;
-    std::uint64_t moved_ = 0, added_ = 0;  // since the last step
+    bool changed_ = false;  // since the last step
     CallEncoder* recorder_ = nullptr;
 };
 

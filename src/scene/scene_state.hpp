@@ -4,7 +4,7 @@
 //   octree     mutable octree, valid if one of two flags is set. `octree_matches_last_step_`: it holds the objects as they
 //              were at the last step. `octree_matches_now_`: it holds the current objects
 //   search     incremental step: brings `octree` up to date and finds the pairs that began and ended
-//   linear     linear octree of a full step, used if too much has changed or `octree` is not of the last step
+//   linear     linear octree of a full step. The first step with few changes after it builds `octree` from it
 //   history    pairs of the last step
 #pragma once
 
@@ -53,6 +53,7 @@ private:
     bool expects_few_changes() const;
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
+    void build_octree_of_last_step(const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
     void drop_octrees();
 
@@ -71,6 +72,7 @@ private:
     bool has_stepped_ = false;               // a step has succeeded
     bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
     bool octree_matches_now_ = false;        // octree_ holds the current objects
+    bool linear_matches_last_step_ = false;  // linear_ holds the objects as they were at the last step
     bool linear_matches_now_ = false;        // linear_ holds the current objects
     bool queried_ = false;         // a query has built octree_ since the last full step, so its memory is kept
     double full_seconds_ = 0;      // time of the last full step

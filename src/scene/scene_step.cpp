@@ -2,6 +2,7 @@
 // detection; otherwise it is full (searches all objects).
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <new>
 #include <utility>
 
@@ -19,7 +20,7 @@ namespace {
 
 // Costs in multiples of the time of the last full detection.
 constexpr double max_search_cost = 0.9;   // maximum expected cost of an incremental step
-constexpr double max_rebuild_cost = 0.5;  // an octree is built if this step's changes would have cost at most this
+constexpr double max_rebuild_cost = 0.5;  // an octree is built if the changes are then expected to cost at most this
 constexpr double abort_cost = 4;          // an incremental step that takes longer, plus abort_seconds, is aborted
 constexpr double abort_seconds = 0.02;    // allowance for other programs that use the processor meanwhile
 
@@ -57,8 +58,9 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     bool full = false;
     try {
         if (!find_nothing(stop)) {
-            history_.prepare(octree_matches_last_step_);
-            full = !(expects_few_changes() && find_changes(stop));
+            const bool few = expects_few_changes();
+            history_.prepare(few);
+            full = !(few && find_changes(stop));
             if (full) find_all(stop);
             count_path(full ? Path::step_full : Path::step_incremental);
         }
@@ -88,16 +90,19 @@ bool Scene::State::find_nothing(const std::stop_token& stop) {
 
 /// Returns whether an incremental step is possible, and expected to be cheaper than a full one.
 bool Scene::State::expects_few_changes() const {
+    if (!octree_matches_last_step_ && !linear_matches_last_step_) return false;
     const double expected = double(objects_.log().previous_states().size()) * seconds_a_change_;
-    const bool cheap = chooses_incremental(expected <= max_search_cost * full_seconds_);
+    const double most = octree_matches_last_step_ ? max_search_cost : max_rebuild_cost;
+    const bool cheap = chooses_incremental(expected <= most * full_seconds_);
     // Exact entries were not widened by paddings.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
-    return octree_matches_last_step_ && !unlike && !objects_.log().overflowed() && cheap && !history_.is_inconsistent();
+    return cheap && !unlike && !objects_.log().overflowed() && !history_.is_inconsistent();
 }
 
 /// Discards both octrees after a search with wrong results. The next step builds all from the objects.
 void Scene::State::drop_octrees() {
-    octree_matches_last_step_ = octree_matches_now_ = linear_matches_now_ = false;
+    octree_matches_last_step_ = octree_matches_now_ = false;
+    linear_matches_last_step_ = linear_matches_now_ = false;
     refills_ = tuning().scene.max_refills;
 }
 
@@ -118,17 +123,8 @@ void Scene::State::find_all(const std::stop_token& stop) {
         initial_change_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
     // The measured estimate decays, so that an incremental step is tried again later.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    const bool build_octree =
-        chooses_incremental(double(objects_.moved()) * seconds_a_change_ <= max_rebuild_cost * full_seconds_);
-    if (build_octree) {
-        count_path(Path::octree_rebuilt);
-        octree_.build(linear_, source, stop);
-        linear_ = {};
-        refills_ = tuning().scene.max_refills;
-        linear_matches_now_ = false;
-    }
     history_.take_over(found_);  // last, so that a failure before has changed nothing
-    octree_matches_last_step_ = build_octree;
+    linear_matches_last_step_ = true;
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
@@ -138,7 +134,7 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
     const bool refill = refills_ < tuning().scene.max_refills && rounding.exact && rounding_.exact;
     const unsigned refills = refill ? refills_ + 1 : 0;
     refills_ = tuning().scene.max_refills;
-    linear_matches_now_ = false;
+    linear_matches_now_ = linear_matches_last_step_ = false;
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;
     rounding_ = rounding;
@@ -152,14 +148,38 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         octree_matches_last_step_ = false;
         if (!linear_matches_now_) build(SceneSource(objects_.table(), margin_), {});
         // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
-        octree_.build(linear_, SceneSource(objects_.table(), {rounding_.exact, rounding_.rounding}), {});
+        const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
+        octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, {});
         octree_matches_now_ = queried_ = true;
+        octree_matches_last_step_ = has_stepped_ && !objects_.changed();
     }
     return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
 }
 
+/// Builds the octree of incremental steps from the linear octree of the last step.
+/// Requires: linear_matches_last_step_.
+void Scene::State::build_octree_of_last_step(const std::stop_token& stop) {
+    count_path(Path::octree_rebuilt);
+    octree_matches_now_ = false;
+    const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
+    const auto load_bounds = [&](std::span<Entry> entries) {
+        source.load_bounds(entries);
+        for (Entry& entry : entries) {
+            const ObjectState* const former = objects_.log().previous_state(objects_.table(), entry.object);
+            if (former == nullptr) continue;
+            const Entry then = rounding_.entry(former->box, former->padding);
+            std::memcpy(&entry, &then, sizeof(Box3f));
+        }
+    };
+    octree_.build(linear_, load_bounds, stop);
+    linear_ = {};
+    linear_matches_now_ = linear_matches_last_step_ = false;
+    refills_ = tuning().scene.max_refills;
+}
+
 /// Runs an incremental step. Returns false if it was aborted because it took too long.
 bool Scene::State::find_changes(const std::stop_token& stop) {
+    if (!octree_matches_last_step_) build_octree_of_last_step(stop);
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t changed = objects_.log().previous_states().size();
     const auto time_limit = std::chrono::duration<double>(abort_cost * full_seconds_ + abort_seconds);

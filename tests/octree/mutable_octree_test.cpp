@@ -32,6 +32,10 @@ struct Linear {
         octree.build(source, executor, {});
     }
 
+    MutableOctree::LoadBounds load_bounds() const {
+        return [this](std::span<Entry> entries) { source.load_bounds(entries); };
+    }
+
     Objects objects;
     BoxSource source{objects, nullptr, 0};
     LinearOctree octree;
@@ -42,7 +46,7 @@ class Changing {
 public:
     explicit Changing(const std::vector<Box3f>& boxes) {
         const Linear linear(boxes);
-        octree_.build(linear.octree, linear.source, {});
+        octree_.build(linear.octree, linear.load_bounds(), {});
         cells_.resize(boxes.size());
         octree_.space().cells(boxes, cells_);
         here_.assign(boxes.size(), true);
@@ -147,7 +151,7 @@ bool stopped_after(std::chrono::nanoseconds delay, const Linear& linear, Mutable
         stop.request_stop();
     });
     try {
-        octree.build(linear.octree, linear.source, stop.get_token());
+        octree.build(linear.octree, linear.load_bounds(), stop.get_token());
         return false;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
@@ -161,7 +165,7 @@ TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     const Linear linear(boxes);
     MutableOctree octree;
     const auto begin = std::chrono::steady_clock::now();
-    octree.build(linear.octree, linear.source, {});
+    octree.build(linear.octree, linear.load_bounds(), {});
     const auto whole = std::chrono::steady_clock::now() - begin;
     std::vector<CellBox> cells(boxes.size());
     octree.space().cells(boxes, cells);

@@ -88,7 +88,7 @@ TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
     GTEST_SKIP() << "the sanitizer replaces malloc";
 #endif
     constexpr std::uint64_t objects = 3000;
-    for (const std::uint64_t moved : {std::uint64_t(200), objects}) {
+    for (const std::uint64_t moved : {std::uint64_t(100), objects}) {
         std::uint64_t failures = 0;
         bool whole = false;
         for (std::uint64_t n = 0; !whole && n < 4000; n += 1 + n / 40) {

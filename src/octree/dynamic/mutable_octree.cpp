@@ -100,7 +100,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     }
 }
 
-void MutableOctree::build(const LinearOctree& octree, const PairRule& rule, const std::stop_token& stop) {
+void MutableOctree::build(const LinearOctree& octree, const LoadBounds& load_bounds, const std::stop_token& stop) {
     clear();
     space_ = octree.space();
     directory_ = octree.directory();
@@ -120,7 +120,7 @@ void MutableOctree::build(const LinearOctree& octree, const PairRule& rule, cons
         octree.for_each_run(octant, [&](std::span<const CellEntry> run) {
             for (const CellEntry& entry : run) entries.push_back({{}, {}, entry.object, 0});
         });
-        rule.load_bounds(entries);
+        load_bounds(entries);
         boxes.resize(entries.size());
         space_.cells(entries, boxes);
         const LeafGrid& grid = grids_.emplace_back(LeafGrid::cut(octants[octant], units_.units(), boxes));

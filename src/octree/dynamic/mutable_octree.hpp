@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -31,7 +32,6 @@
 namespace octopair {
 
 class LinearOctree;
-class PairRule;
 
 /// An object that is added, moved or removed.
 struct OctreeChange {
@@ -76,9 +76,11 @@ public:
 
 class MutableOctree {
 public:
-    /// Replaces the contents by the entries of `octree`. `rule`: the rule of the octree's source.
+    /// Sets the bounds of entries whose object is set.
+    using LoadBounds = std::function<void(std::span<Entry>)>;
+    /// Replaces the contents by the entries of `octree`. `load_bounds` must give the bounds that `octree` was built with.
     /// Throws: Error{cancelled}; the octree is then empty.
-    void build(const LinearOctree& octree, const PairRule& rule, const std::stop_token& stop);
+    void build(const LinearOctree& octree, const LoadBounds& load_bounds, const std::stop_token& stop);
     /// Removes all octants and entries, and keeps the memory.
     void clear();
     /// Removes all octants and entries, and frees the memory.
