@@ -9,8 +9,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <variant>
 #include <vector>
@@ -46,13 +46,8 @@ public:
     ObjectId id(std::uint32_t index) const { return {index, slots_[index].generation}; }
 
     Box3d box(std::uint32_t index) const { return boxes64_.empty() ? wide(boxes32_[index]) : boxes64_[index]; }
-    /// True if the object has this box, bit for bit.
-    bool has_box(std::uint32_t index, const Box3f& box) const {
-        return std::memcmp(&boxes32_[index], &box, sizeof box) == 0;
-    }
-    bool has_box(std::uint32_t index, const Box3d& box) const {
-        return std::memcmp(&boxes64_[index], &box, sizeof box) == 0;
-    }
+    bool has_box(std::uint32_t index, const Box3f& box) const { return equal(boxes32_[index], box); }
+    bool has_box(std::uint32_t index, const Box3d& box) const { return equal(boxes64_[index], box); }
     double padding(std::uint32_t index) const { return padded_ ? paddings_[index] : 0; }
     Traits traits(std::uint32_t index) const { return with_traits_ ? traits_[index] : Traits{}; }
     ObjectState state(std::uint32_t index) const { return {alive(index), box(index), padding(index), traits(index)}; }
@@ -108,6 +103,10 @@ private:
     };
 
     std::uint32_t new_index();
+    template <typename Real>
+    static bool equal(const Box<Real>& a, const Box<Real>& b) {
+        return std::ranges::equal(a.min, b.min) && std::ranges::equal(a.max, b.max);
+    }
 
     Precision precision_;
     GrowingArray<Box3f> boxes32_;  // used for Precision::float32

@@ -138,10 +138,11 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
         const std::uint32_t index = ids[i].index;
         if (i + ahead < ids.size()) table_.prefetch(ids[i + ahead].index);
         if (any_swept) drop_swept(index);
-        if (table_.has_box(index, boxes[i])) continue;
-        log_.note(table_, index, true);
-        table_.set_box(index, boxes[i]);
-        changed_ = true;
+        if (!table_.has_box(index, boxes[i])) {
+            log_.note(table_, index, true);
+            changed_ = true;
+        }
+        table_.set_box(index, boxes[i]);  // also if equal: 0 may become -0
     }
 }
 

@@ -83,10 +83,11 @@ struct Constants {
 
     /// Returns the elements (Directory::Leaf::element()) of the leaves that hold fine cells.
     HWY_INLINE Lanes leaves(const Lanes& x, const Lanes& y, const Lanes& z) const {
-        auto found = gather(first_position(x, y, z));
+        const Lanes cells[3] = {x, y, z};
+        auto found = gather(first_position(cells));
         auto deeper = is_deeper(found);
         for (unsigned left = table.shift; HWY_UNLIKELY(!hn::AllFalse(Words(), deeper));) {
-            const auto next = next_position(found, left, x, y, z);
+            const auto next = next_position(found, left, cells);
             left -= table.levels_below(left);
             found = hn::IfThenElse(deeper, gather(next), found);
             deeper = is_deeper(found);
@@ -102,25 +103,24 @@ struct Constants {
         return hn::Gt(element, hn::Set(Words(), Directory::further - 1));
     }
     /// Returns the positions of fine cells in the first table.
-    HWY_INLINE Lanes first_position(const Lanes& x, const Lanes& y, const Lanes& z) const {
+    HWY_INLINE Lanes first_position(const Lanes (&cells)[3]) const {
         const Words d;
         const int shift = int(table.shift + SpaceMap::fine_bits);
-        const auto row =
-            hn::Add(hn::Mul(hn::ShiftRightSame(z, shift), hn::Set(d, table.sizes[1])), hn::ShiftRightSame(y, shift));
-        return hn::Add(hn::Mul(row, hn::Set(d, table.sizes[0])), hn::ShiftRightSame(x, shift));
+        const auto row = hn::Add(hn::Mul(hn::ShiftRightSame(cells[2], shift), hn::Set(d, table.sizes[1])),
+                                 hn::ShiftRightSame(cells[1], shift));
+        return hn::Add(hn::Mul(row, hn::Set(d, table.sizes[0])), hn::ShiftRightSame(cells[0], shift));
     }
     /// Returns the positions of fine cells in the tables that `found` refers to, below octants of 2^`left` cells on each axis;
     /// 0 for a leaf.
-    HWY_INLINE Lanes next_position(const Lanes& found, unsigned left, const Lanes& x, const Lanes& y,
-                                   const Lanes& z) const {
+    HWY_INLINE Lanes next_position(const Lanes& found, unsigned left, const Lanes (&cells)[3]) const {
         const Words d;
         const unsigned levels = table.levels_below(left);
         const auto digits = [&](const Lanes& cell) HWY_ATTR {
             return hn::And(hn::ShiftRightSame(cell, int(left - levels + SpaceMap::fine_bits)),
                            hn::Set(d, (1u << levels) - 1));
         };
-        const auto in_table = hn::Or(hn::ShiftLeftSame(digits(z), int(2 * levels)),
-                                     hn::Or(hn::ShiftLeftSame(digits(y), int(levels)), digits(x)));
+        const auto in_table = hn::Or(hn::ShiftLeftSame(digits(cells[2]), int(2 * levels)),
+                                     hn::Or(hn::ShiftLeftSame(digits(cells[1]), int(levels)), digits(cells[0])));
         return hn::IfThenElseZero(is_deeper(found), hn::Add(hn::Sub(found, hn::Set(d, Directory::further)), in_table));
     }
 
@@ -282,13 +282,13 @@ HWY_NOINLINE void prefetch_leaves(const Constants& constants, std::span<const It
     Lanes low[3];
     for (std::size_t i = 0; i < whole; i += lanes) {
         low_cells(constants, load_lanes(items.data() + i, 0), low);
-        prefetch_positions(i, constants.first_position(low[0], low[1], low[2]));
+        prefetch_positions(i, constants.first_position(low));
     }
     if (constants.table.shift == constants.table.last_shift) return;
     for (std::size_t i = 0; i < whole; i += lanes) {
         low_cells(constants, load_lanes(items.data() + i, 0), low);
         const auto found = constants.gather(hn::Load(d, positions.data() + i));
-        prefetch_positions(i, constants.next_position(found, constants.table.shift, low[0], low[1], low[2]));
+        prefetch_positions(i, constants.next_position(found, constants.table.shift, low));
     }
 }
 
