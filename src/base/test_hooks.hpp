@@ -23,8 +23,8 @@ namespace octopair {
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
     /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
-    path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) path(ghost_entries) path(ghosts_by_rule) \
-    path(refilled) path(class_bits_brought) \
+    path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) \
+    path(ghost_entries) path(ghosts_by_rule) path(refilled) path(class_bits_brought) \
     /* octree/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
     path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \

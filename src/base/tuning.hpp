@@ -57,11 +57,11 @@ struct Tuning {
 
     /// Builds whose lists and tables exceed the caches and the TLB (octree/build/staged_writer.cpp, octree/build/batch_encoder.cpp).
     struct Large {
-        std::size_t lists = 1 << 15;     ///< entries of at least this many lists are scattered in two passes
-        std::size_t groups = 512;        ///< maximum number of groups of lists that the first pass scatters to
-        std::size_t staged = 16;         ///< mean number of entries per list that are staged between the passes
-        std::size_t chunk = 256;         ///< staged entries per chunk of a group
-        std::size_t elements = 1 << 17;  ///< a larger table of leaves is prefetched
+        std::size_t min_lists = 1 << 15;       ///< entries of at least this many lists are scattered in two passes
+        std::size_t max_groups = 512;          ///< maximum number of groups of lists that the first pass scatters to
+        std::size_t staged_per_list = 16;      ///< mean number of entries per list that are staged between the passes
+        std::size_t stage_chunk = 256;         ///< staged entries per chunk of a group
+        std::size_t max_near_table = 1 << 17;  ///< elements: a larger table of leaves is prefetched
     } large;
 
     /// How the octants of a linear octree are scanned (octree/scan.cpp).

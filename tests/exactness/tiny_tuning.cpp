@@ -147,11 +147,11 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
 }
 
 void shrink(Tuning::Large& large, Shrinker& to) {
-    to.one_of<std::size_t>(large.lists, {1, 50, 1000});
-    to.one_of<std::size_t>(large.groups, {1, 3, 16});
-    to.one_of<std::size_t>(large.staged, {1, 2});
-    to.one_of<std::size_t>(large.chunk, {1, 5});
-    to.one_of<std::size_t>(large.elements, {1, 1 << 17});
+    to.one_of<std::size_t>(large.min_lists, {1, 50, 1000});
+    to.one_of<std::size_t>(large.max_groups, {1, 3, 16});
+    to.one_of<std::size_t>(large.staged_per_list, {1, 2});
+    to.one_of<std::size_t>(large.stage_chunk, {1, 5});
+    to.one_of<std::size_t>(large.max_near_table, {1, 1 << 17});
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.

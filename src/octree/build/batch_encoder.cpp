@@ -11,7 +11,7 @@ namespace octopair {
 BatchEncoder::BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list_number)
     : map(space.map()),
       table(directory.leaf_table()),
-      large_table(table.size > tuning().large.elements),
+      large_table(table.size > tuning().large.max_near_table),
       no_list(no_list_number),
       space_(space),
       directory_(directory) {

@@ -66,7 +66,7 @@ public:
     SpaceMap map;
     std::array<unsigned, 3> axes;  ///< coordinate axis of each axis of the sweep
     Directory::LeafTable table;
-    bool large_table;  ///< true if the table is larger than the L2 cache
+    bool large_table;  ///< true if the table is larger than the L2 cache, so that encode() prefetches its elements
     std::uint32_t no_list;
     /// By octant: OctantCells::deep_origin() of deep octants; empty if there are none.
     std::vector<std::array<float, 4>> deep_origins;

@@ -152,7 +152,7 @@ void BuildMemory::resize(std::size_t objects, std::size_t blocks, std::size_t oc
 }
 
 void BuildSteps::encode_and_scatter(const NumberedBlock& block) const {
-    if (memory.lists.lists() < tuning().large.lists) {
+    if (memory.lists.lists() < tuning().large.min_lists) {
         encode_and_scatter_with<ChunkWriter>(block);
     } else {
         count_path(Path::scattered_twice);

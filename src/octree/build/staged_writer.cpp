@@ -9,11 +9,11 @@ namespace octopair {
 StagedWriter::StagedWriter(ChunkLists& of, std::size_t block) : writer_(of, block) {
     const Tuning::Large& large = tuning().large;
     const std::size_t lists = of.lists() + 1;
-    while (lists >> group_bits_ > large.groups) ++group_bits_;
+    while (lists >> group_bits_ > large.max_groups) ++group_bits_;
     groups_.resize((lists >> group_bits_) + 1);
-    chunk_size_ = large.chunk;
+    chunk_size_ = large.stage_chunk;
     needed_ = groups_.size() + max_batch / chunk_size_;
-    chunks_ = needed_ + lists * large.staged / chunk_size_;
+    chunks_ = needed_ + lists * large.staged_per_list / chunk_size_;
     stage_.resize_discard(chunks_ * chunk_size_);
     next_.resize(chunks_);
 }

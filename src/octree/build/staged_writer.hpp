@@ -1,7 +1,7 @@
 // StagedWriter: appends the entries of one block of objects to very many lists of ChunkLists.
 //
-// A ChunkWriter appends each entry to any of the lists. If their last cache lines are more than the caches and the TLB hold,
-// almost each entry waits for memory. A StagedWriter distributes entries in two passes, as an MSD radix sort does: first to
+// A ChunkWriter writes each entry to the end of its list. If there are more lists than the caches and the TLB hold the ends of,
+// almost each write waits for memory. A StagedWriter distributes entries in two passes, as an MSD radix sort does: first to
 // groups of adjacent lists, then group by group to the lists. Each pass writes to a few hundred places.
 //
 // Invariants
@@ -36,7 +36,7 @@ public:
         staged.list = list;
         std::memcpy(staged.entry, &entry, sizeof(CellEntry));
     }
-    /// Staged entries of discarded lists take no room in a list.
+    /// No effect: flush() discards entries.
     void reset_discarded() {}
     /// True if flush() must be called before a further batch of `max_batch` entries.
     bool full() const { return free_ + needed_ > chunks_; }
@@ -44,7 +44,7 @@ public:
     /// Makes the lists readable.
     void finish();
 
-    static constexpr std::size_t max_batch = 8 * 256;
+    static constexpr std::size_t max_batch = 8 * 256;  ///< 8 entries of each of 256 objects
 
 private:
     struct StagedEntry {
