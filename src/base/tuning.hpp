@@ -146,7 +146,7 @@ struct Tuning {
         std::size_t counted = 1 << 14;         ///< about the number of sampled objects that a rank estimates loads from
         std::size_t block = 1 << 16;           ///< objects per share
         std::size_t share_pairs = 1 << 16;     ///< pairs per share of the sort
-        std::uint64_t octants = 1;      ///< minimum number of octants distributed to each rank, if they can be divided
+        std::uint64_t octants = 8;      ///< minimum number of octants distributed to each rank, if they can be divided
         std::size_t key_samples = 64;   ///< sampled keys per rank
         std::size_t relayed = 1 << 20;  ///< pairs per message
         unsigned row_bin_bits = 14;     ///< log2 of the maximum number of bins of objects by which pairs are counted

@@ -122,13 +122,11 @@ void RankSearch::find(Task& task) {
     const Objects& first = task.slices[0];
     const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
     const BoxSource own(first, second, task.joint.form);
-    OctreeLayout layout = plan(task, own);
     if (comm_.size() == 1) {
-        const OctantIndex all = OctantIndex(layout.directory.octants().size());
-        passes_.set_share({std::move(layout), 0, all}, task.stops);
+        passes_.set_share(plan_alone(task, own), task.stops);
         return search(task, {first, second, asked.options});
     }
-    passes_.set_share(route(task, own, std::move(layout)), task.stops);
+    passes_.set_share(plan_and_route(task, own), task.stops);
     const Objects first_received = received_[0].view(), second_received = received_[1].view();
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
 }
@@ -142,32 +140,43 @@ void RankSearch::find_at_master(Task& task) {
     task.summary.steps = summary.steps;
 }
 
-OctreeLayout RankSearch::plan(Task& task, const BoxSource& own) {
+RankShare RankSearch::plan_alone(Task& task, const BoxSource& own) {
     const Metered metered(comm_, costs_.plan);
-    const std::stop_token stop = task.stop.get_token();
-    if (comm_.size() == 1) return make_layout(own, stop);
-    return plan_together(comm_, task.joint, own, stop);
+    RankShare share{make_layout(own, task.stop.get_token())};
+    share.end = OctantIndex(share.layout.directory.octants().size());
+    return share;
 }
 
-/// Sends objects to the ranks whose octants they touch, and receives those for this rank. Returns this rank's share.
-RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layout) {
+RankShare RankSearch::plan_and_route(Task& task, const BoxSource& own) {
+    std::optional<OctreePlanning> planning;
+    {
+        const Metered metered(comm_, costs_.plan);
+        planning.emplace(comm_, task.joint, own, task.stop.get_token());
+    }
+    const OctantOwners owners = route(task, own, planning->shared());
+    return grow(task, *planning, owners);
+}
+
+/// Sends objects to the ranks whose octants they touch, and receives those for this rank. `shared`: octants that all ranks store.
+/// Returns the owners of these octants.
+OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreeLayout& shared) {
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
     std::vector<OctantLoad> loads;
     std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        loads.resize(layout.directory.octants().size());
-        routing.emplace(task.joint, own, layout, routing_, task.stop.get_token());
+        loads.resize(shared.directory.octants().size());
+        routing.emplace(task.joint, own, shared, routing_, task.stop.get_token());
         routing->find_homes(executor, loads);
     });
-    comm_.add_up({&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))});
+    comm_.add_up(std::span(&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))));
     const unsigned sets = task.sets();
-    std::optional<OctantOwners> cut;
+    std::optional<OctantOwners> owners;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        cut.emplace(layout.directory, loads, comm_.size());
-        routing->assign_owners(executor, *cut);
+        owners.emplace(shared.directory, loads, comm_.size());
+        routing->assign_owners(executor, *owners);
         const Metered packing(comm_, costs_.pack);
         for (unsigned set = 0; set < sets; ++set) {
             for (ObjectArrays* arrays : {&sent_[set], &received_[set]}) {
@@ -181,12 +190,19 @@ RankShare RankSearch::route(Task& task, const BoxSource& own, OctreeLayout layou
     costs_.route -= costs_.pack;
     costs_.shared_objects = routing->shared_objects();
     exchange_objects(task, *routing);
-    const OctantOwners& owners = *cut;
+    return std::move(*owners);
+}
+
+/// Divides the octants that this rank owns. Returns this rank's share.
+RankShare RankSearch::grow(Task& task, OctreePlanning& planning, const OctantOwners& owners) {
+    const Metered metered(comm_, costs_.plan);
+    OctreePlanning::OwnLayout own = planning.grow(owners);
+    if (planted(Fault::rank_takes_neighbour) && own.end < own.layout.directory.octants().size()) ++own.end;
     PairNumbers numbers;
-    if (!task.joint.indexed) numbers = {received_[0].positions.span(), received_[sets - 1].positions.span()};
-    OctantIndex end = owners.end(comm_.rank());
-    if (planted(Fault::rank_takes_neighbour) && end < layout.directory.octants().size()) ++end;
-    return {std::move(layout), owners.begin(comm_.rank()), end, numbers};
+    if (!task.joint.indexed) {
+        numbers = {received_[0].positions.span(), received_[task.sets() - 1].positions.span()};
+    }
+    return {std::move(own.layout), own.begin, own.end, numbers};
 }
 
 void RankSearch::exchange_objects(Task& task, const Routing& routing) {

@@ -1,16 +1,17 @@
 // RankSearch: runs a call on one rank, from its slice of the objects to its piece of the pairs.
 //
 //   join    combines the calls of all ranks and checks that they agree                        (joint_call.hpp)
-//   plan    chooses the octants of the octree, from the sample that the local engine takes    (octree_planning.hpp)
-//   cut     divides the pre-order of octants into one run of about equal work for each rank   (octant_owners.hpp)
+//   plan    chooses the top of the octree, from the sample that the local engine takes        (octree_planning.hpp)
+//   cut     divides the pre-order of these octants into a run of octants for each rank        (octant_owners.hpp)
 //   route   sends each object to the ranks whose octants it touches                           (routing.hpp)
+//   grow    divides the rank's own octants further                                            (octree_planning.hpp)
 //   search  builds the rank's octree and scans the rank's octants, like the local engine      (rank_passes.hpp)
 //   order   for ascending order: sends each pair to the rank that its `a` belongs to, which
 //           sorts its pairs                                                                   (ascending_pieces.hpp)
 //
 // Result     the pieces of all ranks, in rank order, are the pairs that the local engine finds.
-// Memory     each rank stores the shape of the whole octree and a few numbers for each rank and octant. No other data is
-//            gathered on one rank, except the pairs with Recipients::first.
+// Memory     each rank stores the top of the octree, its own octants, and a few numbers for each rank and octant of the top.
+//            No data of all ranks is gathered on one rank, except the pairs with Recipients::first.
 #pragma once
 
 #include <array>
@@ -23,6 +24,7 @@
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/paper/master_search.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
+#include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_passes.hpp"
 #include "engine/pair_list.hpp"
@@ -72,8 +74,10 @@ private:
     void find(Task& task);
     void join(Task& task);
     void find_at_master(Task& task);
-    OctreeLayout plan(Task& task, const BoxSource& own);
-    RankShare route(Task& task, const BoxSource& own, OctreeLayout layout);
+    RankShare plan_alone(Task& task, const BoxSource& own);
+    RankShare plan_and_route(Task& task, const BoxSource& own);
+    OctantOwners route(Task& task, const BoxSource& own, const OctreeLayout& shared);
+    RankShare grow(Task& task, OctreePlanning& planning, const OctantOwners& owners);
     void exchange_objects(Task& task, const Routing& routing);
     void search(Task& task, const detail::Request& own_octants);
     void build(Task& task, Call& call);

@@ -8,27 +8,18 @@
 #include <span>
 #include <vector>
 
+#include "octree/build/box_locator.hpp"
 #include "octree/cell_sweep/cell_entry.hpp"
 #include "octree/directory.hpp"
 #include "octree/space.hpp"
 
 namespace octopair {
 
-inline constexpr std::size_t max_encoded = 256;  ///< maximum number of boxes in a batch
-
-/// The home entries of a batch of boxes, and the boxes that reach beyond their home.
-struct EncodedBatch {
-    static constexpr std::size_t room = max_encoded + 8;  ///< SIMD versions write a few numbers behind the last one
+/// A batch of boxes with their home entries.
+struct EncodedBatch : CrosserBatch {
     alignas(64) std::array<CellEntry, room> homes;
     std::array<std::uint32_t, room>
         lists;  ///< home octant of each box; BatchEncoder::no_list if the box is too large for a leaf
-
-    /// By crosser: a box that reaches beyond the leaf that it begins in.
-    std::size_t crossers = 0;
-    /// Initialised, because SIMD versions read a few numbers behind the last one.
-    std::array<std::uint32_t, room> crosser = {};  ///< position in the batch, ascending
-    std::array<std::uint32_t, room> leaf = {};     ///< leaf that the box begins in, as Directory::Leaf::element()
-    std::array<std::array<std::uint32_t, room>, 3> low = {}, high = {};  ///< ends in fine cells, by coordinate axis
 };
 
 /// Crossers [begin, begin + count) of a batch.
@@ -63,10 +54,8 @@ public:
     /// Leaves all crossers to the general rule (octants_of.hpp), which is the specification.
     static void ghosts_scalar(CrosserRange crossers, GhostGroup& group);
 
-    SpaceMap map;
+    BoxLocator locator;
     std::array<unsigned, 3> axes;  ///< coordinate axis of each axis of the sweep
-    Directory::LeafTable table;
-    bool large_table;  ///< true if the table is larger than the L2 cache, so that encode() prefetches its elements
     std::uint32_t no_list;
     /// By octant: OctantCells::deep_origin() of deep octants; empty if there are none.
     std::vector<std::array<float, 4>> deep_origins;

@@ -103,11 +103,7 @@ private:
     void append_ghosts_of(std::size_t crosser) {
         const CellEntry& home = batch_.homes[batch_.crosser[crosser]];
         const std::uint32_t home_octant = batch_.lists[batch_.crosser[crosser]];
-        CellBox box;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            box.lo[axis] = batch_.low[axis][crosser] >> SpaceMap::fine_bits;
-            box.hi[axis] = batch_.high[axis][crosser] >> SpaceMap::fine_bits;
-        }
+        const CellBox box = batch_.cells(crosser);
         count_path(home_octant == encoder_.no_list ? Path::kept_above_leaf : Path::ghosts_by_rule);
         const Directory::Leaf leaf(batch_.leaf[crosser]);
         const Entry whole = whole_entry(batch_.crosser[crosser]);

@@ -1,6 +1,7 @@
 // Division of a sequence of work items into contiguous parts with about equal work.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -22,6 +23,34 @@ inline std::vector<std::size_t> even_cuts(std::span<const std::uint64_t> work, s
         before += work[item];
     }
     begins.resize(parts + 1, work.size());
+    return begins;
+}
+
+/// Returns cuts like even_cuts(), with the smallest possible work of the largest part, within one thousandth. Later parts may have
+/// less work than earlier ones.
+/// Source: Pinar, Aykanat 2004, Fast optimal load balancing algorithms for 1D partitioning.
+inline std::vector<std::size_t> least_cuts(std::span<const std::uint64_t> work, std::size_t parts) {
+    std::vector<std::uint64_t> sums(work.size() + 1, 0);
+    std::inclusive_scan(work.begin(), work.end(), sums.begin() + 1);
+    std::vector<std::size_t> begins;
+    // Fills one part after another with at most `most`. Returns false if items are left.
+    const auto fill = [&](std::uint64_t most) {
+        begins = {0};
+        while (begins.size() <= parts) {
+            const auto from = sums.begin() + std::ptrdiff_t(begins.back());
+            begins.push_back(std::size_t(std::upper_bound(from, sums.end(), *from + most) - sums.begin()) - 1);
+        }
+        return begins.back() == work.size();
+    };
+    const std::uint64_t mean = sums.back() / std::max<std::size_t>(1, parts);
+    const std::uint64_t largest = work.empty() ? 0 : *std::ranges::max_element(work);
+    std::uint64_t too_little = std::max(mean, largest), enough = mean + largest + 1;
+    if (too_little > 0) --too_little;
+    while (enough - too_little > mean / 1000 + 1) {
+        const std::uint64_t middle = too_little + (enough - too_little) / 2;
+        (fill(middle) ? enough : too_little) = middle;
+    }
+    fill(enough);
     return begins;
 }
 

@@ -28,7 +28,7 @@ std::vector<std::uint64_t> work_of(const Directory& directory, std::span<const O
 }  // namespace
 
 OctantOwners::OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks)
-    : directory_(directory), begins_(even_cuts(work_of(directory, loads), ranks)), owners_(loads.size()) {
+    : directory_(directory), begins_(least_cuts(work_of(directory, loads), ranks)), owners_(loads.size()) {
     for (unsigned rank = 0; rank < ranks; ++rank) {
         std::fill(owners_.begin() + begin(rank), owners_.begin() + end(rank), rank);
     }

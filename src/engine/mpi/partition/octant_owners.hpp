@@ -1,4 +1,6 @@
-// OctantOwners: assignment of octants to ranks.
+// OctantOwners: assignment of the octants that all ranks store to ranks.
+//
+// Such an octant may be divided further in the whole octree. Then its owner owns all of its descendants.
 //
 // Invariants 1. Each rank owns one run of the pre-order of the octree. A run may be empty.
 //            2. An object belongs to each rank that owns an octant with an entry of the object.

@@ -6,7 +6,6 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "boxes/box_kernel.hpp"
 #include "octree/build/octants_of.hpp"
 
 namespace octopair {
@@ -14,6 +13,7 @@ namespace octopair {
 namespace {
 
 constexpr std::size_t max_batch = default_tuning.ranks.batch;
+static_assert(max_batch <= max_encoded);
 constexpr std::size_t check_interval = 1 << 15;  // number of objects between two checks for a stop request
 
 }  // namespace
@@ -24,6 +24,7 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLay
     : call_(call),
       source_(source),
       layout_(layout),
+      locator_(layout.space, layout.directory),
       stop_(std::move(stop)),
       blocks_(memory.blocks_),
       places_(memory.places_) {
@@ -59,56 +60,61 @@ void Routing::find_homes(Executor& executor, std::span<OctantLoad> loads) {
     }
 }
 
-namespace {
+/// The boxes of a batch, in the form that the source has.
+class Routing::SourceBatch {
+public:
+    explicit SourceBatch(const BoxSource& source) : source_(source) {}
 
-/// Stores the cells of objects [begin, begin + cells.size()) of a source. Returns false if one of the boxes is invalid.
-bool load_cells(const BoxSource& source, const Space& space, std::size_t begin, std::span<CellBox> cells) {
-    if (const auto boxes = source.plain(begin, cells.size()).boxes; !boxes.empty()) {
-        space.cells(boxes, cells);
-        return are_boxes(boxes);
+    /// Loads objects [begin, begin + count) and finds their leaves. Returns false if one of them is no valid box.
+    bool locate(std::size_t begin, std::size_t count, const BoxLocator& locator, LocatedBatch& batch) {
+        plain_ = source_.plain(begin, count).boxes;
+        if (!plain_.empty()) return locator.locate(plain_, batch);
+        loaded_ = std::span(entries_).first(count);
+        if (!source_.load(begin, std::span(entries_).first(count))) return false;
+        locator.locate(loaded_, batch);
+        return true;
     }
-    std::array<Entry, max_batch> entries;
-    const std::span<Entry> loaded = std::span(entries).first(cells.size());
-    const bool good = source.load(begin, loaded);
-    space.cells(loaded, cells);
-    return good;
-}
+    void cells(const Space& space, std::span<CellBox> out) const {
+        if (plain_.empty()) return space.cells(loaded_, out);
+        space.cells(plain_, out);
+    }
 
-}  // namespace
+private:
+    const BoxSource& source_;
+    std::span<const Box3f> plain_;
+    std::array<Entry, max_batch> entries_;
+    std::span<const Entry> loaded_;
+};
 
 void Routing::find_homes(Block& block, std::span<OctantLoad> loads) {
     const Directory& directory = layout_.directory;
     const std::size_t batch_size = tuning().ranks.batch;
-    std::array<CellBox, max_batch> cells, ends;
-    std::array<Directory::Leaf, max_batch> homes, end_leaves;
-    std::array<std::uint32_t, max_batch> crossers;
+    SourceBatch boxes(source_);
+    LocatedBatch batch;
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);
-        if (!load_cells(source_, layout_.space, begin, std::span(cells).first(count))) {
+        if (!boxes.locate(begin, count, locator_, batch)) {
             block.bad = begin;
             return;
         }
-        directory.leaves(std::span(cells).first(count), homes);
-        std::size_t crossing = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            // No branch on whether a box crosses: the processor could not predict it.
-            const bool crosses = !within(cells[i], homes[i].level());
-            places_[begin + i] = homes[i].octant();
-            crossers[crossing] = std::uint32_t(i);
-            crossing += crosses ? 1 : 0;
-        }
-        const bool counted = begin / batch_size % counted_stride_ == 0;
-        for (std::size_t i = 0; counted && i < count; ++i) loads[homes[i].octant()].add(cells[i]);
-        for (std::size_t i = 0; i < crossing; ++i) ends[i].lo = cells[crossers[i]].hi;
-        directory.leaves(std::span(ends).first(crossing), end_leaves);
-        for (std::size_t i = 0; i < crossing; ++i) {
-            const std::uint32_t object = crossers[i];
-            if (counted) loads[end_leaves[i].octant()].add(cells[object]);
+        for (std::size_t i = 0; i < count; ++i) places_[begin + i] = Directory::Leaf(batch.leaves[i]).octant();
+        for (std::size_t i = 0; i < batch.crossers; ++i) {
+            const Directory::Leaf home(batch.leaf[i]), end(batch.end_leaf[i]);
             block.crossers.push_back(
-                {begin + object, OctantOwners::reach(cells[object], directory, homes[object], end_leaves[i])});
+                {begin + batch.crosser[i], OctantOwners::reach(batch.cells(i), directory, home, end)});
         }
+        if (begin / batch_size % counted_stride_ == 0) add_loads(boxes, count, batch, loads);
     }
+}
+
+void Routing::add_loads(const SourceBatch& boxes, std::size_t count, const LocatedBatch& batch,
+                        std::span<OctantLoad> loads) const {
+    std::array<CellBox, max_batch> cells;
+    boxes.cells(layout_.space, std::span(cells).first(count));
+    for (std::size_t i = 0; i < count; ++i) loads[Directory::Leaf(batch.leaves[i]).octant()].add(cells[i]);
+    for (std::size_t i = 0; i < batch.crossers; ++i)
+        loads[Directory::Leaf(batch.end_leaf[i]).octant()].add(cells[batch.crosser[i]]);
 }
 
 void Routing::assign_owners(Executor& executor, const OctantOwners& owners) {

@@ -21,6 +21,7 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
+#include "octree/build/box_locator.hpp"
 #include "octree/build/build_steps.hpp"
 #include "octree/executor.hpp"
 #include "octree/linear_octree.hpp"
@@ -59,7 +60,7 @@ public:
         Buffer<std::uint32_t> places_;
     };
 
-    /// Borrows all arguments but the token. `source`: this rank's objects.
+    /// Borrows all arguments but the token. `source`: this rank's objects. `layout`: the octants that all ranks store.
     Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
             std::stop_token stop);
 
@@ -77,7 +78,10 @@ public:
     void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
 
 private:
+    class SourceBatch;
     void find_homes(Block& block, std::span<OctantLoad> loads);
+    void add_loads(const SourceBatch& boxes, std::size_t count, const LocatedBatch& batch,
+                   std::span<OctantLoad> loads) const;
     void assign_owners(Block& block);
     void share(Block& block, std::span<const Crosser> crossers) const;
     template <typename Place>
@@ -86,6 +90,7 @@ private:
     const JointCall& call_;
     const BoxSource& source_;
     const OctreeLayout& layout_;
+    BoxLocator locator_;
     std::stop_token stop_;
     std::size_t counted_stride_ = 1;  // loads are estimated from one batch of so many, which is exact enough
     std::vector<Block>& blocks_;
