@@ -143,8 +143,7 @@ struct Tuning {
     struct Ranks {
         std::uint64_t round_bytes = 16 << 20;  ///< bytes distributed between checks for a stop; at least 48
         std::size_t batch = 256;               ///< objects routed at a time
-        std::size_t counted = 1 << 14;         ///< about the number of sampled objects that a rank estimates loads from
-        std::size_t block = 1 << 16;           ///< objects per share
+        std::size_t block = 1 << 15;           ///< objects per share; at most 2^15: near positions rely on it
         std::size_t share_pairs = 1 << 16;     ///< pairs per share of the sort
         std::uint64_t octants = 8;      ///< minimum number of octants distributed to each rank, if they can be divided
         std::size_t key_samples = 64;   ///< sampled keys per rank

@@ -21,10 +21,15 @@
 
 namespace octopair {
 
-/// Boxes of consecutive objects.
+/// Boxes of objects.
 struct PlainBoxes {
     std::span<const Box3f> boxes;
-    std::uint32_t first_object = 0;
+    std::uint32_t first_object = 0;          ///< number of the first object; the other numbers follow it
+    const std::uint32_t* objects = nullptr;  ///< if not null: the number of each object, in place of `first_object`
+
+    std::uint32_t object(std::size_t i) const {
+        return objects != nullptr ? objects[i] : first_object + std::uint32_t(i);
+    }
 };
 
 /// Source of the entries of an octree: the caller's boxes, or the entries of a crowded octant (octree/scan.cpp).
@@ -34,8 +39,8 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// Returns the boxes [begin, begin + count), unchecked, if their entries have the same bounds, no bit in their masks and
-    /// consecutive objects; otherwise no boxes.
+    /// Returns the boxes [begin, begin + count), unchecked, if their entries have the same bounds and no bit in their masks;
+    /// otherwise no boxes.
     virtual PlainBoxes plain(std::size_t begin, std::size_t count) const {
         (void)begin, (void)count;
         return {};

@@ -59,8 +59,8 @@ TEST_P(Encoding, KernelAndSpecificationAgree) {
     for (std::size_t begin = 0; begin < boxes.size();) {
         const std::size_t count = std::min<std::size_t>(1 + random() % max_encoded, boxes.size() - begin);
         const auto some = std::span<const Box3f>(boxes).subspan(begin, count);
-        ASSERT_TRUE(encoder->encode(some, std::uint32_t(begin), found));
-        ASSERT_TRUE(encoder->encode_scalar(some, std::uint32_t(begin), expected));
+        ASSERT_TRUE(encoder->encode({some, std::uint32_t(begin)}, found));
+        ASSERT_TRUE(encoder->encode_scalar({some, std::uint32_t(begin)}, expected));
         expect_same(found, expected, count);
         const auto some_entries = std::span<const Entry>(entries).subspan(begin, count);
         encoder->encode(some_entries, found);

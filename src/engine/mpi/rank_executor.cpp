@@ -5,48 +5,40 @@
 
 namespace octopair {
 
-/// Renumbers and filters pairs, and passes them to another writer. Polls for stop requests, as a share may write for minutes.
+/// Filters pairs, and passes them to another writer. Polls for stop requests, as a share may write for minutes.
 class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
     bool counting() const override { return writer_.counting(); }
+    std::span<Pair> room(std::size_t pairs) override { return filters() ? std::span<Pair>() : writer_.room(pairs); }
     void write_count(std::uint64_t pairs) override {
         poll_stops();
         writer_.write_count(pairs);
     }
     void write(std::span<const Pair> pairs) override {
         poll_stops();
-        if (executor_.numbers_.a.empty() && executor_.wanted_.marks.empty()) return writer_.write(pairs);
-        std::array<Pair, 1024> numbered;
+        if (!filters()) return writer_.write(pairs);
+        std::array<Pair, 1024> wanted;
         while (!pairs.empty()) {
-            const auto some = pairs.first(std::min(pairs.size(), numbered.size()));
-            number(some, numbered);
-            const std::size_t wanted = drop_unwanted(std::span(numbered).first(some.size()));
-            if (wanted > 0) writer_.write(std::span(numbered).first(wanted));
+            const auto some = pairs.first(std::min(pairs.size(), wanted.size()));
+            const std::size_t count = copy_wanted(some, wanted.data());
+            if (count > 0) writer_.write(std::span(wanted).first(count));
             pairs = pairs.subspan(some.size());
         }
     }
 
 private:
-    void number(std::span<const Pair> pairs, std::span<Pair> out) const {
-        const PairNumbers& numbers = executor_.numbers_;
-        if (numbers.a.empty()) {
-            std::copy(pairs.begin(), pairs.end(), out.begin());
-            return;
-        }
-        for (std::size_t i = 0; i < pairs.size(); ++i) out[i] = {numbers.a[pairs[i].a], numbers.b[pairs[i].b]};
-    }
-    /// Moves the wanted pairs to the front, in order. Returns their number.
-    std::size_t drop_unwanted(std::span<Pair> pairs) const {
+    bool filters() const { return !executor_.wanted_.marks.empty(); }
+    /// Copies the wanted pairs, in order. Returns their number. Requires: `out` has room for all pairs.
+    std::size_t copy_wanted(std::span<const Pair> pairs, Pair* out) const {
         const WantedRows& wanted = executor_.wanted_;
-        if (wanted.marks.empty()) return pairs.size();
-        std::size_t left = 0;
+        std::size_t count = 0;
         for (const Pair& pair : pairs) {
-            pairs[left] = pair;
-            left += wanted.marks[wanted.bins.bin(pair)] != 0 ? 1 : 0;
+            out[count] = pair;
+            count += wanted.marks[wanted.bins.bin(pair)] != 0 ? 1 : 0;
         }
-        return left;
+        return count;
     }
     void poll_stops() {
         if (++writes_ % 64 == 0) executor_.poll_stops();

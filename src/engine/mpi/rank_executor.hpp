@@ -1,8 +1,7 @@
 // RankExecutor: runs the shares of a rank on another executor.
 //
 // Stops      shares that run on the calling thread poll for stop requests of other ranks.
-// Pairs      objects of a pair are renumbered from the rank's own numbers to positions in the set, which are the same on all
-//            ranks. Unwanted pairs are dropped.
+// Pairs      unwanted pairs are dropped.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +15,12 @@
 
 namespace octopair {
 
-/// Position of each object of a rank, by its number on this rank. Empty: numbers stay unchanged.
-struct PairNumbers {
-    std::span<const std::uint32_t> a = {}, b = {};
-};
-
 /// Requires: construction on the thread of the call. Only that thread polls for stop requests.
 class RankExecutor final : public Executor {
 public:
-    /// Borrows `executor`, `stops` and the arrays of `numbers` and `wanted`.
-    RankExecutor(Executor& executor, StopRelay& stops, const PairNumbers& numbers = {}, const WantedRows& wanted = {})
-        : executor_(executor), stops_(stops), numbers_(numbers), wanted_(wanted) {}
+    /// Borrows `executor`, `stops` and `wanted.marks`.
+    RankExecutor(Executor& executor, StopRelay& stops, const WantedRows& wanted = {})
+        : executor_(executor), stops_(stops), wanted_(wanted) {}
 
     unsigned width() const override { return executor_.width(); }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
@@ -38,7 +32,6 @@ private:
 
     Executor& executor_;
     StopRelay& stops_;
-    PairNumbers numbers_;
     WantedRows wanted_;
     std::thread::id thread_ = std::this_thread::get_id();
 };

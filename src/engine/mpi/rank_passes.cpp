@@ -10,11 +10,18 @@ void RankPasses::build(Call& call, double progress) {
     call.progress.stage(progress, 1);
     TeamExecutor threads(team());
     RankExecutor executor(threads, *stops_);
-    octree().build(std::move(share_.layout), call.source, executor, call.stop.get_token());
+    positioned_.reset();
+    if (share_.positions) positioned_.emplace(call.source, *share_.positions);
+    const EntrySource& source = positioned_ ? static_cast<const EntrySource&>(*positioned_) : call.source;
+    octree().build(std::move(share_.layout), source, executor, call.stop.get_token());
     call.summary.entries = octree().entry_count(share_.begin, share_.end);
     call.summary.steps.encode = octree().seconds().encode;
     call.summary.steps.count = octree().seconds().count;
     call.summary.steps.scatter = octree().seconds().scatter;
+}
+
+const PairRule& RankPasses::pair_rule(const Call& call) const {
+    return positioned_ ? static_cast<const PairRule&>(*positioned_) : call.source;
 }
 
 namespace {
@@ -58,8 +65,8 @@ void RankPasses::count_rows(Call& call, const RowBins& bins, std::span<std::uint
 }
 
 void RankPasses::scan_into(Call& call, Executor& executor, double progress) {
-    RankExecutor numbering(executor, *stops_, share_.numbers, wanted_);
-    ThreadPasses::scan_into(call, {octree(), share_.begin, share_.end}, numbering, progress);
+    RankExecutor wanted(executor, *stops_, wanted_);
+    ThreadPasses::scan_into(call, {octree(), share_.begin, share_.end}, wanted, progress);
 }
 
 }  // namespace octopair

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/mpi/positioned_source.hpp"
 #include "engine/mpi/rank_executor.hpp"
 #include "engine/threads/thread_passes.hpp"
 #include "octree/linear_octree.hpp"
@@ -14,14 +15,15 @@ namespace octopair {
 struct RankShare {
     OctreeLayout layout;
     OctantIndex begin = 0, end = 0;  ///< range of the octants that this rank owns
-    PairNumbers numbers = {};
+    std::optional<ObjectPositions> positions =
+        {};  ///< if set, pairs have positions in place of this rank's own numbers
 };
 
 class RankPasses final : public ThreadPasses {
 public:
     using ThreadPasses::ThreadPasses;
 
-    /// Sets the share of the next build(). Borrows `stops` and the arrays of `share.numbers` for all passes over that octree.
+    /// Sets the share of the next build(). Borrows `stops` and `share.positions` for all passes over that octree.
     void set_share(RankShare share, StopRelay& stops) {
         share_ = std::move(share);
         stops_ = &stops;
@@ -37,11 +39,13 @@ public:
     void build(Call& call, double progress) override;
 
 private:
+    const PairRule& pair_rule(const Call& call) const override;
     void scan_into(Call& call, Executor& executor, double progress) override;
 
     RankShare share_;
     StopRelay* stops_ = nullptr;
     WantedRows wanted_;
+    std::optional<PositionedSource> positioned_;  // source of the octree, if the share has positions
 };
 
 }  // namespace octopair

@@ -127,7 +127,7 @@ void RankSearch::find(Task& task) {
         return search(task, {first, second, asked.options});
     }
     passes_.set_share(plan_and_route(task, own), task.stops);
-    const Objects first_received = received_[0].view(), second_received = received_[1].view();
+    const Objects first_received = received(0), second_received = received(1);
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
 }
 
@@ -153,43 +153,33 @@ RankShare RankSearch::plan_and_route(Task& task, const BoxSource& own) {
         const Metered metered(comm_, costs_.plan);
         planning.emplace(comm_, task.joint, own, task.stop.get_token());
     }
-    const OctantOwners owners = route(task, own, planning->shared());
+    const OctantOwners owners = route(task, own, *planning);
     return grow(task, *planning, owners);
 }
 
-/// Sends objects to the ranks whose octants they touch, and receives those for this rank. `shared`: octants that all ranks store.
-/// Returns the owners of these octants.
-OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreeLayout& shared) {
+/// Sends objects to the ranks whose octants they touch, and receives those for this rank. Returns the owners of the octants that
+/// all ranks store.
+OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreePlanning& planning) {
+    const OctreeLayout& shared = planning.shared();
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
-    std::vector<OctantLoad> loads;
+    std::vector<std::uint64_t> entries;
     std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        loads.resize(shared.directory.octants().size());
+        entries.resize(shared.directory.octants().size());
         routing.emplace(task.joint, own, shared, routing_, task.stop.get_token());
-        routing->find_homes(executor, loads);
+        routing->find_homes(executor, entries);
     });
-    comm_.add_up(std::span(&loads.data()->entries, loads.size() * (sizeof(OctantLoad) / sizeof(std::uint64_t))));
-    const unsigned sets = task.sets();
+    comm_.add_up(std::span(entries));
     std::optional<OctantOwners> owners;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        owners.emplace(shared.directory, loads, comm_.size());
+        owners.emplace(shared.directory, OctantLoads{entries, planning.extents()}, comm_.size());
         routing->assign_owners(executor, *owners);
-        const Metered packing(comm_, costs_.pack);
-        for (unsigned set = 0; set < sets; ++set) {
-            for (ObjectArrays* arrays : {&sent_[set], &received_[set]}) {
-                arrays->wide = task.joint.wide[set];
-                arrays->padded = task.joint.padded[set];
-                arrays->indexed = task.joint.indexed;
-            }
-            routing->pack(executor, set, task.slices[set], sent_[set]);
-        }
     });
-    costs_.route -= costs_.pack;
     costs_.shared_objects = routing->shared_objects();
-    exchange_objects(task, *routing);
+    exchange_objects(task, executor, *routing);
     return std::move(*owners);
 }
 
@@ -198,25 +188,29 @@ RankShare RankSearch::grow(Task& task, OctreePlanning& planning, const OctantOwn
     const Metered metered(comm_, costs_.plan);
     OctreePlanning::OwnLayout own = planning.grow(owners);
     if (planted(Fault::rank_takes_neighbour) && own.end < own.layout.directory.octants().size()) ++own.end;
-    PairNumbers numbers;
-    if (!task.joint.indexed) {
-        numbers = {received_[0].positions.span(), received_[task.sets() - 1].positions.span()};
+    RankShare share{std::move(own.layout), own.begin, own.end};
+    if (task.joint.indexed) return share;
+    ObjectPositions& positions = share.positions.emplace();
+    for (unsigned set = 0; set < task.sets(); ++set) {
+        positions.of_set[set] = std::as_const(exchanged_[set].received.positions).span();
     }
-    return {std::move(own.layout), own.begin, own.end, numbers};
+    if (task.joint.join) positions.second_begin = std::uint32_t(task.joint.totals[0]);
+    return share;
 }
 
-void RankSearch::exchange_objects(Task& task, const Routing& routing) {
+void RankSearch::exchange_objects(Task& task, Executor& executor, const Routing& routing) {
+    const Metered metered(comm_, costs_.pack);
     std::uint64_t incoming = 0;
     for (unsigned set = 0; set < task.sets(); ++set) {
-        const Exchange counts = comm_.plan_exchange(routing.counts(set));
-        incoming += counts.incoming();
+        const ObjectExchange objects(comm_, task.joint, routing, set);
+        incoming += objects.incoming();
         task.agreement.together([&] {
             if (incoming > max_objects)
                 throw Error(ErrorCode::resource_limit, "more than 2^32 - 1 objects on one rank");
-            received_[set].resize(counts.incoming());
+            objects.pack(executor, task.slices[set], exchanged_[set]);
         });
-        exchange(comm_, sent_[set], received_[set], counts);
-        costs_.objects_received += received_[set].size();
+        objects.exchange(exchanged_[set]);
+        costs_.objects_received += objects.incoming();
     }
 }
 
@@ -288,7 +282,7 @@ void RankSearch::find_indexed(Task& task, Call& call) {
         const Metered metered(comm_, costs_.scan);
         passes_.list_octal(call, detail::storage_of(found_), 1);
         const auto indices = [&](unsigned set) {
-            return comm_.size() == 1 ? task.joint.indices[set] : std::as_const(received_[set].indices).span();
+            return comm_.size() == 1 ? task.joint.indices[set] : std::as_const(exchanged_[set].received.indices).span();
         };
         name_pairs(found_, indices(0), indices(task.joint.join ? 1 : 0), pairs);
         detail::storage_of(found_).reset();

@@ -23,7 +23,7 @@
 
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/paper/master_search.hpp"
-#include "engine/mpi/partition/object_arrays.hpp"
+#include "engine/mpi/partition/object_exchange.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_passes.hpp"
@@ -76,9 +76,10 @@ private:
     void find_at_master(Task& task);
     RankShare plan_alone(Task& task, const BoxSource& own);
     RankShare plan_and_route(Task& task, const BoxSource& own);
-    OctantOwners route(Task& task, const BoxSource& own, const OctreeLayout& shared);
+    OctantOwners route(Task& task, const BoxSource& own, const OctreePlanning& planning);
     RankShare grow(Task& task, OctreePlanning& planning, const OctantOwners& owners);
-    void exchange_objects(Task& task, const Routing& routing);
+    void exchange_objects(Task& task, Executor& executor, const Routing& routing);
+    Objects received(unsigned set) const { return exchanged_[set].received.view(); }
     void search(Task& task, const detail::Request& own_octants);
     void build(Task& task, Call& call);
     void count(Task& task, Call& call);
@@ -94,7 +95,7 @@ private:
     Communicator& comm_;
     std::function<void()> on_poll_;
     RankPasses passes_;
-    std::array<ObjectArrays, 2> sent_, received_;
+    std::array<ObjectExchange::Memory, 2> exchanged_;
     Routing::Memory routing_;
     PairList found_;
     RankCosts costs_;

@@ -24,6 +24,8 @@ protected:
     Team& team() { return team_; }
     /// Returns the octree of the call's objects. Requires: build() was called.
     LinearOctree& octree() { return octree_; }
+    /// Returns the rule that decides which entries of the octree are pairs.
+    virtual const PairRule& pair_rule(const Call& call) const { return call.source; }
     /// Scans the whole octree once.
     virtual void scan_into(Call& call, Executor& executor, double progress);
     /// Scans `octants` once.

@@ -42,9 +42,9 @@ public:
     /// Borrows both. `no_list`: number for boxes without a home entry.
     BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list);
 
-    /// Encodes boxes; `object`: number of the first one. Returns false if one of them is no valid box. Its entry is then unspecified.
-    bool encode(std::span<const Box3f> boxes, std::uint32_t object, EncodedBatch& batch) const;
-    bool encode_scalar(std::span<const Box3f> boxes, std::uint32_t object, EncodedBatch& batch) const;
+    /// Encodes boxes. Returns false if one of them is no valid box. Its entry is then unspecified.
+    bool encode(const PlainBoxes& boxes, EncodedBatch& batch) const;
+    bool encode_scalar(const PlainBoxes& boxes, EncodedBatch& batch) const;
     /// Encodes entries. The entries of the batch have their objects and masks.
     void encode(std::span<const Entry> entries, EncodedBatch& batch) const;
     void encode_scalar(std::span<const Entry> entries, EncodedBatch& batch) const;

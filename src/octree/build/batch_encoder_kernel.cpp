@@ -19,9 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-bool encode_boxes_simd(const BatchEncoder& encoder, std::span<const Box3f> boxes, std::uint32_t object,
-                       EncodedBatch& batch) {
-    return encoder.encode_scalar(boxes, object, batch);
+bool encode_boxes_simd(const BatchEncoder& encoder, const PlainBoxes& boxes, EncodedBatch& batch) {
+    return encoder.encode_scalar(boxes, batch);
 }
 void encode_entries_simd(const BatchEncoder& encoder, std::span<const Entry> entries, EncodedBatch& batch) {
     encoder.encode_scalar(entries, batch);
@@ -101,15 +100,18 @@ HWY_INLINE void home_entries(const BatchEncoder& encoder, const Loaded& box, con
     words[3] = box.object;
 }
 
+/// Encodes boxes or entries. `plain`: objects of the boxes.
 template <typename Item>
-bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, std::uint32_t object, EncodedBatch& batch) {
+bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, const PlainBoxes& plain,
+                  EncodedBatch& batch) {
     const Words d;
     const Constants constants(encoder.locator);
     if (encoder.locator.large_table) prefetch_leaves(constants, items);
     batch.crossers = 0;
     LaneReader<Item> reader(items);
     for (std::size_t i = 0; i < items.size(); i += hn::Lanes(d)) {
-        const Loaded box = reader.load(i, object);
+        Loaded box = reader.load(i, plain.first_object);
+        if (plain.objects != nullptr) box.object = reader.numbers(plain.objects, i);
         const Located at(constants, box);
         const auto list = hn::IfThenElse(at.is_large(), hn::Set(d, encoder.no_list), octant_of(at.leaf));
         hn::StoreU(list, d, batch.lists.data() + i);
@@ -121,12 +123,11 @@ bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, std:
     return reader.all_valid();
 }
 
-bool encode_boxes_simd(const BatchEncoder& encoder, std::span<const Box3f> boxes, std::uint32_t object,
-                       EncodedBatch& batch) {
-    return encode_lanes(encoder, boxes, object, batch);
+bool encode_boxes_simd(const BatchEncoder& encoder, const PlainBoxes& boxes, EncodedBatch& batch) {
+    return encode_lanes(encoder, boxes.boxes, boxes, batch);
 }
 void encode_entries_simd(const BatchEncoder& encoder, std::span<const Entry> entries, EncodedBatch& batch) {
-    (void)encode_lanes(encoder, entries, 0, batch);
+    (void)encode_lanes(encoder, entries, {}, batch);
 }
 
 struct GhostSource {
@@ -229,8 +230,8 @@ HWY_EXPORT(encode_boxes_simd);
 HWY_EXPORT(encode_entries_simd);
 HWY_EXPORT(ghosts_simd);
 
-bool BatchEncoder::encode(std::span<const Box3f> boxes, std::uint32_t object, EncodedBatch& batch) const {
-    return HWY_DYNAMIC_DISPATCH(encode_boxes_simd)(*this, boxes, object, batch);
+bool BatchEncoder::encode(const PlainBoxes& boxes, EncodedBatch& batch) const {
+    return HWY_DYNAMIC_DISPATCH(encode_boxes_simd)(*this, boxes, batch);
 }
 
 void BatchEncoder::encode(std::span<const Entry> entries, EncodedBatch& batch) const {

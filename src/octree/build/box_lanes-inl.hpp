@@ -242,6 +242,15 @@ public:
         if constexpr (std::is_same_v<Item, Box3f>) valid_ = hn::And(valid_, valid_boxes(box));
         return box;
     }
+    /// Loads the numbers of the items from `i` on; 0 in lanes without an item. `numbers`: those of all items.
+    HWY_INLINE Lanes numbers(const std::uint32_t* numbers, std::size_t i) const {
+        const Words d;
+        const std::size_t left = items_.size() - i;
+        if (HWY_LIKELY(left >= hn::Lanes(d))) return hn::LoadU(d, numbers + i);
+        alignas(64) std::array<std::uint32_t, LaneTable::lanes> last = {};
+        std::copy_n(numbers + i, left, last.begin());
+        return hn::Load(d, last.data());
+    }
     /// Returns a bit mask of the lanes that hold an item, from item `i` on.
     HWY_INLINE std::uint32_t live(std::size_t i) const {
         const std::size_t left = items_.size() - i;

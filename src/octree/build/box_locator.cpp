@@ -9,12 +9,12 @@
 
 namespace octopair {
 
-bool make_entries(std::span<const Box3f> boxes, std::uint32_t object, BatchEntries& entries) {
+bool make_entries(const PlainBoxes& plain, BatchEntries& entries) {
     bool good = true;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        good &= is_box(boxes[i]);
-        std::memcpy(&entries[i], &boxes[i], sizeof(Box3f));
-        entries[i].object = object + std::uint32_t(i);
+    for (std::size_t i = 0; i < plain.boxes.size(); ++i) {
+        good &= is_box(plain.boxes[i]);
+        std::memcpy(&entries[i], &plain.boxes[i], sizeof(Box3f));
+        entries[i].object = plain.object(i);
         entries[i].mask = 0;
     }
     return good;
@@ -43,7 +43,7 @@ Directory::Leaf BoxLocator::locate(const Entry& entry, std::uint32_t position, C
 
 bool BoxLocator::locate_scalar(std::span<const Box3f> boxes, LocatedBatch& batch) const {
     BatchEntries entries;
-    const bool good = make_entries(boxes, 0, entries);
+    const bool good = make_entries({boxes}, entries);
     locate_scalar(std::span<const Entry>(entries).first(boxes.size()), batch);
     return good;
 }

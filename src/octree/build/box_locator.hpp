@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "boxes/box_source.hpp"
 #include "boxes/entry.hpp"
 #include "octree/directory.hpp"
 #include "octree/space.hpp"
@@ -42,8 +43,8 @@ struct LocatedBatch : CrosserBatch {
 };
 
 using BatchEntries = std::array<Entry, max_encoded>;
-/// Stores boxes as entries without mask; `object`: number of the first one. Returns false if one of them is no valid box.
-bool make_entries(std::span<const Box3f> boxes, std::uint32_t object, BatchEntries& entries);
+/// Stores boxes as entries without mask. Returns false if one of them is no valid box.
+bool make_entries(const PlainBoxes& plain, BatchEntries& entries);
 
 class BoxLocator {
 public:

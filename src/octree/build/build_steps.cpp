@@ -54,7 +54,7 @@ public:
 private:
     bool encode(std::size_t begin, std::size_t count) {
         plain_ = steps_.source.plain(begin, count);
-        if (!plain_.boxes.empty()) return encoder_.encode(plain_.boxes, plain_.first_object, batch_);
+        if (!plain_.boxes.empty()) return encoder_.encode(plain_, batch_);
         const std::span<Entry> entries = std::span(loaded_).first(count);
         if (!steps_.source.load(begin, entries)) return false;
         encoder_.encode(entries, batch_);
@@ -66,7 +66,7 @@ private:
         if (plain_.boxes.empty()) return loaded_[position];
         Entry entry{};
         std::memcpy(&entry, &plain_.boxes[position], sizeof(Box3f));
-        entry.object = plain_.first_object + position;
+        entry.object = plain_.object(position);
         return entry;
     }
 

@@ -72,7 +72,8 @@ void IndexOrder::exchange_and_sort(ObjectArrays& arrays, const Objects& own, std
     agreement.together([&] { arrange(own, indices, order_of(indices), sent); });
     const Exchange counts = comm_.plan_exchange(even_runs(comm_, sent.indices.span()));
     agreement.together([&] { received.resize(counts.incoming()); });
-    exchange(comm_, sent, received, counts);
+    exchange_objects(comm_, sent.view(), received, counts);
+    comm_.exchange(sent.indices.data(), received.indices.data(), counts);
     agreement.together([&] {
         arrange(received.view(), received.indices.span(), order_of(received.indices.span()), arrays);
         const auto all = arrays.indices.span();

@@ -18,30 +18,17 @@
 
 namespace octopair {
 
-/// Measures of the work in an octant: sums over its entries.
-struct OctantLoad {
-    std::uint64_t entries = 0;
-    std::uint64_t extent = 0;  ///< extent of each box on its shortest axis, summed; in cells
-
-    void add(const CellBox& box) {
-        ++entries;
-        extent += std::min({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-    }
-    void multiply(std::uint64_t by) {
-        entries *= by;
-        extent *= by;
-    }
-    void add(const OctantLoad& other) {
-        entries += other.entries;
-        extent += other.extent;
-    }
+/// What the work in each octant is estimated from.
+struct OctantLoads {
+    std::span<const std::uint64_t> entries;
+    std::span<const double> extents;  ///< mean extent of the boxes on their shortest axes, in sides of the octant
 };
 
 class OctantOwners {
 public:
-    /// Divides the octants of `directory` into runs of about equal work. `loads`: load of each octant. The result depends only
-    /// on the arguments. Borrows the directory.
-    OctantOwners(const Directory& directory, std::span<const OctantLoad> loads, unsigned ranks);
+    /// Divides the octants of `directory` into runs, so that the largest work of a run is as small as possible. The result
+    /// depends only on the arguments. Borrows the directory.
+    OctantOwners(const Directory& directory, const OctantLoads& loads, unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
     OctantIndex begin(unsigned rank) const { return OctantIndex(begins_[rank]); }

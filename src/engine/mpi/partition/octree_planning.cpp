@@ -134,7 +134,10 @@ OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const 
     });
     const std::uint64_t most = octant_sample(call.objects()).size() / (tuning().ranks.octants * comm.size());
     top_.emplace(comm, growth_, most, sampled_);
-    agreement.together([&] { shared_.directory = Directory(shared_.space, top_->shape()); });
+    agreement.together([&] {
+        shared_.directory = Directory(shared_.space, top_->shape());
+        for (const SharedTop::SharedOctant& octant : top_->octants()) extents_.push_back(octant.extent);
+    });
 }
 
 OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
@@ -158,7 +161,7 @@ OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
         const SplitFlags& top = top_->shape();
         SplitFlags shape(top.begin(), top.begin() + std::ptrdiff_t(begin));
         for (OctantIndex i = begin; i < end; ++i) {
-            const auto& [octant, left] = top_->octants()[i];
+            const auto& [octant, left, extent] = top_->octants()[i];
             if (!left) {
                 shape.push_back(top[i]);
                 continue;
@@ -169,7 +172,8 @@ OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
         own.begin = begin;
         own.end = OctantIndex(shape.size());
         shape.insert(shape.end(), top.begin() + std::ptrdiff_t(end), top.end());
-        own.layout = {shared_.space, Directory(shared_.space, shape)};
+        own.layout.space = shared_.space;
+        own.layout.directory = shape == top ? shared_.directory : Directory(shared_.space, shape);
     });
     return own;
 }

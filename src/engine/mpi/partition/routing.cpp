@@ -1,7 +1,11 @@
 #include "engine/mpi/partition/routing.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
+#include <functional>
 #include <mutex>
+#include <utility>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
@@ -28,7 +32,6 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLay
       stop_(std::move(stop)),
       blocks_(memory.blocks_),
       places_(memory.places_) {
-    counted_stride_ = std::max<std::size_t>(1, source.size() / tuning().ranks.counted);
     places_.resize_discard(source.size());
     const std::size_t objects_a_block = tuning().ranks.block;
     std::size_t count = 0, end = 0;
@@ -43,78 +46,53 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLay
     blocks_.resize(count);
 }
 
-void Routing::find_homes(Executor& executor, std::span<OctantLoad> loads) {
-    // The loads have one element for each octant. Each thread adds to a copy of its own; a single thread needs no copy.
+void Routing::find_homes(Executor& executor, std::span<std::uint64_t> entries) {
+    // Each thread counts the entries of all octants in an array of its own; a single thread needs no copy.
     const std::size_t shares = std::min<std::size_t>(executor.width(), blocks_.size());
     std::mutex mutex;
     executor.for_each(shares, [&](std::size_t share) {
-        std::vector<OctantLoad> copy(shares > 1 ? loads.size() : 0);
-        const std::span<OctantLoad> own = shares > 1 ? std::span(copy) : loads;
+        std::vector<std::uint64_t> copy(shares > 1 ? entries.size() : 0);
+        const std::span<std::uint64_t> own = shares > 1 ? std::span(copy) : entries;
         for (std::size_t i = share; i < blocks_.size(); i += shares) find_homes(blocks_[i], own);
         const std::lock_guard lock(mutex);
-        for (std::size_t octant = 0; octant < copy.size(); ++octant) loads[octant].add(copy[octant]);
+        for (std::size_t octant = 0; octant < copy.size(); ++octant) entries[octant] += copy[octant];
     });
-    for (OctantLoad& load : loads) load.multiply(counted_stride_);
     for (const Block& block : blocks_) {
         if (block.bad) call_.refuse(source_, *block.bad);
     }
 }
 
-/// The boxes of a batch, in the form that the source has.
-class Routing::SourceBatch {
-public:
-    explicit SourceBatch(const BoxSource& source) : source_(source) {}
+/// Finds the leaves of objects [begin, begin + count). Returns false if one of them is no valid box.
+bool Routing::locate(std::size_t begin, std::size_t count, LocatedBatch& batch) const {
+    if (const auto boxes = source_.plain(begin, count).boxes; !boxes.empty()) return locator_.locate(boxes, batch);
+    std::array<Entry, max_batch> entries;
+    const std::span<Entry> loaded = std::span(entries).first(count);
+    if (!source_.load(begin, loaded)) return false;
+    locator_.locate(loaded, batch);
+    return true;
+}
 
-    /// Loads objects [begin, begin + count) and finds their leaves. Returns false if one of them is no valid box.
-    bool locate(std::size_t begin, std::size_t count, const BoxLocator& locator, LocatedBatch& batch) {
-        plain_ = source_.plain(begin, count).boxes;
-        if (!plain_.empty()) return locator.locate(plain_, batch);
-        loaded_ = std::span(entries_).first(count);
-        if (!source_.load(begin, std::span(entries_).first(count))) return false;
-        locator.locate(loaded_, batch);
-        return true;
-    }
-    void cells(const Space& space, std::span<CellBox> out) const {
-        if (plain_.empty()) return space.cells(loaded_, out);
-        space.cells(plain_, out);
-    }
-
-private:
-    const BoxSource& source_;
-    std::span<const Box3f> plain_;
-    std::array<Entry, max_batch> entries_;
-    std::span<const Entry> loaded_;
-};
-
-void Routing::find_homes(Block& block, std::span<OctantLoad> loads) {
-    const Directory& directory = layout_.directory;
+void Routing::find_homes(Block& block, std::span<std::uint64_t> entries) {
     const std::size_t batch_size = tuning().ranks.batch;
-    SourceBatch boxes(source_);
     LocatedBatch batch;
     for (std::size_t begin = block.objects.begin; begin < block.objects.end; begin += batch_size) {
         if ((begin - block.objects.begin) % check_interval < batch_size) throw_if_stopped(stop_);
         const std::size_t count = std::min(batch_size, block.objects.end - begin);
-        if (!boxes.locate(begin, count, locator_, batch)) {
+        if (!locate(begin, count, batch)) {
             block.bad = begin;
             return;
         }
-        for (std::size_t i = 0; i < count; ++i) places_[begin + i] = Directory::Leaf(batch.leaves[i]).octant();
+        for (std::size_t i = 0; i < count; ++i) {
+            places_[begin + i] = Directory::Leaf(batch.leaves[i]).octant();
+            ++entries[places_[begin + i]];
+        }
         for (std::size_t i = 0; i < batch.crossers; ++i) {
             const Directory::Leaf home(batch.leaf[i]), end(batch.end_leaf[i]);
+            ++entries[end.octant()];
             block.crossers.push_back(
-                {begin + batch.crosser[i], OctantOwners::reach(batch.cells(i), directory, home, end)});
+                {begin + batch.crosser[i], OctantOwners::reach(batch.cells(i), layout_.directory, home, end)});
         }
-        if (begin / batch_size % counted_stride_ == 0) add_loads(boxes, count, batch, loads);
     }
-}
-
-void Routing::add_loads(const SourceBatch& boxes, std::size_t count, const LocatedBatch& batch,
-                        std::span<OctantLoad> loads) const {
-    std::array<CellBox, max_batch> cells;
-    boxes.cells(layout_.space, std::span(cells).first(count));
-    for (std::size_t i = 0; i < count; ++i) loads[Directory::Leaf(batch.leaves[i]).octant()].add(cells[i]);
-    for (std::size_t i = 0; i < batch.crossers; ++i)
-        loads[Directory::Leaf(batch.end_leaf[i]).octant()].add(cells[batch.crosser[i]]);
 }
 
 void Routing::assign_owners(Executor& executor, const OctantOwners& owners) {
@@ -186,44 +164,111 @@ std::uint64_t Routing::shared_objects() const {
     return objects;
 }
 
-/// Calls place(object, to) for each copy of each object, objects ascending. next[rank]: place of the next object of a rank;
-/// advanced by each copy.
-template <typename Place>
-void Routing::for_each_copy(const Block& block, RankCounts& next, const Place& place) const {
+bool Routing::are_positions_near(unsigned set) const {
+    static_assert(2 * default_tuning.ranks.block <= std::size_t(1) << 16);
+    return std::ranges::all_of(blocks_, [&](const Block& block) {
+        return block.set != set || std::ranges::find(block.counts, std::uint64_t(0)) == block.counts.end();
+    });
+}
+
+namespace {
+
+/// A property of objects, and the arrays that it is copied to.
+template <typename T, typename Value>
+struct ColumnSource {
+    T* sent;      // by receiving rank
+    T* own;       // for objects that stay on this rank; if null, these have a part of `sent`
+    Value value;  // returns the property of an object
+};
+
+/// Where the next objects of a block go.
+template <typename T, typename Value>
+class Column {
+public:
+    /// `counts`: number of objects for each rank; `before`: those of them in the blocks before.
+    Column(const ColumnSource<T, Value>& source, const RankCounts& counts, const RankCounts& before, unsigned own_rank)
+        : value_(source.value) {
+        T* sent = source.sent;
+        for (unsigned rank = 0; rank < counts.size(); ++rank) {
+            const bool stays = rank == own_rank && source.own != nullptr;
+            places_.push_back((stays ? source.own : sent) + before[rank]);
+            sent += stays ? 0 : counts[rank];
+        }
+    }
+
+    void copy(std::size_t object, std::uint32_t rank) {
+        // Hardware prefetchers do not follow writes that alternate between many places.
+        constexpr std::size_t ahead_bytes = 112;
+        T* const place = places_[rank]++;
+        *place = value_(object);
+        hwy::Prefetch(reinterpret_cast<const std::byte*>(place) + ahead_bytes);
+    }
+
+private:
+    std::vector<T*> places_;
+    const Value& value_;
+};
+
+}  // namespace
+
+/// Copies each object of a block to all of its owners, objects ascending.
+template <typename... Columns>
+void Routing::copy(const Block& block, Columns&&... columns) const {
     const std::uint32_t* owners = block.owners.data();
     for (std::size_t object = block.objects.begin; object < block.objects.end; ++object) {
         if (places_[object] != several_) {
-            place(object, next[places_[object]]++);
+            (columns.copy(object, places_[object]), ...);
         } else {
-            for (std::uint32_t left = *owners++; left > 0; --left) place(object, next[*owners++]++);
+            for (std::uint32_t left = *owners++; left > 0; --left, ++owners) (columns.copy(object, *owners), ...);
         }
     }
 }
 
-void Routing::pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const {
-    // places[block][rank]: place of the block's first object for a rank. Places are ordered by rank, then by block.
-    std::vector<RankCounts> places(blocks_.size(), RankCounts(owners_->ranks()));
-    std::uint64_t at = 0;
-    for (unsigned rank = 0; rank < owners_->ranks(); ++rank) {
-        for (std::size_t b = 0; b < blocks_.size(); ++b) {
-            if (blocks_[b].set != set) continue;
-            places[b][rank] = at;
-            at += blocks_[b].counts[rank];
-        }
+/// Copies all objects of a set. `rank`: this rank.
+template <typename... Sources>
+void Routing::pack_columns(Executor& executor, unsigned set, unsigned rank, const Sources&... sources) const {
+    std::vector<RankCounts> before(blocks_.size());
+    RankCounts all(owners_->ranks(), 0);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        before[b] = all;
+        if (blocks_[b].set == set) std::ranges::transform(all, blocks_[b].counts, all.begin(), std::plus<>());
     }
-    out.resize(std::size_t(at));
-    const std::size_t begin = set == 0 ? 0 : std::size_t(call_.sizes[0]);
-    out.copying(objects, [&](const auto& copy) {
-        out.naming(call_.indices[set], call_.begins[set], [&](const auto& name) {
-            executor.for_each(blocks_.size(), [&](std::size_t b) {
-                if (blocks_[b].set != set) return;
-                for_each_copy(blocks_[b], places[b], [&](std::size_t object, std::uint64_t to) {
-                    copy(std::size_t(to), object - begin);
-                    name(std::size_t(to), object - begin);
-                });
-            });
-        });
+    executor.for_each(blocks_.size(), [&](std::size_t b) {
+        if (blocks_[b].set == set) copy(blocks_[b], Column(sources, all, before[b], rank)...);
     });
+}
+
+void Routing::pack(Executor& executor, unsigned set, const Objects& objects, const Packed& to) const {
+    const std::size_t begin = set == 0 ? 0 : std::size_t(call_.sizes[0]);
+    const auto pack_with_names = [&](auto* names, const auto& name) {
+        const auto pack_boxes = [&](auto* sent, auto* own, const auto boxes) {
+            pack_columns(
+                executor, set, to.rank,
+                ColumnSource{sent, own + to.own_place, [=](std::size_t object) { return boxes[object - begin]; }},
+                ColumnSource{names, decltype(names)(), name});
+        };
+        if (to.sent.wide) {
+            pack_boxes(to.sent.wide_boxes.data(), to.own.wide_boxes.data(),
+                       std::get<std::span<const Box3d>>(objects.boxes));
+        } else {
+            pack_boxes(to.sent.boxes.data(), to.own.boxes.data(), std::get<std::span<const Box3f>>(objects.boxes));
+        }
+    };
+    const std::uint64_t first = call_.begins[set] - begin;  // position of object 0, modulo 2^64
+    if (to.sent.indexed) {
+        const auto indices = call_.indices[set];
+        pack_with_names(to.sent.indices.data(), [=](std::size_t object) { return indices[object - begin]; });
+    } else if (to.sent.near) {
+        pack_with_names(to.sent.near_positions.data(),
+                        [=](std::size_t object) { return std::uint16_t(first + object); });
+    } else {
+        pack_with_names(to.sent.positions.data(), [=](std::size_t object) { return std::uint32_t(first + object); });
+    }
+    if (to.sent.padded) {
+        const auto padding = [&](std::size_t object) { return objects.padding[object - begin]; };
+        pack_columns(executor, set, to.rank,
+                     ColumnSource{to.sent.padding.data(), to.own.padding.data() + to.own_place, padding});
+    }
 }
 
 }  // namespace octopair

@@ -2,7 +2,8 @@
 //
 //   find_homes     finds the home leaf of each object, and the load that this rank's objects add to each octant
 //   assign_owners  finds the ranks that each object is sent to, and the number of objects for each rank
-//   pack           copies boxes, paddings, and positions or indices to arrays: ordered by receiving rank, then by position
+//   pack           copies boxes, paddings, and positions or indices to arrays: ordered by receiving rank, then by position.
+//                  Boxes and paddings that stay on this rank are copied to the arrays of received objects.
 //
 // Invariants 1. The objects received from all ranks, in rank order, are ascending by position, set after set. So a rank numbers
 //               its received objects in the order of their positions.
@@ -64,35 +65,46 @@ public:
     Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
             std::stop_token stop);
 
-    /// Finds the home leaf of each object. Stores the estimated load of each octant in `loads`.
-    /// Requires: `loads` has one empty load for each octant. Throws: Error{cancelled}; BadObject for an invalid box.
-    void find_homes(Executor& executor, std::span<OctantLoad> loads);
+    /// Finds the home leaf of each object. Adds the number of entries of each octant to `entries`: one in the home leaf, and
+    /// one in the leaf of the high corner if that is another leaf.
+    /// Requires: `entries` has an element for each octant. Throws: Error{cancelled}; BadObject for an invalid box.
+    void find_homes(Executor& executor, std::span<std::uint64_t> entries);
     /// Finds the ranks that each object is sent to. Borrows `owners` as long as this object lives. Requires: find_homes().
     void assign_owners(Executor& executor, const OctantOwners& owners);
     /// Returns how many objects of a set go to each rank. Requires: assign_owners().
     RankCounts counts(unsigned set) const;
     /// Returns the number of objects with several owners. Requires: assign_owners().
     std::uint64_t shared_objects() const;
-    /// Copies the objects of a set to `out`, ordered by receiving rank, then by position. `objects`: this rank's slice of the
-    /// set. Requires: assign_owners().
-    void pack(Executor& executor, unsigned set, const Objects& objects, ObjectArrays& out) const;
+    /// Returns whether each receiver gets an object of each block of the set. Then positions that follow each other in a message
+    /// differ by less than 2^16. Requires: assign_owners().
+    bool are_positions_near(unsigned set) const;
+
+    /// Arrays that pack() fills.
+    struct Packed {
+        unsigned rank;          ///< this rank
+        ObjectArrays& sent;     ///< ordered by receiving rank. Only names, not boxes, for this rank itself
+        ObjectArrays& own;      ///< receives the boxes and paddings of objects that stay on this rank
+        std::size_t own_place;  ///< place of the first of them
+    };
+    /// Copies the objects of a set to `to`. Names are indices, near positions or positions, as `to.sent` says. `objects`: this
+    /// rank's slice of the set. Requires: assign_owners(); the arrays are large enough.
+    void pack(Executor& executor, unsigned set, const Objects& objects, const Packed& to) const;
 
 private:
-    class SourceBatch;
-    void find_homes(Block& block, std::span<OctantLoad> loads);
-    void add_loads(const SourceBatch& boxes, std::size_t count, const LocatedBatch& batch,
-                   std::span<OctantLoad> loads) const;
+    bool locate(std::size_t begin, std::size_t count, LocatedBatch& batch) const;
+    void find_homes(Block& block, std::span<std::uint64_t> entries);
     void assign_owners(Block& block);
     void share(Block& block, std::span<const Crosser> crossers) const;
-    template <typename Place>
-    void for_each_copy(const Block& block, RankCounts& next, const Place& place) const;
+    template <typename... Columns>
+    void copy(const Block& block, Columns&&... columns) const;
+    template <typename... Sources>
+    void pack_columns(Executor& executor, unsigned set, unsigned rank, const Sources&... sources) const;
 
     const JointCall& call_;
     const BoxSource& source_;
     const OctreeLayout& layout_;
     BoxLocator locator_;
     std::stop_token stop_;
-    std::size_t counted_stride_ = 1;  // loads are estimated from one batch of so many, which is exact enough
     std::vector<Block>& blocks_;
     const OctantOwners* owners_ = nullptr;
     Buffer<std::uint32_t>& places_;  // home leaf of each object; after assign_owners() its owner, or `several_`

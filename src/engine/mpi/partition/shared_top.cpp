@@ -1,5 +1,6 @@
 #include "engine/mpi/partition/shared_top.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -15,92 +16,100 @@ public:
     Growth(Communicator& comm, const SplitRule& rule, std::uint64_t most, std::span<const CellBox> own)
         : comm_(comm), rule_(rule), most_(most), own_(own) {
         octants_.push_back({OctantCube{}});
-        std::vector<Touched> boxes(own.size());
-        for (std::uint32_t i = 0; i < own.size(); ++i) boxes[i] = {0, i, false};
-        for (std::size_t level = 0; level < octants_.size();) {
-            const std::size_t end = octants_.size();
-            divide(level, boxes);
-            level = end;
+        touched_.resize(own.size());
+        for (std::uint32_t i = 0; i < own.size(); ++i) touched_[i] = {0, i};
+        while (first_ < octants_.size()) {
+            std::vector<std::uint32_t> sums;
+            Agreement(comm_).together([&] { sums = count(); });
+            comm_.add_up(std::span(sums));
+            Agreement(comm_).together([&] { divide(sums); });
         }
     }
 
     /// Stores the result in `top`, in pre-order.
     void finish(SharedTop& top) {
         append(0, top);
-        top.boxes_.reserve(boxes_left_.size());
-        for (const Touched& box : boxes_left_) top.boxes_.push_back({octants_[box.octant].number, box.box, box.kept});
+        top.boxes_.reserve(left_.size());
+        for (const Touched& box : left_) top.boxes_.push_back({octants_[box.octant].number, box.box, box.kept});
     }
 
 private:
+    static constexpr std::uint32_t extent_unit = 64, max_extent = 4 * extent_unit;  // of an octant's side
+
     enum class State : std::uint8_t { left, whole, divided };
     struct Octant {
         OctantCube octant;
         State state = State::left;
         std::uint32_t below = 0;  // number of the first of its eight children, by level
         OctantIndex number = 0;   // in pre-order
+        double extent = 0;
     };
     /// A box of the sample and an octant that it touches.
     struct Touched {
         std::uint32_t octant;  // number by level
         std::uint32_t box;
-        bool kept;
+        bool kept = false;
+        std::uint8_t below = 0;  // bit mask of the children that it touches
     };
+    /// Sums over the boxes of an octant.
+    enum Sum : std::uint8_t { inside, kept, beginning, inside_below, kept_below, extent, sums_per_octant };
 
-    /// Divides the octants from `first` on. `boxes`: the boxes in these octants; replaced by those in their children.
-    void divide(std::size_t first, std::vector<Touched>& boxes) {
-        constexpr std::size_t each = 5;  // counts of an octant
-        std::vector<std::uint32_t> sums;
-        Agreement(comm_).together([&] {
-            sums.resize(each * (octants_.size() - first), 0);
-            for (Touched& box : boxes) count(box, std::span(sums).subspan(each * (box.octant - first), each));
-        });
-        comm_.add_up(std::span(sums));
-        Agreement(comm_).together([&] {
-            const std::size_t end = octants_.size();
-            for (std::size_t i = first; i < end; ++i) {
-                const std::uint32_t* sum = &sums[each * (i - first)];
-                decide(i, {.inside = sum[0],
-                           .kept = sum[1],
-                           .beginning = sum[2],
-                           .inside_below = sum[3],
-                           .kept_below = sum[4]});
-            }
-            hand_down(boxes);
-        });
+    /// Returns the sums of the octants from `first_` on, over this rank's boxes.
+    std::vector<std::uint32_t> count() {
+        std::vector<std::uint32_t> sums(sums_per_octant * (octants_.size() - first_), 0);
+        for (Touched& box : touched_) count(box, &sums[sums_per_octant * (box.octant - first_)]);
+        return sums;
     }
 
-    void count(Touched& box, std::span<std::uint32_t> sum) const {
+    void count(Touched& box, std::uint32_t* sums) const {
         const OctantCube& octant = octants_[box.octant].octant;
         const CellBox& cells = own_[box.box];
         box.kept |= octant.keeps(cells);
-        const auto below = octant.level < deepest ? std::uint32_t(std::popcount(octant.touched_below(cells))) : 0;
-        ++sum[box.kept ? 1 : 0];
-        sum[2] += !box.kept && octant.holds_begin(cells) ? 1 : 0;
-        sum[box.kept ? 4 : 3] += below;
+        box.below = octant.level < deepest ? std::uint8_t(octant.touched_below(cells)) : std::uint8_t(0);
+        ++sums[box.kept ? kept : inside];
+        sums[box.kept ? kept_below : inside_below] += std::uint32_t(std::popcount(box.below));
+        sums[beginning] += !box.kept && octant.holds_begin(cells) ? 1 : 0;
+        const std::uint32_t shortest =
+            std::min({cells.hi[0] - cells.lo[0], cells.hi[1] - cells.lo[1], cells.hi[2] - cells.lo[2]});
+        sums[extent] +=
+            std::min(std::uint32_t(std::uint64_t(shortest) * extent_unit >> (deepest - octant.level)), max_extent);
     }
 
-    void decide(std::size_t i, const OctantCounts& counts) {
+    /// Divides the octants from `first_` on by the sums of all ranks, and hands their boxes down to the children.
+    void divide(std::span<const std::uint32_t> sums) {
+        const std::size_t end = octants_.size();
+        for (std::size_t i = first_; i < end; ++i) decide(i, &sums[sums_per_octant * (i - first_)]);
+        hand_down();
+        first_ = end;
+    }
+
+    void decide(std::size_t i, const std::uint32_t* sums) {
         const OctantCube octant = octants_[i].octant;
-        const bool small = counts.inside + counts.kept <= most_;
-        if (octant.level >= deepest || small || !rule_.is_crowd(counts.inside)) return;
-        const bool divided = SplitRule::worth_splitting(counts);
+        const std::uint64_t boxes = std::uint64_t(sums[inside]) + sums[kept];
+        octants_[i].extent = double(sums[extent]) / double(extent_unit) / double(std::max<std::uint64_t>(1, boxes));
+        if (octant.level >= deepest || boxes <= most_ || !rule_.is_crowd(sums[inside])) return;
+        const bool divided = SplitRule::worth_splitting({.inside = sums[inside],
+                                                         .kept = sums[kept],
+                                                         .beginning = sums[beginning],
+                                                         .inside_below = sums[inside_below],
+                                                         .kept_below = sums[kept_below]});
         if (divided) count_path(Path::ranks_top_divided);
         octants_[i].state = divided ? State::divided : State::whole;
         octants_[i].below = std::uint32_t(octants_.size());
         for (unsigned digit = 0; divided && digit < 8; ++digit) octants_.push_back({octant.child(digit)});
     }
 
-    void hand_down(std::vector<Touched>& boxes) {
+    void hand_down() {
         std::vector<Touched> next;
-        for (const Touched& box : boxes) {
+        next.reserve(touched_.size() + touched_.size() / 2);
+        for (const Touched& box : touched_) {
             const Octant& octant = octants_[box.octant];
-            if (octant.state == State::left) boxes_left_.push_back(box);
+            if (octant.state == State::left) left_.push_back(box);
             if (octant.state != State::divided) continue;
-            unsigned touched = octant.octant.touched_below(own_[box.box]);
-            for (; touched != 0; touched &= touched - 1)
-                next.push_back({octant.below + std::uint32_t(std::countr_zero(touched)), box.box, box.kept});
+            for (unsigned below = box.below; below != 0; below &= below - 1)
+                next.push_back({octant.below + std::uint32_t(std::countr_zero(below)), box.box, box.kept});
         }
-        boxes = std::move(next);
+        touched_ = std::move(next);
     }
 
     /// Appends octant `i` and its descendants to `top`.
@@ -108,7 +117,7 @@ private:
         Octant& octant = octants_[i];
         octant.number = OctantIndex(top.octants_.size());
         const bool divided = octant.state == State::divided;
-        top.octants_.push_back({octant.octant, octant.state == State::left});
+        top.octants_.push_back({octant.octant, octant.state == State::left, octant.extent});
         top.shape_.push_back(divided ? 1 : 0);
         for (std::size_t digit = 0; divided && digit < 8; ++digit) append(octant.below + digit, top);
     }
@@ -117,8 +126,10 @@ private:
     const SplitRule& rule_;
     std::uint64_t most_;
     std::span<const CellBox> own_;
-    std::vector<Octant> octants_;  // level by level
-    std::vector<Touched> boxes_left_;
+    std::vector<Octant> octants_;   // level by level
+    std::size_t first_ = 0;         // first octant that is not yet decided
+    std::vector<Touched> touched_;  // boxes in the octants from `first_` on
+    std::vector<Touched> left_;     // boxes in left octants
 };
 
 SharedTop::SharedTop(Communicator& comm, const SplitRule& growth, std::uint64_t most, std::span<const CellBox> own) {

@@ -28,7 +28,8 @@ public:
     };
     struct SharedOctant {
         OctantCube octant;
-        bool left;  ///< the owner may divide this octant further
+        bool left;      ///< the owner may divide this octant further
+        double extent;  ///< mean extent of its boxes on their shortest axes, in sides of the octant; from the sample
     };
 
     /// Collective. Divides octants until each one has at most `most` boxes of the sample, or is not to be divided. `own`: cells
