@@ -27,6 +27,7 @@ constexpr Count counts[] = {
     {"objects", &RankCosts::objects},
     {"shared_objects", &RankCosts::shared_objects},
     {"objects_received", &RankCosts::objects_received},
+    {"octants", &RankCosts::octants},
 };
 
 Json rank_json(const RankCosts& costs) {

@@ -95,6 +95,7 @@ struct RankCosts {
     std::uint64_t objects = 0;         ///< number of objects in this rank's slices
     std::uint64_t shared_objects = 0;  ///< number of these that went to several ranks
     std::uint64_t objects_received = 0;
+    std::uint64_t octants = 0;  ///< number of octants that this rank stores: the top of the octree, and its own
 };
 /// Returns the costs of the last call. Throws: Error{usage} if `engine` is not an MPI engine.
 RankCosts last_costs(const Engine& engine);

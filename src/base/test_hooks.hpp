@@ -52,7 +52,7 @@ namespace octopair {
     path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) \
     /* engine/mpi/ */ \
     path(ranks_top_divided) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
-    path(relay_found_again) \
+    path(relay_found_again) path(positions_near) path(positions_far) \
     /* scene/ */ \
     path(step_full) path(step_idle) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_rebuilt) \
     path(octree_for_queries) path(pairs_waited) path(pairs_merged)
@@ -85,8 +85,9 @@ enum class Fault : unsigned {
     sweep_repeats_block,     ///< a resumed sweep repeats its block of rows
     part_joined_twice,       ///< two parts of a crowd are joined in both directions
     rank_takes_neighbour,    ///< a rank's run of octants includes the first one of the next rank
+    positions_always_near,   ///< ranks send the lowest bits of positions, however far apart the positions are
 };
-inline constexpr unsigned fault_count = 13;
+inline constexpr unsigned fault_count = 14;
 
 /// State that tests set and read. It holds no pointers, so it can lie in a file that processes share.
 struct TestHooks {

@@ -1,6 +1,9 @@
 // Tests exchanges that need several messages, and failures that are reported on all ranks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include <numeric>
 
 #include "engine/mpi/comm/agreement.hpp"
@@ -83,6 +86,39 @@ TEST(RankCuts, AreEven) {
     EXPECT_EQ(cuts.back(), lumped.size());
     EXPECT_EQ(even_cuts({}, 3), (std::vector<std::size_t>{0, 0, 0, 0}));
     EXPECT_EQ(even_cuts(std::vector<std::uint64_t>(5, 0), 2), (std::vector<std::size_t>{0, 5, 5}));
+}
+
+/// Returns the smallest possible work of the largest of `parts` parts, by trying all cuts.
+std::uint64_t least_largest(std::span<const std::uint64_t> work, std::size_t parts) {
+    if (parts == 1 || work.empty()) return std::accumulate(work.begin(), work.end(), std::uint64_t(0));
+    std::uint64_t first = 0, least = ~std::uint64_t(0);
+    for (std::size_t cut = 0; cut <= work.size(); ++cut) {
+        least = std::min(least, std::max(first, least_largest(work.subspan(cut), parts - 1)));
+        if (cut < work.size()) first += work[cut];
+    }
+    return least;
+}
+
+TEST(RankCuts, HaveTheLeastWorkOfTheLargestPart) {
+    std::mt19937 random(1);
+    for (unsigned round = 0; round < 300; ++round) {
+        std::vector<std::uint64_t> work(random() % 9);
+        for (std::uint64_t& one : work) one = random() % 4 == 0 ? 0 : random() % 100;
+        const std::size_t parts = 1 + random() % 4;
+        const std::vector<std::size_t> cuts = least_cuts(work, parts);
+        ASSERT_EQ(cuts.size(), parts + 1);
+        ASSERT_TRUE(std::ranges::is_sorted(cuts));
+        ASSERT_EQ(cuts.front(), 0u);
+        ASSERT_EQ(cuts.back(), work.size());
+        std::uint64_t largest = 0;
+        for (std::size_t part = 0; part < parts; ++part) {
+            const auto begin = work.begin() + std::ptrdiff_t(cuts[part]),
+                       end = work.begin() + std::ptrdiff_t(cuts[part + 1]);
+            largest = std::max(largest, std::accumulate(begin, end, std::uint64_t(0)));
+        }
+        // A cut is exact to one thousandth of the mean, and one.
+        EXPECT_LE(largest, least_largest(work, parts) + 1);
+    }
 }
 
 }  // namespace

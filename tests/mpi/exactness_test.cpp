@@ -8,6 +8,7 @@
 #include "exactness/large_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "mpi/ranks.hpp"
+#include "samples/scenes.hpp"
 #include "support/any_call.hpp"
 #include "support/compare.hpp"
 #include "support/families.hpp"
@@ -30,6 +31,20 @@ TEST(RankExactness, GivesEachPairOnceInLargeScenes) {
         const AnyCall alone{whole, Order::octal, false, false};
         EXPECT_TRUE(test::same_bytes(test::all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
     }
+}
+
+TEST(RankExactness, StoresTheTopOfTheOctreeAndOwnOctants) {
+    if (test::sanitized) GTEST_SKIP() << "takes too long";
+    const std::vector<Box3f> boxes = samples::make_scene("uniform", 1'000'000, 1);
+    const auto alone = make_mpi_engine(MPI_COMM_SELF), ranks = make_mpi_engine(MPI_COMM_WORLD);
+    const Objects all{std::span<const Box3f>(boxes), {}};
+    const std::uint64_t pairs = alone->count_pairs(all);
+    const std::uint64_t whole = last_costs(*alone).octants;
+    const std::vector<Box3f> own = test::slice(boxes, test::Spread::even);
+    EXPECT_EQ(ranks->count_pairs(Objects{std::span<const Box3f>(own), {}}), pairs);
+    const std::uint64_t stored = last_costs(*ranks).octants;
+    EXPECT_GE(stored, whole / test::rank_count());
+    EXPECT_LE(double(stored), double(whole) * (0.2 + 1.2 / test::rank_count()));
 }
 
 #ifdef OCTOPAIR_TEST_HOOKS
@@ -82,7 +97,9 @@ TEST_F(MpiSmallScenes, OfSlices) {
     }
     if (!are_enough()) return;
     using enum Path;
-    EXPECT_EQ(test::paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once}), "");
+    EXPECT_EQ(test::paths_not_taken(
+                  {ranks_top_divided, object_on_ranks, ranks_window, nested_once, positions_near, positions_far}),
+              "");
 }
 
 /// Makes calls of an engine on rank 0. Other ranks follow that engine.
@@ -103,15 +120,18 @@ TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
     });
 }
 
-TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) {
+void expect_found(Fault fault) {
     if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
-    lead_engines([](const test::EngineFor& engines) {
-        const test::FaultScope planted(Fault::rank_takes_neighbour);
+    lead_engines([=](const test::EngineFor& engines) {
+        const test::FaultScope planted(fault);
         const auto finding = test::check_small_cases({0, 300}, engines);
         ASSERT_TRUE(finding);
         std::printf("found by %s: %s\n", finding->check.c_str(), finding->text.c_str());
     });
 }
+
+TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) { expect_found(Fault::rank_takes_neighbour); }
+TEST(MpiSmallScenesLed, FindsPositionsThatAreSentInTooFewBits) { expect_found(Fault::positions_always_near); }
 
 #endif
 

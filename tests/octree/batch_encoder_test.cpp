@@ -70,6 +70,49 @@ TEST_P(Encoding, KernelAndSpecificationAgree) {
     }
 }
 
+void expect_same(const LocatedBatch& found, const LocatedBatch& expected, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found.leaves[i], expected.leaves[i]);
+    ASSERT_EQ(found.crossers, expected.crossers);
+    for (std::size_t i = 0; i < found.crossers; ++i) {
+        ASSERT_EQ(found.crosser[i], expected.crosser[i]);
+        ASSERT_EQ(found.leaf[i], expected.leaf[i]);
+        ASSERT_EQ(found.end_leaf[i], expected.end_leaf[i]);
+        ASSERT_EQ(found.cells(i).lo, expected.cells(i).lo);
+        ASSERT_EQ(found.cells(i).hi, expected.cells(i).hi);
+    }
+}
+
+TEST_P(Encoding, LocatorAndSpecificationAgree) {
+    std::mt19937 random(3);
+    LocatedBatch found, expected;
+    for (std::size_t begin = 0; begin < boxes.size();) {
+        const std::size_t count = std::min<std::size_t>(1 + random() % max_encoded, boxes.size() - begin);
+        const auto some = std::span<const Box3f>(boxes).subspan(begin, count);
+        ASSERT_TRUE(encoder->locator.locate(some, found));
+        ASSERT_TRUE(encoder->locator.locate_scalar(some, expected));
+        expect_same(found, expected, count);
+        BatchEntries entries;
+        ASSERT_TRUE(make_entries({some}, entries));
+        encoder->locator.locate(std::span<const Entry>(entries).first(count), found);
+        expect_same(found, expected, count);
+        begin += count;
+    }
+}
+
+TEST_P(Encoding, TakesTheNumbersOfObjects) {
+    std::mt19937 random(4);
+    std::vector<std::uint32_t> objects(boxes.size());
+    for (std::uint32_t& object : objects) object = std::uint32_t(random());
+    EncodedBatch found, expected;
+    for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(100), max_encoded}) {
+        const PlainBoxes plain{std::span<const Box3f>(boxes).first(count), 0, objects.data()};
+        ASSERT_TRUE(encoder->encode(plain, found));
+        ASSERT_TRUE(encoder->encode_scalar(plain, expected));
+        expect_same(found, expected, count);
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found.homes[i].object, objects[i]);
+    }
+}
+
 /// Ghosts of one box, by octant.
 using Ghosts = std::map<OctantIndex, CellEntry>;
 
@@ -130,20 +173,20 @@ TEST_P(Encoding, InvalidBoxesAreFound) {
     for (const std::size_t count : {1u, 3u, 8u, 100u}) {
         for (const std::size_t bad : {std::size_t(0), count / 2, count - 1}) {
             std::vector<Box3f> some(boxes.begin(), boxes.begin() + std::ptrdiff_t(count));
-            ASSERT_TRUE(encoder->encode(some, 0, batch));
+            ASSERT_TRUE(encoder->encode({some}, batch));
             for (unsigned axis = 0; axis < 3; ++axis) {
                 for (const float value : {nan, infinity, -infinity}) {
                     std::vector<Box3f> broken = some;
                     broken[bad].min[axis] = value;
-                    ASSERT_FALSE(encoder->encode(broken, 0, batch));
+                    ASSERT_FALSE(encoder->encode({broken}, batch));
                     broken = some;
                     broken[bad].max[axis] = value;
-                    ASSERT_FALSE(encoder->encode(broken, 0, batch));
+                    ASSERT_FALSE(encoder->encode({broken}, batch));
                 }
                 std::vector<Box3f> broken = some;
                 std::swap(broken[bad].min[axis], broken[bad].max[axis]);
                 if (broken[bad].min[axis] != broken[bad].max[axis]) {
-                    ASSERT_FALSE(encoder->encode(broken, 0, batch));
+                    ASSERT_FALSE(encoder->encode({broken}, batch));
                 }
             }
         }

@@ -144,6 +144,7 @@ RankShare RankSearch::plan_alone(Task& task, const BoxSource& own) {
     const Metered metered(comm_, costs_.plan);
     RankShare share{make_layout(own, task.stop.get_token())};
     share.end = OctantIndex(share.layout.directory.octants().size());
+    costs_.octants = share.end;
     return share;
 }
 
@@ -175,7 +176,7 @@ OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreePla
     std::optional<OctantOwners> owners;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        owners.emplace(shared.directory, OctantLoads{entries, planning.extents()}, comm_.size());
+        owners.emplace(planning.top(), shared.directory, entries, comm_.size());
         routing->assign_owners(executor, *owners);
     });
     costs_.shared_objects = routing->shared_objects();
@@ -188,6 +189,7 @@ RankShare RankSearch::grow(Task& task, OctreePlanning& planning, const OctantOwn
     const Metered metered(comm_, costs_.plan);
     OctreePlanning::OwnLayout own = planning.grow(owners);
     if (planted(Fault::rank_takes_neighbour) && own.end < own.layout.directory.octants().size()) ++own.end;
+    costs_.octants = own.layout.directory.octants().size();
     RankShare share{std::move(own.layout), own.begin, own.end};
     if (task.joint.indexed) return share;
     ObjectPositions& positions = share.positions.emplace();

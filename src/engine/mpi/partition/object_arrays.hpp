@@ -19,7 +19,7 @@ struct ObjectArrays {
     Buffer<Box3d> wide_boxes = {};
     Buffer<double> padding = {};
     Buffer<std::uint32_t> positions = {};       ///< of the objects in the set
-    Buffer<std::uint16_t> near_positions = {};  ///< their lowest 16 bits
+    Buffer<std::uint16_t> near_positions = {};  ///< their lowest bits (Routing::near_position)
     Buffer<std::uint64_t> indices = {};
 
     std::size_t size() const { return indexed ? indices.size() : near ? near_positions.size() : positions.size(); }

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "base/test_hooks.hpp"
+
 namespace octopair {
 
 ObjectExchange::ObjectExchange(Communicator& comm, const JointCall& call, const Routing& routing, unsigned set)
@@ -19,6 +21,10 @@ void ObjectExchange::pack(Executor& executor, const Objects& objects, Memory& me
         arrays->wide = call_.wide[set_];
         arrays->padded = call_.padded[set_];
         arrays->indexed = call_.indexed;
+    }
+    if (!call_.indexed) {
+        const bool near = senders_[own].position_bytes == sizeof(std::uint16_t);
+        count_path(near ? Path::positions_near : Path::positions_far);
     }
     memory.sent.near = !call_.indexed && senders_[own].position_bytes == sizeof(std::uint16_t);
     memory.sent.resize(std::accumulate(counts_.sent.begin(), counts_.sent.end(), std::size_t(0)));
@@ -58,7 +64,7 @@ void ObjectExchange::decode_positions(Memory& memory) const {
             for (std::size_t i = 0; i < count; ++i) {
                 std::uint16_t low = 0;
                 std::memcpy(&low, in + i * sizeof low, sizeof low);
-                position += std::uint16_t(low - position);
+                position = Routing::position_after(position, low);
                 out[i] = position;
             }
         } else {

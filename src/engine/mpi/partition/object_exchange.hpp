@@ -5,7 +5,7 @@
 //   exchange  sends the arrays
 //
 // Positions  A message has 32 bits for each position, or only the lowest 16. 16 bits are enough if positions that follow each
-//            other in the message differ by less than 2^16, because they ascend.
+//            other in the message are near, because they ascend (Routing::are_positions_near).
 // Result     The received objects of all ranks, in rank order, ascend by position.
 #pragma once
 

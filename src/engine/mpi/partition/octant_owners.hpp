@@ -13,22 +13,18 @@
 #include <span>
 #include <vector>
 
+#include "engine/mpi/partition/shared_top.hpp"
 #include "octree/build/octants_of.hpp"
 #include "octree/directory.hpp"
 
 namespace octopair {
 
-/// What the work in each octant is estimated from.
-struct OctantLoads {
-    std::span<const std::uint64_t> entries;
-    std::span<const double> extents;  ///< mean extent of the boxes on their shortest axes, in sides of the octant
-};
-
 class OctantOwners {
 public:
-    /// Divides the octants of `directory` into runs, so that the largest work of a run is as small as possible. The result
-    /// depends only on the arguments. Borrows the directory.
-    OctantOwners(const Directory& directory, const OctantLoads& loads, unsigned ranks);
+    /// Divides the octants of `top` into runs, so that the largest work of a run is as small as possible. The result depends only
+    /// on the arguments. `directory`: the same octants; borrowed. `entries`: number of entries of each octant, on all ranks.
+    OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint64_t> entries,
+                 unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
     OctantIndex begin(unsigned rank) const { return OctantIndex(begins_[rank]); }

@@ -134,10 +134,7 @@ OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const 
     });
     const std::uint64_t most = octant_sample(call.objects()).size() / (tuning().ranks.octants * comm.size());
     top_.emplace(comm, growth_, most, sampled_);
-    agreement.together([&] {
-        shared_.directory = Directory(shared_.space, top_->shape());
-        for (const SharedTop::SharedOctant& octant : top_->octants()) extents_.push_back(octant.extent);
-    });
+    agreement.together([&] { shared_.directory = Directory(shared_.space, top_->shape()); });
 }
 
 OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
@@ -161,7 +158,7 @@ OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
         const SplitFlags& top = top_->shape();
         SplitFlags shape(top.begin(), top.begin() + std::ptrdiff_t(begin));
         for (OctantIndex i = begin; i < end; ++i) {
-            const auto& [octant, left, extent] = top_->octants()[i];
+            const auto& [octant, left, extents] = top_->octants()[i];
             if (!left) {
                 shape.push_back(top[i]);
                 continue;

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -35,8 +34,7 @@ public:
     /// Returns the space and the octants of the shared top.
     const OctreeLayout& shared() const { return shared_; }
 
-    /// Returns the mean extent of boxes in each of these octants, as OctantLoads::extents.
-    std::span<const double> extents() const { return extents_; }
+    const SharedTop& top() const { return *top_; }
 
     /// The octants that a rank stores. It owns the octants [begin, end).
     struct OwnLayout {
@@ -54,7 +52,6 @@ private:
     OctreeLayout shared_;
     std::vector<CellBox> sampled_;  // this rank's part of the sample
     std::optional<SharedTop> top_;
-    std::vector<double> extents_;
 };
 
 }  // namespace octopair

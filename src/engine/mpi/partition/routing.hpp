@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
+#include "base/tuning.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
@@ -76,8 +78,14 @@ public:
     /// Returns the number of objects with several owners. Requires: assign_owners().
     std::uint64_t shared_objects() const;
     /// Returns whether each receiver gets an object of each block of the set. Then positions that follow each other in a message
-    /// differ by less than 2^16. Requires: assign_owners().
+    /// differ by less than two blocks, and near_position() identifies them. Requires: assign_owners().
     bool are_positions_near(unsigned set) const;
+    /// Returns the lowest bits of a position: at most 16.
+    static std::uint16_t near_position(std::uint32_t position) { return std::uint16_t(position & near_bits()); }
+    /// Returns the position that follows `before` and has the bits `near`.
+    static std::uint32_t position_after(std::uint32_t before, std::uint16_t near) {
+        return before + ((near - before) & near_bits());
+    }
 
     /// Arrays that pack() fills.
     struct Packed {
@@ -91,6 +99,7 @@ public:
     void pack(Executor& executor, unsigned set, const Objects& objects, const Packed& to) const;
 
 private:
+    static std::uint32_t near_bits() { return std::uint32_t(std::bit_ceil(2 * tuning().ranks.block) - 1); }
     bool locate(std::size_t begin, std::size_t count, LocatedBatch& batch) const;
     void find_homes(Block& block, std::span<std::uint64_t> entries);
     void assign_owners(Block& block);

@@ -42,7 +42,7 @@ private:
         State state = State::left;
         std::uint32_t below = 0;  // number of the first of its eight children, by level
         OctantIndex number = 0;   // in pre-order
-        double extent = 0;
+        std::array<double, 3> extents = {};
     };
     /// A box of the sample and an octant that it touches.
     struct Touched {
@@ -52,7 +52,15 @@ private:
         std::uint8_t below = 0;  // bit mask of the children that it touches
     };
     /// Sums over the boxes of an octant.
-    enum Sum : std::uint8_t { inside, kept, beginning, inside_below, kept_below, extent, sums_per_octant };
+    enum Sum : std::uint8_t {
+        inside,
+        kept,
+        beginning,
+        inside_below,
+        kept_below,
+        extents,
+        sums_per_octant = extents + 3
+    };
 
     /// Returns the sums of the octants from `first_` on, over this rank's boxes.
     std::vector<std::uint32_t> count() {
@@ -69,10 +77,10 @@ private:
         ++sums[box.kept ? kept : inside];
         sums[box.kept ? kept_below : inside_below] += std::uint32_t(std::popcount(box.below));
         sums[beginning] += !box.kept && octant.holds_begin(cells) ? 1 : 0;
-        const std::uint32_t shortest =
-            std::min({cells.hi[0] - cells.lo[0], cells.hi[1] - cells.lo[1], cells.hi[2] - cells.lo[2]});
-        sums[extent] +=
-            std::min(std::uint32_t(std::uint64_t(shortest) * extent_unit >> (deepest - octant.level)), max_extent);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const std::uint64_t extent = std::uint64_t(cells.hi[axis] - cells.lo[axis]) * extent_unit;
+            sums[extents + axis] += std::min(std::uint32_t(extent >> (deepest - octant.level)), max_extent);
+        }
     }
 
     /// Divides the octants from `first_` on by the sums of all ranks, and hands their boxes down to the children.
@@ -86,7 +94,10 @@ private:
     void decide(std::size_t i, const std::uint32_t* sums) {
         const OctantCube octant = octants_[i].octant;
         const std::uint64_t boxes = std::uint64_t(sums[inside]) + sums[kept];
-        octants_[i].extent = double(sums[extent]) / double(extent_unit) / double(std::max<std::uint64_t>(1, boxes));
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            octants_[i].extents[axis] =
+                double(sums[extents + axis]) / double(extent_unit) / double(std::max<std::uint64_t>(1, boxes));
+        }
         if (octant.level >= deepest || boxes <= most_ || !rule_.is_crowd(sums[inside])) return;
         const bool divided = SplitRule::worth_splitting({.inside = sums[inside],
                                                          .kept = sums[kept],
@@ -117,7 +128,7 @@ private:
         Octant& octant = octants_[i];
         octant.number = OctantIndex(top.octants_.size());
         const bool divided = octant.state == State::divided;
-        top.octants_.push_back({octant.octant, octant.state == State::left, octant.extent});
+        top.octants_.push_back({octant.octant, octant.state == State::left, octant.extents});
         top.shape_.push_back(divided ? 1 : 0);
         for (std::size_t digit = 0; divided && digit < 8; ++digit) append(octant.below + digit, top);
     }

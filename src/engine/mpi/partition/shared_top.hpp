@@ -28,8 +28,9 @@ public:
     };
     struct SharedOctant {
         OctantCube octant;
-        bool left;      ///< the owner may divide this octant further
-        double extent;  ///< mean extent of its boxes on their shortest axes, in sides of the octant; from the sample
+        bool left;  ///< the owner may divide this octant further
+        /// Mean extent of its boxes on each axis, in sides of the octant. Estimated from the sample.
+        std::array<double, 3> extents;
     };
 
     /// Collective. Divides octants until each one has at most `most` boxes of the sample, or is not to be divided. `own`: cells
