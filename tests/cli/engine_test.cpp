@@ -185,7 +185,6 @@ TEST_F(Engines, RefusesOptionsThatConflict) {
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
              {"--engine mpi --workers 2", "--workers: not with --engine mpi; mpirun -n sets the number of ranks"},
-             {"--engine mpi --events", "--events: not with --engine mpi"},
              {"--engine threads", "--engine: 'threads' is not a valid value; valid values: local, processes, mpi"}}) {
         const Outcome outcome = run("detect a.npy " + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;

@@ -61,9 +61,21 @@ for order in "--order ascending" "--order octal" "--count-only" "--limit 1000" "
     grep -q '^verified    .* by a second algorithm' summary.txt || fail "no verification in the summary: $order"
 done
 
+same 3 events.csv moving.npy --events
+same 2 events.jsonl moving.npy --events --margin 0.01 --limit 2000
+same 3 events.csv moving.npy --against few.csv --events
+on_ranks 3 detect moving.npy --engine mpi --events --stats stats.json --output events.csv 2> summary.txt
+grep -q 'on 3 ranks with 1 thread each' summary.txt || fail "the summary of events does not have the number of ranks"
+
 printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,nan\n' > bad.csv
 refuses 3 'bad.csv: .*' bad.csv
 refuses 4 'missing.npy' missing.npy
+for input in bad.csv missing.npy; do
+    status=0
+    on_ranks 3 detect $input --engine mpi --events --output events.csv --quiet 2> errors.txt || status=$?
+    [ "$status" = "$([ $input = bad.csv ] && echo 3 || echo 4)" ] || fail "exit status $status for events of $input"
+    [ "$(grep -c "octopair: .*$input" errors.txt)" = 1 ] || fail "not printed once: $(cat errors.txt)"
+done
 refuses 3 'a.npy: 20000 paddings\|padding.npy: 23000 paddings' a.npy --padding padding.npy
 status=0
 on_ranks 2 detect a.npy --engine mpi --fail-on-collision --count-only --quiet > /dev/null 2>&1 || status=$?

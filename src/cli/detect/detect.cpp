@@ -16,6 +16,7 @@
 #include "io/files/atomic_file.hpp"
 #ifdef OCTOPAIR_WITH_MPI
 #include "cli/ranks/cluster.hpp"
+#include "engine/mpi/leading/leading.hpp"
 #endif
 
 namespace octopair::cli {
@@ -59,7 +60,7 @@ DetectReport detect_and_report(const DetectRequest& request, Group& group, const
     group.together([&] {
         if (group.first()) outcome.emplace(request, stop);
     });
-    DetectReport report = request.events ? detect_events(request, stop) : detect(request, group, stop);
+    DetectReport report = request.events ? detect_events(request, {}, stop) : detect(request, group, stop);
     group.together([&] {
         if (outcome) outcome->write(report);
     });
@@ -67,10 +68,37 @@ DetectReport detect_and_report(const DetectRequest& request, Group& group, const
 }
 
 #ifdef OCTOPAIR_WITH_MPI
+/// Finds events on rank 0, with an engine that the other ranks follow. Returns the exit status.
+int find_events_on_ranks(const DetectRequest& request, Cluster& cluster, const std::stop_token& stop) {
+    LeadingOptions options;
+    options.threads = describe_engine(request.engine).threads;
+    if (!cluster.first()) {
+        follow(MPI_COMM_WORLD, options);
+        return 0;
+    }
+    options.on_silent_rank = [](const std::string& what) {
+        Cluster::abort(fail(Error(ErrorCode::engine_failed, what)));
+    };
+    RankedEngine ranked{make_leading_engine(MPI_COMM_WORLD, options), cluster.ranks()};
+    try {
+        Outcome outcome(request, stop);
+        const DetectReport report = detect_events(request, std::move(ranked), stop);
+        outcome.write(report);
+        return exit_status_of(request, report);
+    } catch (const Error& error) {
+        return fail(error);
+    }
+}
+
 /// Runs the search on all ranks. Only rank 0 writes the outcome and the error message.
 int run_on_ranks(const DetectRequest& request) {
     const Interrupt interrupt;
     Cluster cluster;
+    if (request.events) {
+        cluster.joint(check_leading_threads);
+        // All ranks end with the status of rank 0.
+        return cluster.all_gather(find_events_on_ranks(request, cluster, interrupt.token())).front();
+    }
     try {
         return exit_status_of(request, detect_and_report(request, cluster, interrupt.token()));
     } catch (const Error& error) {

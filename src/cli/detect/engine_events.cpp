@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "cli/detect/event_source.hpp"
-#include "cli/engine_choice.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::cli {
@@ -54,8 +53,8 @@ private:
 template <typename Real>
 class EngineEvents final : public EventSource {
 public:
-    EngineEvents(const FrameSets& sets, const DetectRequest& request)
-        : engine_(make_engine(request.engine)), inputs_(sets.inputs, sets.paddings.inputs(), *engine_) {
+    EngineEvents(const FrameSets& sets, const DetectRequest& request, std::unique_ptr<Engine> engine)
+        : engine_(std::move(engine)), inputs_(sets.inputs, sets.paddings.inputs(), *engine_) {
         if (sets.against != nullptr) against_.emplace(*sets.against, sets.paddings.against(), *engine_);
         options_.margin = request.margin;
     }
@@ -103,11 +102,14 @@ private:
 }  // namespace
 
 template <typename Real>
-std::unique_ptr<EventSource> make_engine_events(const FrameSets& sets, const DetectRequest& request) {
-    return std::make_unique<EngineEvents<Real>>(sets, request);
+std::unique_ptr<EventSource> make_engine_events(const FrameSets& sets, const DetectRequest& request,
+                                                std::unique_ptr<Engine> engine) {
+    return std::make_unique<EngineEvents<Real>>(sets, request, std::move(engine));
 }
 
-template std::unique_ptr<EventSource> make_engine_events<float>(const FrameSets&, const DetectRequest&);
-template std::unique_ptr<EventSource> make_engine_events<double>(const FrameSets&, const DetectRequest&);
+template std::unique_ptr<EventSource> make_engine_events<float>(const FrameSets&, const DetectRequest&,
+                                                                std::unique_ptr<Engine>);
+template std::unique_ptr<EventSource> make_engine_events<double>(const FrameSets&, const DetectRequest&,
+                                                                 std::unique_ptr<Engine>);
 
 }  // namespace octopair::cli

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/timed.hpp"
 #include "cli/command/progress_line.hpp"
@@ -26,8 +27,8 @@ void timed(double& seconds, const Work& work) {
 
 class EventDetection {
 public:
-    EventDetection(const DetectRequest& request, std::stop_token stop)
-        : request_(request), stop_(std::move(stop)), progress_(!request.quiet) {}
+    EventDetection(const DetectRequest& request, RankedEngine ranked, std::stop_token stop)
+        : request_(request), ranked_(std::move(ranked)), stop_(std::move(stop)), progress_(!request.quiet) {}
 
     DetectReport run() {
         report_.events.emplace();
@@ -55,13 +56,18 @@ private:
         report_.moving = frames.moving;
         report_.objects = sizes.inputs + sizes.against;
         report_.engine = describe_engine(request_.engine);
+        if (ranked_.engine) report_.engine.ranks = ranked_.ranks;
     }
 
     template <typename Real>
     void find() {
         const FrameSets sets{*inputs_, against_ ? &*against_ : nullptr, *paddings_};
-        const auto source = request_.engine.keeps_scenes() ? make_scene_events<Real>(sets, request_)
-                                                           : make_engine_events<Real>(sets, request_);
+        const auto make_source = [&] {
+            if (ranked_.engine) return make_engine_events<Real>(sets, request_, std::move(ranked_.engine));
+            if (request_.engine.keeps_scenes()) return make_scene_events<Real>(sets, request_);
+            return make_engine_events<Real>(sets, request_, make_engine(request_.engine));
+        };
+        const std::unique_ptr<EventSource> source = make_source();
         check_frames(*source);
         open_writer();
         for (std::uint64_t frame = 0; frame < report_.frames && !report_.truncated; ++frame) {
@@ -121,6 +127,7 @@ private:
     }
 
     const DetectRequest& request_;
+    RankedEngine ranked_;
     std::stop_token stop_;
     ProgressLine progress_;
     std::optional<FrameSet> inputs_, against_;
@@ -134,14 +141,13 @@ private:
 
 void check_event_options(const DetectRequest& request) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::usage, "--events: " + why); };
-    if (request.engine.has_ranks()) refuse("not with --engine mpi");
     if (request.count_only) refuse("not with --count-only");
     if (request.order == Order::octal) refuse("not with --order octal: the pairs of a frame are ascending");
     if (!request.output.empty()) (void)io::event_format(request.output);
 }
 
-DetectReport detect_events(const DetectRequest& request, const std::stop_token& stop) {
-    return EventDetection(request, stop).run();
+DetectReport detect_events(const DetectRequest& request, RankedEngine ranked, const std::stop_token& stop) {
+    return EventDetection(request, std::move(ranked), stop).run();
 }
 
 }  // namespace octopair::cli

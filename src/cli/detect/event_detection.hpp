@@ -5,14 +5,25 @@
 // Memory    Two frames and a scene, or one frame and the pairs of two frames (event_source.hpp).
 #pragma once
 
+#include <memory>
+#include <stop_token>
+
 #include "cli/detect/detection.hpp"
+#include "octopair/engine.hpp"
 
 namespace octopair::cli {
 
 /// Throws: Error{usage} for options, and formats of --output, that --events excludes.
 void check_event_options(const DetectRequest& request);
 
-/// Reads the inputs, finds the events, and writes the result. The caller writes the statistics. Throws: Error.
-DetectReport detect_events(const DetectRequest& request, const std::stop_token& stop);
+/// An engine that has ranks.
+struct RankedEngine {
+    std::unique_ptr<Engine> engine;
+    unsigned ranks;
+};
+
+/// Reads the inputs, finds the events, and writes the result. The caller writes the statistics. `ranked`: finds the pairs, if it
+/// has an engine; otherwise an engine is made as the request says. Throws: Error.
+DetectReport detect_events(const DetectRequest& request, RankedEngine ranked, const std::stop_token& stop);
 
 }  // namespace octopair::cli

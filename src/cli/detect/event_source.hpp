@@ -42,6 +42,7 @@ public:
 template <typename Real>
 std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request);
 template <typename Real>
-std::unique_ptr<EventSource> make_engine_events(const FrameSets& sets, const DetectRequest& request);
+std::unique_ptr<EventSource> make_engine_events(const FrameSets& sets, const DetectRequest& request,
+                                                std::unique_ptr<Engine> engine);
 
 }  // namespace octopair::cli
