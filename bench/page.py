@@ -332,10 +332,10 @@ def scaling_aims(results):
 
 def cluster(results):
     """Returns a row for each number of ranks in each call."""
-    lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object |",
-             "|---|--:|--:|--:|--:|--:|--:|"]
+    lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object | octants |",
+             "|---|--:|--:|--:|--:|--:|--:|--:|"]
     study = load(results / "cluster.json")
-    runs = study["runs"]
+    runs = study["runs"] + load(results / "cluster_sizes.json")["runs"]
 
     def computing(run):
         return [sum(seconds for step, seconds in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
@@ -351,7 +351,8 @@ def cluster(results):
         efficiency = f"{100 * one[call(run)] / (ranks * max(seconds)):.1f}%" if call(run) in one else "–"
         cells = [f"{run['scene']}, {run['objects']:,}{paper}", str(ranks), milliseconds(max(seconds)),
                  f"{max(seconds) * ranks / sum(seconds):.3f}", efficiency,
-                 f"{100 * sums['shared_objects'] / run['objects']:.2f}%", f"{sums['bytes_sent'] / run['objects']:.1f}"]
+                 f"{100 * sums['shared_objects'] / run['objects']:.2f}%", f"{sums['bytes_sent'] / run['objects']:.1f}",
+                 f"{max(rank['octants'] for rank in run['alone']):,}"]
         lines.append("| " + " | ".join(cells) + " |")
     return measured_on(study["machine"]) + "\n".join(lines)
 

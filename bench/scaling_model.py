@@ -8,15 +8,15 @@ Costs of n evenly spread objects on k ranks:
     shared    s = sigma (k / n)^(1/3)               fraction of the objects that several ranks receive: those at the
                                                     surface of a rank's part of the space
     received  r = (n / k) (1 + s)                   objects that a rank receives
-    octants   o = min(u k + v n / k, v n)           octants that a rank stores: the top of the octree and its own
+    octants   o = min(u k + v n / k, v n)           octants that a rank stores, at most: the top of the octree and its own
     plan      c r + d o + e k                       seconds; e: work for each other rank
     compute   r (a + b log2 r) + m k                seconds of all other steps
     bytes     (26 + f) r (k - 1) / k + g k + h      sent by a rank; f: boxes of the sample
     messages  p (k - 1) + q                         sent by a rank
     network   messages x latency + bytes / bandwidth      seconds; a model, not measured
 
-The constants are fitted to the runs on 10 and 40 ranks of some sizes, by least squares of relative errors. The other runs check
-the constants.
+The constants are fitted to the runs on 10 and 40 ranks of some sizes, by least squares of relative errors; u and v are the largest
+numbers of all runs. The other runs check the constants.
 """
 import json
 import math
@@ -32,10 +32,18 @@ NETWORKS = {"1 Gbit/s, 50 us": (50e-6, 125e6), "25 Gbit/s, 5 us": (5e-6, 3.125e9
 
 
 def runs_of(results):
-    """Returns the runs of uniform scenes on several ranks."""
+    """Returns the runs of uniform scenes."""
     runs = [run for name in ("cluster.json", "cluster_sizes.json")
             for run in json.loads((results / name).read_text(encoding="utf-8"))["runs"]]
-    return [run for run in runs if run["scene"] == "uniform" and run["ranks"] > 1]
+    return [run for run in runs if run["scene"] == "uniform"]
+
+
+def octant_bounds(runs):
+    """Returns u and v. A run whose ranks store the whole octree does not bound u."""
+    whole = {run["objects"]: stored_octants(run) for run in runs if run["ranks"] == 1}
+    shared = [(stored_octants(run) - whole[run["objects"]] / run["ranks"]) / run["ranks"]
+              for run in runs if run["ranks"] > 1 and stored_octants(run) < 0.9 * whole[run["objects"]]]
+    return max(shared), max(octants / objects for objects, octants in whole.items())
 
 
 def mean_seconds(run, steps):
@@ -76,12 +84,13 @@ def fit(rows, values):
 class Model:
     """Predictions of the model for a call."""
 
-    def __init__(self, runs):
+    def __init__(self, runs, tree):
+        self.tree = tree
         self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
                          [per_rank(run, "shared_objects") * run["ranks"] / run["objects"] for run in runs])[0]
         sizes = [(run["objects"], run["ranks"]) for run in runs]
-        self.tree = fit([[k, n / k] for n, k in sizes], [stored_octants(run) for run in runs])
-        self.plan = fit([[self.received(n, k), self.octants(n, k), k] for n, k in sizes], [planning(run) for run in runs])
+        self.plan = fit([[self.received(*size), stored_octants(run), size[1]] for run, size in zip(runs, sizes)],
+                        [planning(run) for run in runs])
         self.compute = fit([self.compute_row(n, k) for n, k in sizes], [computing(run) for run in runs])
         self.sent = fit([[self.crossing(n, k), k, 1] for n, k in sizes],
                         [per_rank(run, "bytes_sent") - BOX_AND_POSITION * self.crossing(*size)
@@ -147,7 +156,7 @@ def check_text(model, runs):
                  (per_rank(run, "bytes_sent") * k / n, model.bytes(n, k) * k / n, "{:.1f}")]
         rows.append([f"{n:,}", str(k)] + [form.format(number) for measured, said, form in pairs for number in
                                           (measured, said)])
-    return table(["objects", "ranks", "mean ms", "model", "shared %", "model", "octants", "model", "bytes an object",
+    return table(["objects", "ranks", "mean ms", "model", "shared %", "model", "octants", "at most", "bytes an object",
                   "model"], rows)
 
 
@@ -167,9 +176,10 @@ def far_text(model):
 
 def texts(results):
     """Returns the tables of docs/scaling.md."""
-    runs = runs_of(results)
+    all_runs = runs_of(results)
+    runs = [run for run in all_runs if run["ranks"] > 1]
     fitted = [run for run in runs if run["objects"] not in CHECKED and run["ranks"] in FITTED_RANKS]
-    model = Model(fitted)
+    model = Model(fitted, octant_bounds(all_runs))
     checked = [run for run in runs if run not in fitted]
     return {"model": constants_text(model), "model_check": check_text(model, checked), "model_far": far_text(model)}
 

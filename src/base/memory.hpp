@@ -43,6 +43,14 @@ public:
     /// Makes an empty buffer with pages from `source`. Requires: `source` outlives the buffer.
     explicit Buffer(PageSource& source) : source_(&source) {}
 
+    /// Makes a buffer of memory that `source` frees. Requires: `source` outlives the buffer.
+    static Buffer adopt(T* memory, std::size_t size, PageSource& source) {
+        Buffer buffer(source);
+        buffer.memory_ = {memory, Free{size, &source}};
+        buffer.size_ = size;
+        return buffer;
+    }
+
     /// Sets the size. The contents are lost if the buffer grows beyond its capacity.
     void resize_discard(std::size_t size) {
         const bool grows = size > capacity();

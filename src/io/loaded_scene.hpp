@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "base/memory.hpp"
+#include "io/files/file_mapping.hpp"
 #include "io/loaded_shapes.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::io {
 
-/// Box i of frame f is boxes[f * objects + i]. A scene with shapes or triangles may have no boxes yet; the caller then
+/// Box i of frame f is boxes[f * objects + i]. Boxes of a large .npy file are mapped from the file. A scene with shapes or triangles may have no boxes yet; the caller then
 /// computes the boxes from the shapes.
 struct LoadedScene {
     std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
@@ -26,6 +27,11 @@ struct LoadedScene {
 
     bool lacks_boxes() const {
         return objects > 0 && std::visit([](const auto& buffer) { return buffer.size() == 0; }, boxes);
+    }
+
+    /// Throws: Error{bad_input} if the boxes are mapped (FileMapping) and the file was shortened.
+    void check_mapped() const {
+        std::visit([](const auto& buffer) { check_mapping(std::as_bytes(buffer.span())); }, boxes);
     }
 
     /// Returns the boxes of frame `f`, borrowed.

@@ -37,6 +37,7 @@ Buffer<To> join_boxes(std::span<LoadedScene> scenes, std::uint64_t objects) {
             std::visit([&](const auto& boxes) { copy_frame(boxes, f * scene.objects, place); }, scene.boxes);
         }
         first += scene.objects;
+        scene.check_mapped();
         scene.boxes = {};  // frees each input at once: at most one copy exists besides the result
     }
     return joined;

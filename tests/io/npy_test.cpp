@@ -48,6 +48,60 @@ TEST_F(Npy, ReadsBoxesOfBothPrecisions) {
     EXPECT_EQ(std::get<Buffer<Box3d>>(wide.boxes)[2].max[1], doubles[16]);
 }
 
+/// Boxes of a file of `objects` objects, mapped whatever their size.
+LoadedScene map_rows(const std::string& path, const io::ObjectRows& rows) {
+    return io::NpyScene(path).read(rows, {}, 1);
+}
+
+template <typename Real>
+std::span<const Box<Real>> boxes_of(const LoadedScene& scene) {
+    return std::get<Buffer<Box<Real>>>(scene.boxes).span();
+}
+
+TEST_F(Npy, MapsRows) {
+    constexpr std::uint64_t objects = 5000;
+    std::vector<float> floats(objects * 6);
+    for (std::size_t i = 0; i < floats.size(); ++i) floats[i] = float(i);
+    const std::vector<double> doubles(floats.begin(), floats.end());
+    const std::string narrow = save(npy_of(NpyType::float32, {objects, 6}, floats)), wide = directory_.file("wide.npy");
+    write_file(wide, npy_of(NpyType::float64, {objects, 6}, doubles));
+    // More rounds than there are slots, so that slots are used again.
+    for (std::uint64_t begin = 0; begin < objects; begin += 41) {
+        const io::ObjectRows rows{begin, std::min(objects, begin + 1000)};
+        LoadedScene scene = map_rows(narrow, rows);
+        EXPECT_EQ(scene.objects, rows.end - rows.begin);
+        EXPECT_EQ(boxes_of<float>(scene).size(), scene.objects);
+        EXPECT_EQ(boxes_of<float>(scene).front().min[0], float(6 * begin));
+        EXPECT_EQ(boxes_of<float>(scene).back().max[2], float(6 * rows.end - 1));
+        scene = map_rows(wide, rows);
+        EXPECT_EQ(boxes_of<double>(scene).front().min[0], double(6 * begin));
+        EXPECT_EQ(boxes_of<double>(scene).back().max[2], double(6 * rows.end - 1));
+        EXPECT_NO_THROW(scene.check_mapped());
+    }
+}
+
+TEST_F(Npy, ReadsRowsIfNoMoreCanBeMapped) {
+    const std::string path = save(npy_of(NpyType::float32, {3, 6}, std::vector<float>(18, 2)));
+    std::vector<LoadedScene> scenes;
+    for (unsigned i = 0; i < 70; ++i) scenes.push_back(map_rows(path, {0, 3}));
+    for (const LoadedScene& scene : scenes) EXPECT_EQ(boxes_of<float>(scene)[2].max[2], 2);
+}
+
+TEST_F(Npy, RefusesAMappedFileThatBecomesShorter) {
+    constexpr std::uint64_t objects = 100'000;
+    const std::string path = save(npy_of(NpyType::float32, {objects, 6}, std::vector<float>(6 * objects, 1)));
+    const LoadedScene scene = map_rows(path, {0, objects}), other = map_rows(path, {0, 10});
+    std::filesystem::resize_file(path, 1'000'000);
+    const auto boxes = boxes_of<float>(scene);
+    EXPECT_EQ(boxes[30'000].min[0], 1);
+    EXPECT_NO_THROW(scene.check_mapped());
+    EXPECT_TRUE(std::isnan(boxes[objects - 1].min[0]));
+    EXPECT_TRUE(std::isnan(boxes[50'000].max[2]));
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { scene.check_mapped(); }),
+              path + ": the file was truncated while it was read");
+    EXPECT_NO_THROW(other.check_mapped());
+}
+
 TEST_F(Npy, ReadsFrames) {
     std::vector<float> values(2 * 3 * 6);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i);

@@ -5,6 +5,7 @@
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
+#include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
@@ -63,6 +64,23 @@ TEST_F(RankJobs, AreCancelledByTheEndOfTheEngine) {
     engine_.reset();
     EXPECT_EQ(int(running.state()), int(JobState::cancelled));
     for (const Job& job : waiting) EXPECT_EQ(int(job.state()), int(JobState::cancelled));
+}
+
+TEST_F(RankJobs, ProgressGrowsWhilePairsAreSorted) {
+    const std::vector<Box3f> own =
+        test::slice(samples::make_scene("dense", test::scaled(100'000, 4), 1), test::Spread::even);
+    double last = 0;
+    unsigned after_scan = 0;
+    Options options;
+    options.progress = [&](double done) {
+        EXPECT_GE(done, last);
+        last = done;
+        after_scan += done > 0.81 && done < 0.99 ? 1 : 0;
+    };
+    PairList pairs;
+    engine_->find_pairs(Objects{std::span<const Box3f>(own), {}}, pairs, options);
+    EXPECT_EQ(last, 1);
+    EXPECT_GE(after_scan, 1u);
 }
 
 TEST_F(RankJobs, ReportTheSameErrorOnAllRanks) {

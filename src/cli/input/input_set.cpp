@@ -25,6 +25,7 @@ Objects InputSet::frame_slice(std::uint64_t f, const SliceNumber& number) const 
 }
 
 std::optional<std::string> InputSet::find_fault() const {
+    scene.check_mapped();
     const auto fault = io::find_fault(scene);
     if (!fault) return std::nullopt;
     const std::string frame = scene.moving ? fmt::format("frame {}: ", fault->frame) : "";

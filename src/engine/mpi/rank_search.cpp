@@ -164,13 +164,12 @@ OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreePla
     const OctreeLayout& shared = planning.shared();
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, task.stops);
-    std::vector<std::uint64_t> entries;
+    std::vector<std::uint32_t> entries;  // of each octant
     std::optional<Routing> routing;
     task.agreement.together([&] {
         const Metered metered(comm_, costs_.route);
-        entries.resize(shared.directory.octants().size());
         routing.emplace(task.joint, own, shared, routing_, task.stop.get_token());
-        routing->find_homes(executor, entries);
+        entries = routing->find_homes(executor);
     });
     comm_.add_up(std::span(entries));
     std::optional<OctantOwners> owners;
@@ -435,8 +434,10 @@ void RankSearch::find_ascending(Task& task, Call& call) {
     });
     if (comm_.sum(over) > 0) return find_windows(task, call);
     const Metered metered(comm_, costs_.order);
-    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
+    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns(),
+                           [&](std::uint64_t pairs) { call.progress.add(pairs); });
     const PiecePlan plan = pieces.plan(found_, RowBins(task.joint.totals[0]));
+    call.progress.stage(1, plan.pairs(comm_.rank()));
     const std::uint64_t allowance = allowed(task, plan);
     PairList sorted;
     PairList& piece = whole ? *task.output.list : sorted;

@@ -9,6 +9,7 @@
 #include "boxes/box_kernel.hpp"
 #include "io/boxes/spheres.hpp"
 #include "io/files/failure.hpp"
+#include "io/files/file_mapping.hpp"
 #include "io/files/input_file.hpp"
 
 namespace octopair::io {
@@ -48,22 +49,24 @@ SceneShape scene_shape(const NpyHeader& header, std::string_view file) {
 NpyScene::NpyScene(const std::string& path)
     : file_(path), header_(read_header(file_)), shape_(scene_shape(header_, path)) {}
 
-LoadedScene NpyScene::read(const ObjectRows& rows, const std::stop_token& stop) const {
+LoadedScene NpyScene::read(const ObjectRows& rows, const std::stop_token& stop, std::uint64_t min_mapped) const {
     LoadedScene scene;
     scene.objects = rows.end - rows.begin;
     scene.frames = shape_.frames;
     scene.moving = shape_.moving;
     if (wide()) {
-        scene.boxes = read_boxes<double>(rows, stop);
+        scene.boxes = read_boxes<double>(rows, stop, min_mapped);
     } else {
-        scene.boxes = read_boxes<float>(rows, stop);
+        scene.boxes = read_boxes<float>(rows, stop, min_mapped);
     }
     return scene;
 }
 
 template <typename Real>
-Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_token& stop) const {
+Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_token& stop,
+                                       std::uint64_t min_mapped) const {
     const std::size_t objects = std::size_t(rows.end - rows.begin);
+    if (auto mapped = map_boxes<Real>(rows, min_mapped)) return std::move(*mapped);
     Buffer<Box<Real>> boxes{std::size_t(shape_.frames) * objects};
     if (shape_.spheres) {
         Buffer<Sphere<Real>> spheres{objects};
@@ -78,6 +81,19 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
         read_rows(run * shape_.objects + rows.begin, boxes.span().subspan(run * length, length), stop);
     }
     return boxes;
+}
+
+/// Maps boxes that are adjacent in the file. Returns nothing if they are not, or are few.
+template <typename Real>
+std::optional<Buffer<Box<Real>>> NpyScene::map_boxes(const ObjectRows& rows, std::uint64_t min_mapped) const {
+    const std::uint64_t objects = rows.end - rows.begin;
+    const bool adjacent = !shape_.spheres && (shape_.frames == 1 || objects == shape_.objects);
+    const std::uint64_t bytes = shape_.frames * objects * sizeof(Box<Real>);
+    const std::uint64_t begin = header_.data_offset + rows.begin * sizeof(Box<Real>);
+    if (!adjacent || bytes < min_mapped || begin % alignof(Box<Real>) != 0) return std::nullopt;
+    auto* const boxes = static_cast<Box<Real>*>(map_file(file_, begin, std::size_t(bytes)));
+    if (boxes == nullptr) return std::nullopt;
+    return Buffer<Box<Real>>::adopt(boxes, std::size_t(shape_.frames * objects), mapped_pages());
 }
 
 template <typename T>

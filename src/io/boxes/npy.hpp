@@ -41,13 +41,19 @@ public:
     const SceneShape& shape() const { return shape_; }
     bool wide() const { return header_.type == NpyType::float64; }
 
-    /// Reads the objects `rows` in each frame. Boxes are read directly into the scene, without a second copy.
+    /// Boxes of at least this size are mapped. Smaller ones are read, into memory with huge pages.
+    static constexpr std::uint64_t min_mapped_bytes = std::uint64_t(1) << 28;
+
+    /// Reads the objects `rows` in each frame, or maps them if they are large and adjacent in the file.
     /// Throws: Error{bad_input, io_failed, cancelled}.
-    LoadedScene read(const ObjectRows& rows, const std::stop_token& stop) const;
+    LoadedScene read(const ObjectRows& rows, const std::stop_token& stop,
+                     std::uint64_t min_mapped = min_mapped_bytes) const;
 
 private:
     template <typename Real>
-    Buffer<Box<Real>> read_boxes(const ObjectRows& rows, const std::stop_token& stop) const;
+    Buffer<Box<Real>> read_boxes(const ObjectRows& rows, const std::stop_token& stop, std::uint64_t min_mapped) const;
+    template <typename Real>
+    std::optional<Buffer<Box<Real>>> map_boxes(const ObjectRows& rows, std::uint64_t min_mapped) const;
     template <typename T>
     void read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const;
 

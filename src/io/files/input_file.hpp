@@ -1,6 +1,4 @@
 // InputFile: a regular file that is open for reading.
-//
-// The file is read, not memory-mapped: a file that shrinks during the run must give an error, not SIGBUS.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +20,8 @@ public:
     const std::string& path() const { return path_; }
     /// Returns the size in bytes at the time of opening.
     std::uint64_t size() const { return size_; }
+    /// Returns the file descriptor, which stays open as long as this object.
+    int descriptor() const { return descriptor_.number(); }
 
     /// Fills `out` with the bytes from `offset` on.
     /// Throws: Error{bad_input} if the file is too short; Error{io_failed}; Error{cancelled} soon after a stop request.

@@ -106,7 +106,7 @@ void AscendingPieces::sort_received(detail::PairStorage& piece, const ObjectRang
         const std::size_t begin = i * share_pairs;
         writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));
     });
-    executor.append_sorted(stop);
+    executor.append_sorted(stop, on_sorted_);
 }
 
 }  // namespace octopair

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "base/memory.hpp"
@@ -63,9 +65,11 @@ private:
 
 class AscendingPieces {
 public:
-    /// `columns`: exclusive upper bound of every `b`. Borrows `comm` and `team`.
-    AscendingPieces(Communicator& comm, Team& team, std::uint64_t columns)
-        : comm_(comm), team_(team), columns_(columns) {}
+    /// `columns`: exclusive upper bound of every `b`. `on_sorted`: any thread calls it with numbers of sorted pairs; may be
+    /// empty. Borrows `comm` and `team`.
+    AscendingPieces(Communicator& comm, Team& team, std::uint64_t columns,
+                    std::function<void(std::uint64_t)> on_sorted = {})
+        : comm_(comm), team_(team), columns_(columns), on_sorted_(std::move(on_sorted)) {}
 
     /// Collective. Returns a plan with one window for the pairs that all ranks found. `found`: those of this rank.
     PiecePlan plan(const PairList& found, const RowBins& bins);
@@ -81,6 +85,7 @@ private:
     Communicator& comm_;
     Team& team_;
     std::uint64_t columns_;
+    std::function<void(std::uint64_t)> on_sorted_;
     Buffer<Pair> sent_, received_;
 };
 

@@ -9,21 +9,20 @@ namespace octopair {
 
 namespace {
 
-/// Cost of all work on an entry besides the tests of the sweep, in box tests. Measured.
-constexpr double pairs_per_entry_cost = 8;
+/// Cost of all work on an entry besides tests and pairs: as much as so many box tests, or as so many pairs. Measured.
 constexpr double tests_per_entry_cost = 64;
+constexpr double pairs_per_entry_cost = 8;
 
 /// Returns the estimated work in each octant; 1: the cost of an entry without tests. A sweep tests each entry against the entries
 /// that overlap it on the sweep's axis. A left octant is divided further until these are few.
-std::vector<std::uint64_t> work_of(const SharedTop& top, std::span<const std::uint64_t> entries) {
+std::vector<std::uint64_t> work_of(const SharedTop& top, std::span<const std::uint32_t> entries) {
     std::vector<std::uint64_t> work(entries.size());
     for (std::size_t octant = 0; octant < work.size(); ++octant) {
         const SharedTop::SharedOctant& shared = top.octants()[octant];
-        const auto& [x, y, z] = shared.extents;
         const double all = double(entries[octant]);
-        double tests = all * std::min({x, y, z});
+        double tests = all * shared.shortest;
         if (shared.left) tests = std::min(tests, tuning().split.max_tests_per_object);
-        const double pairs = all / 2 * std::min(1.0, 2 * x) * std::min(1.0, 2 * y) * std::min(1.0, 2 * z);
+        const double pairs = all / 2 * shared.overlap;
         work[octant] = std::uint64_t(all * (1 + tests / tests_per_entry_cost + pairs / pairs_per_entry_cost));
     }
     return work;
@@ -31,7 +30,7 @@ std::vector<std::uint64_t> work_of(const SharedTop& top, std::span<const std::ui
 
 }  // namespace
 
-OctantOwners::OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint64_t> entries,
+OctantOwners::OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint32_t> entries,
                            unsigned ranks)
     : directory_(directory), begins_(least_cuts(work_of(top, entries), ranks)), owners_(entries.size()) {
     for (unsigned rank = 0; rank < ranks; ++rank) {

@@ -22,8 +22,9 @@ namespace octopair {
 class OctantOwners {
 public:
     /// Divides the octants of `top` into runs, so that the largest work of a run is as small as possible. The result depends only
-    /// on the arguments. `directory`: the same octants; borrowed. `entries`: number of entries of each octant, on all ranks.
-    OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint64_t> entries,
+    /// on the arguments. `directory`: the same octants; borrowed. `entries`: number of entries of each octant on all ranks, in
+    /// any unit.
+    OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint32_t> entries,
                  unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }

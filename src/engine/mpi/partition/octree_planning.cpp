@@ -158,12 +158,12 @@ OctreePlanning::OwnLayout OctreePlanning::grow(const OctantOwners& owners) {
         const SplitFlags& top = top_->shape();
         SplitFlags shape(top.begin(), top.begin() + std::ptrdiff_t(begin));
         for (OctantIndex i = begin; i < end; ++i) {
-            const auto& [octant, left, extents] = top_->octants()[i];
-            if (!left) {
+            const SharedTop::SharedOctant& shared = top_->octants()[i];
+            if (!shared.left) {
                 shape.push_back(top[i]);
                 continue;
             }
-            octants[i - begin].octant = octant;
+            octants[i - begin].octant = shared.octant;
             growth_.grow(std::exchange(octants[i - begin], {}), shape);
         }
         own.begin = begin;

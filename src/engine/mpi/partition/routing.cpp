@@ -46,13 +46,14 @@ Routing::Routing(const JointCall& call, const BoxSource& source, const OctreeLay
     blocks_.resize(count);
 }
 
-void Routing::find_homes(Executor& executor, std::span<std::uint64_t> entries) {
+std::vector<std::uint32_t> Routing::find_homes(Executor& executor) {
+    std::vector<std::uint64_t> entries(layout_.directory.octants().size());
     // Each thread counts the entries of all octants in an array of its own; a single thread needs no copy.
     const std::size_t shares = std::min<std::size_t>(executor.width(), blocks_.size());
     std::mutex mutex;
     executor.for_each(shares, [&](std::size_t share) {
         std::vector<std::uint64_t> copy(shares > 1 ? entries.size() : 0);
-        const std::span<std::uint64_t> own = shares > 1 ? std::span(copy) : entries;
+        const std::span<std::uint64_t> own = shares > 1 ? copy : entries;
         for (std::size_t i = share; i < blocks_.size(); i += shares) find_homes(blocks_[i], own);
         const std::lock_guard lock(mutex);
         for (std::size_t octant = 0; octant < copy.size(); ++octant) entries[octant] += copy[octant];
@@ -60,6 +61,11 @@ void Routing::find_homes(Executor& executor, std::span<std::uint64_t> entries) {
     for (const Block& block : blocks_) {
         if (block.bad) call_.refuse(source_, *block.bad);
     }
+    const auto unit_bits = unsigned(std::max(0, int(std::bit_width(2 * call_.objects())) - 32));
+    std::vector<std::uint32_t> counts(entries.size());
+    std::ranges::transform(entries, counts.begin(),
+                           [=](std::uint64_t count) { return std::uint32_t(count >> unit_bits); });
+    return counts;
 }
 
 /// Finds the leaves of objects [begin, begin + count). Returns false if one of them is no valid box.

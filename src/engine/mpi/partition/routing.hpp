@@ -67,10 +67,10 @@ public:
     Routing(const JointCall& call, const BoxSource& source, const OctreeLayout& layout, Memory& memory,
             std::stop_token stop);
 
-    /// Finds the home leaf of each object. Adds the number of entries of each octant to `entries`: one in the home leaf, and
-    /// one in the leaf of the high corner if that is another leaf.
-    /// Requires: `entries` has an element for each octant. Throws: Error{cancelled}; BadObject for an invalid box.
-    void find_homes(Executor& executor, std::span<std::uint64_t> entries);
+    /// Finds the home leaf of each object. Returns the number of entries of each octant, in a unit for which the sum over all
+    /// ranks has 32 bits. An object counts in its home leaf, and in the leaf of its high corner if that is another leaf.
+    /// Throws: Error{cancelled}; BadObject for an invalid box.
+    std::vector<std::uint32_t> find_homes(Executor& executor);
     /// Finds the ranks that each object is sent to. Borrows `owners` as long as this object lives. Requires: find_homes().
     void assign_owners(Executor& executor, const OctantOwners& owners);
     /// Returns how many objects of a set go to each rank. Requires: assign_owners().

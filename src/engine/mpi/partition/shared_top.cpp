@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t extent_unit = 64, max_extent = 4 * extent_unit;  // of an octant's side
+    static constexpr double fraction_unit = 1 << 10;  // sums of fractions count in this unit
 
     enum class State : std::uint8_t { left, whole, divided };
     struct Octant {
@@ -42,7 +42,7 @@ private:
         State state = State::left;
         std::uint32_t below = 0;  // number of the first of its eight children, by level
         OctantIndex number = 0;   // in pre-order
-        std::array<double, 3> extents = {};
+        double shortest = 0, overlap = 0;
     };
     /// A box of the sample and an octant that it touches.
     struct Touched {
@@ -52,15 +52,7 @@ private:
         std::uint8_t below = 0;  // bit mask of the children that it touches
     };
     /// Sums over the boxes of an octant.
-    enum Sum : std::uint8_t {
-        inside,
-        kept,
-        beginning,
-        inside_below,
-        kept_below,
-        extents,
-        sums_per_octant = extents + 3
-    };
+    enum Sum : std::uint8_t { inside, kept, beginning, inside_below, kept_below, shortest, overlap, sums_per_octant };
 
     /// Returns the sums of the octants from `first_` on, over this rank's boxes.
     std::vector<std::uint32_t> count() {
@@ -77,10 +69,15 @@ private:
         ++sums[box.kept ? kept : inside];
         sums[box.kept ? kept_below : inside_below] += std::uint32_t(std::popcount(box.below));
         sums[beginning] += !box.kept && octant.holds_begin(cells) ? 1 : 0;
+        const double side = double(cells_per_axis >> octant.level);
+        double least = 1, part = 1;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            const std::uint64_t extent = std::uint64_t(cells.hi[axis] - cells.lo[axis]) * extent_unit;
-            sums[extents + axis] += std::min(std::uint32_t(extent >> (deepest - octant.level)), max_extent);
+            const double extent = double(cells.hi[axis] - cells.lo[axis]) / side;
+            least = std::min(least, extent);
+            part *= std::min(1.0, 2 * extent);  // of the positions where a box of equal extent overlaps this one
         }
+        sums[shortest] += std::uint32_t(least * fraction_unit);
+        sums[overlap] += std::uint32_t(part * fraction_unit);
     }
 
     /// Divides the octants from `first_` on by the sums of all ranks, and hands their boxes down to the children.
@@ -94,10 +91,9 @@ private:
     void decide(std::size_t i, const std::uint32_t* sums) {
         const OctantCube octant = octants_[i].octant;
         const std::uint64_t boxes = std::uint64_t(sums[inside]) + sums[kept];
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            octants_[i].extents[axis] =
-                double(sums[extents + axis]) / double(extent_unit) / double(std::max<std::uint64_t>(1, boxes));
-        }
+        const double unit = fraction_unit * double(std::max<std::uint64_t>(1, boxes));
+        octants_[i].shortest = double(sums[shortest]) / unit;
+        octants_[i].overlap = double(sums[overlap]) / unit;
         if (octant.level >= deepest || boxes <= most_ || !rule_.is_crowd(sums[inside])) return;
         const bool divided = SplitRule::worth_splitting({.inside = sums[inside],
                                                          .kept = sums[kept],
@@ -128,7 +124,7 @@ private:
         Octant& octant = octants_[i];
         octant.number = OctantIndex(top.octants_.size());
         const bool divided = octant.state == State::divided;
-        top.octants_.push_back({octant.octant, octant.state == State::left, octant.extents});
+        top.octants_.push_back({octant.octant, octant.state == State::left, octant.shortest, octant.overlap});
         top.shape_.push_back(divided ? 1 : 0);
         for (std::size_t digit = 0; divided && digit < 8; ++digit) append(octant.below + digit, top);
     }

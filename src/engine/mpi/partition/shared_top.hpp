@@ -29,8 +29,9 @@ public:
     struct SharedOctant {
         OctantCube octant;
         bool left;  ///< the owner may divide this octant further
-        /// Mean extent of its boxes on each axis, in sides of the octant. Estimated from the sample.
-        std::array<double, 3> extents;
+        // Means over its boxes in the sample.
+        double shortest;  ///< extent on the shortest axis, in sides of the octant
+        double overlap;   ///< estimated part of the boxes in the octant that a box overlaps
     };
 
     /// Collective. Divides octants until each one has at most `most` boxes of the sample, or is not to be divided. `own`: cells

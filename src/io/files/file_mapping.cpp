@@ -1,0 +1,117 @@
+#include "io/files/file_mapping.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <mutex>
+#include <new>
+#include <string>
+
+#include "io/files/failure.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// A mapping. The signal handler reads its atomic members.
+struct Mapping {
+    std::atomic<std::uintptr_t> begin = 0, end = 0;  // whole pages; 0 if the slot is free
+    std::atomic<bool> shortened = false;
+    std::string path;
+};
+
+std::array<Mapping, 64> mappings;
+std::mutex mappings_mutex;  // protects the paths, and the choice of a slot
+
+std::uintptr_t page_bytes() {
+    static const auto bytes = std::uintptr_t(::sysconf(_SC_PAGESIZE));
+    return bytes;
+}
+
+Mapping* mapping_of(std::uintptr_t address) {
+    for (Mapping& mapping : mappings) {
+        if (address >= mapping.begin && address < mapping.end) return &mapping;
+    }
+    return nullptr;
+}
+
+/// Replaces the page that a shortened file has lost. For any other address, restores the default action, which ends the process
+/// when the access is repeated.
+void handle_lost_page(int, siginfo_t* info, void*) {
+    const int error = errno;
+    const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
+    Mapping* const mapping = mapping_of(address);
+    void* const page = reinterpret_cast<void*>(address & ~(page_bytes() - 1));
+    const bool replaced = mapping != nullptr && ::mmap(page, page_bytes(), PROT_READ | PROT_WRITE,
+                                                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
+    if (replaced) {
+        std::memset(page, 0xFF, page_bytes());
+        mapping->shortened = true;
+    } else {
+        (void)std::signal(SIGBUS, SIG_DFL);
+    }
+    errno = error;
+}
+
+void install_handler() {
+    static const bool installed = [] {
+        (void)page_bytes();  // the handler must not be the first to call it
+        struct sigaction action {};
+        action.sa_sigaction = handle_lost_page;
+        action.sa_flags = SA_SIGINFO;
+        return ::sigaction(SIGBUS, &action, nullptr) == 0;
+    }();
+    (void)installed;
+}
+
+class MappedPages final : public PageSource {
+public:
+    void* reserve(std::size_t) override { throw std::bad_alloc(); }
+    void commit(void*, std::size_t) override {}
+    void free(void* memory, std::size_t) noexcept override {
+        const std::lock_guard lock(mappings_mutex);
+        Mapping* const mapping = mapping_of(reinterpret_cast<std::uintptr_t>(memory));
+        const std::uintptr_t begin = mapping->begin;
+        (void)::munmap(reinterpret_cast<void*>(begin), mapping->end - begin);
+        mapping->end = 0;
+        mapping->begin = 0;
+    }
+};
+
+}  // namespace
+
+void* map_file(const InputFile& file, std::uint64_t offset, std::size_t bytes) {
+    install_handler();
+    const std::lock_guard lock(mappings_mutex);
+    for (Mapping& mapping : mappings) {
+        if (mapping.begin != 0) continue;
+        const std::uint64_t in_page = offset % page_bytes();
+        void* const memory = ::mmap(nullptr, std::size_t(in_page) + bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE,
+                                    file.descriptor(), off_t(offset - in_page));
+        if (memory == MAP_FAILED) return nullptr;
+        mapping.path = file.path();
+        mapping.shortened = false;
+        mapping.begin = reinterpret_cast<std::uintptr_t>(memory);
+        mapping.end = mapping.begin + std::size_t(in_page) + bytes;
+        return static_cast<std::byte*>(memory) + in_page;
+    }
+    return nullptr;
+}
+
+PageSource& mapped_pages() {
+    static MappedPages pages;
+    return pages;
+}
+
+void check_mapping(std::span<const std::byte> memory) {
+    const std::lock_guard lock(mappings_mutex);
+    const Mapping* const mapping = mapping_of(reinterpret_cast<std::uintptr_t>(memory.data()));
+    if (mapping != nullptr && mapping->shortened) refuse(mapping->path, "the file was truncated while it was read");
+}
+
+}  // namespace octopair::io
