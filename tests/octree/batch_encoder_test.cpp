@@ -101,15 +101,15 @@ TEST_P(Encoding, LocatorAndSpecificationAgree) {
 
 TEST_P(Encoding, TakesTheNumbersOfObjects) {
     std::mt19937 random(4);
-    std::vector<std::uint32_t> objects(boxes.size());
-    for (std::uint32_t& object : objects) object = std::uint32_t(random());
+    std::vector<std::uint32_t> numbers(boxes.size());
+    for (std::uint32_t& object : numbers) object = std::uint32_t(random());
     EncodedBatch found, expected;
     for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(100), max_encoded}) {
-        const PlainBoxes plain{std::span<const Box3f>(boxes).first(count), 0, objects.data()};
+        const PlainBoxes plain{std::span<const Box3f>(boxes).first(count), 0, numbers.data()};
         ASSERT_TRUE(encoder->encode(plain, found));
         ASSERT_TRUE(encoder->encode_scalar(plain, expected));
         expect_same(found, expected, count);
-        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found.homes[i].object, objects[i]);
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found.homes[i].object, numbers[i]);
     }
 }
 
