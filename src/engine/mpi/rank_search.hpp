@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -67,6 +68,8 @@ public:
 
 private:
     struct Task;
+    static constexpr std::uint64_t max_objects =
+        std::numeric_limits<std::uint32_t>::max();  // their indices fit into a Pair
     /// Passes this rank's pairs to a receiver.
     using Give = std::function<void(Receiver&)>;
     struct OctalPairs;

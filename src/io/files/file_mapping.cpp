@@ -20,7 +20,7 @@ namespace {
 
 /// A mapping. The signal handler reads its atomic members.
 struct Mapping {
-    std::atomic<std::uintptr_t> begin = 0, end = 0;  // whole pages; 0 if the slot is free
+    std::atomic<std::byte*> begin = nullptr, end = nullptr;  // begins with a page; null if the slot is free
     std::atomic<bool> shortened = false;
     std::string path;
 };
@@ -33,7 +33,7 @@ std::uintptr_t page_bytes() {
     return bytes;
 }
 
-Mapping* mapping_of(std::uintptr_t address) {
+Mapping* mapping_of(const std::byte* address) {
     for (Mapping& mapping : mappings) {
         if (address >= mapping.begin && address < mapping.end) return &mapping;
     }
@@ -44,9 +44,9 @@ Mapping* mapping_of(std::uintptr_t address) {
 /// when the access is repeated.
 void handle_lost_page(int, siginfo_t* info, void*) {
     const int error = errno;
-    const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
+    auto* const address = static_cast<std::byte*>(info->si_addr);
     Mapping* const mapping = mapping_of(address);
-    void* const page = reinterpret_cast<void*>(address & ~(page_bytes() - 1));
+    std::byte* const page = address - reinterpret_cast<std::uintptr_t>(address) % page_bytes();
     const bool replaced = mapping != nullptr && ::mmap(page, page_bytes(), PROT_READ | PROT_WRITE,
                                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
     if (replaced) {
@@ -75,11 +75,11 @@ public:
     void commit(void*, std::size_t) override {}
     void free(void* memory, std::size_t) noexcept override {
         const std::lock_guard lock(mappings_mutex);
-        Mapping* const mapping = mapping_of(reinterpret_cast<std::uintptr_t>(memory));
-        const std::uintptr_t begin = mapping->begin;
-        (void)::munmap(reinterpret_cast<void*>(begin), mapping->end - begin);
-        mapping->end = 0;
-        mapping->begin = 0;
+        Mapping* const mapping = mapping_of(static_cast<const std::byte*>(memory));
+        std::byte* const begin = mapping->begin;
+        (void)::munmap(begin, std::size_t(mapping->end - begin));
+        mapping->end = nullptr;
+        mapping->begin = nullptr;
     }
 };
 
@@ -89,16 +89,17 @@ void* map_file(const InputFile& file, std::uint64_t offset, std::size_t bytes) {
     install_handler();
     const std::lock_guard lock(mappings_mutex);
     for (Mapping& mapping : mappings) {
-        if (mapping.begin != 0) continue;
+        if (mapping.begin != nullptr) continue;
         const std::uint64_t in_page = offset % page_bytes();
         void* const memory = ::mmap(nullptr, std::size_t(in_page) + bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE,
                                     file.descriptor(), off_t(offset - in_page));
         if (memory == MAP_FAILED) return nullptr;
         mapping.path = file.path();
         mapping.shortened = false;
-        mapping.begin = reinterpret_cast<std::uintptr_t>(memory);
-        mapping.end = mapping.begin + std::size_t(in_page) + bytes;
-        return static_cast<std::byte*>(memory) + in_page;
+        auto* const begin = static_cast<std::byte*>(memory);
+        mapping.begin = begin;
+        mapping.end = begin + in_page + bytes;
+        return begin + in_page;
     }
     return nullptr;
 }
@@ -110,7 +111,7 @@ PageSource& mapped_pages() {
 
 void check_mapping(std::span<const std::byte> memory) {
     const std::lock_guard lock(mappings_mutex);
-    const Mapping* const mapping = mapping_of(reinterpret_cast<std::uintptr_t>(memory.data()));
+    const Mapping* const mapping = mapping_of(memory.data());
     if (mapping != nullptr && mapping->shortened) refuse(mapping->path, "the file was truncated while it was read");
 }
 

@@ -1,0 +1,94 @@
+// The steps of RankSearch that distribute the octree: from this rank's slice of the objects to its share of the search.
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/test_hooks.hpp"
+#include "engine/mpi/comm/cost_meter.hpp"
+#include "engine/mpi/partition/octant_owners.hpp"
+#include "engine/mpi/partition/octree_planning.hpp"
+#include "engine/mpi/partition/routing.hpp"
+#include "engine/mpi/rank_search.hpp"
+#include "engine/mpi/rank_task.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair {
+
+RankShare RankSearch::plan_alone(Task& task, const BoxSource& own) {
+    const Metered metered(comm_, costs_.plan);
+    RankShare share{make_layout(own, task.stop.get_token())};
+    share.end = OctantIndex(share.layout.directory.octants().size());
+    costs_.octants = share.end;
+    return share;
+}
+
+RankShare RankSearch::plan_and_route(Task& task, const BoxSource& own) {
+    std::optional<OctreePlanning> planning;
+    {
+        const Metered metered(comm_, costs_.plan);
+        planning.emplace(comm_, task.joint, own, task.stop.get_token());
+    }
+    const OctantOwners owners = route(task, own, *planning);
+    return grow(task, *planning, owners);
+}
+
+/// Sends objects to the ranks whose octants they touch, and receives those for this rank. Returns the owners of the octants that
+/// all ranks store.
+OctantOwners RankSearch::route(Task& task, const BoxSource& own, const OctreePlanning& planning) {
+    const OctreeLayout& shared = planning.shared();
+    TeamExecutor threads(passes_.threads());
+    RankExecutor executor(threads, task.stops);
+    std::vector<std::uint32_t> entries;  // of each octant
+    std::optional<Routing> routing;
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.route);
+        routing.emplace(task.joint, own, shared, routing_, task.stop.get_token());
+        entries = routing->find_homes(executor);
+    });
+    comm_.add_up(std::span(entries));
+    std::optional<OctantOwners> owners;
+    task.agreement.together([&] {
+        const Metered metered(comm_, costs_.route);
+        owners.emplace(planning.top(), shared.directory, entries, comm_.size());
+        routing->assign_owners(executor, *owners);
+    });
+    costs_.shared_objects = routing->shared_objects();
+    exchange_objects(task, executor, *routing);
+    return std::move(*owners);
+}
+
+/// Divides the octants that this rank owns. Returns this rank's share.
+RankShare RankSearch::grow(Task& task, OctreePlanning& planning, const OctantOwners& owners) {
+    const Metered metered(comm_, costs_.plan);
+    OctreePlanning::OwnLayout own = planning.grow(owners);
+    if (planted(Fault::rank_takes_neighbour) && own.end < own.layout.directory.octants().size()) ++own.end;
+    costs_.octants = own.layout.directory.octants().size();
+    RankShare share{std::move(own.layout), own.begin, own.end};
+    if (task.joint.indexed) return share;
+    ObjectPositions& positions = share.positions.emplace();
+    for (unsigned set = 0; set < task.sets(); ++set) {
+        positions.of_set[set] = std::as_const(exchanged_[set].received.positions).span();
+    }
+    if (task.joint.join) positions.second_begin = std::uint32_t(task.joint.totals[0]);
+    return share;
+}
+
+void RankSearch::exchange_objects(Task& task, Executor& executor, const Routing& routing) {
+    const Metered metered(comm_, costs_.pack);
+    std::uint64_t incoming = 0;
+    for (unsigned set = 0; set < task.sets(); ++set) {
+        const ObjectExchange objects(comm_, task.joint, routing, set);
+        incoming += objects.incoming();
+        task.agreement.together([&] {
+            if (incoming > max_objects)
+                throw Error(ErrorCode::resource_limit, "more than 2^32 - 1 objects on one rank");
+            objects.pack(executor, task.slices[set], exchanged_[set]);
+        });
+        objects.exchange(exchanged_[set]);
+        costs_.objects_received += objects.incoming();
+    }
+}
+
+}  // namespace octopair
