@@ -12,6 +12,7 @@
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_search.hpp"
 #include "engine/mpi/rank_task.hpp"
+#include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
