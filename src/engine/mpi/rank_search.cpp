@@ -16,7 +16,6 @@
 #include "engine/mpi/order/indexed_pairs.hpp"
 #include "engine/mpi/rank_task.hpp"
 #include "engine/receiver.hpp"
-#include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

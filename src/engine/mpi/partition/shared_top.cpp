@@ -52,7 +52,16 @@ private:
         std::uint8_t below = 0;  // bit mask of the children that it touches
     };
     /// Sums over the boxes of an octant.
-    enum Sum : std::uint8_t { inside, kept, beginning, inside_below, kept_below, shortest, overlap, sums_per_octant };
+    enum Sum : std::uint8_t {
+        inside,
+        kept,
+        beginning,
+        inside_below,
+        kept_below,
+        shortest,
+        overlapped,
+        sums_per_octant
+    };
 
     /// Returns the sums of the octants from `first_` on, over this rank's boxes.
     std::vector<std::uint32_t> count() {
@@ -77,7 +86,7 @@ private:
             part *= std::min(1.0, 2 * extent);  // of the positions where a box of equal extent overlaps this one
         }
         sums[shortest] += std::uint32_t(least * fraction_unit);
-        sums[overlap] += std::uint32_t(part * fraction_unit);
+        sums[overlapped] += std::uint32_t(part * fraction_unit);
     }
 
     /// Divides the octants from `first_` on by the sums of all ranks, and hands their boxes down to the children.
@@ -93,7 +102,7 @@ private:
         const std::uint64_t boxes = std::uint64_t(sums[inside]) + sums[kept];
         const double unit = fraction_unit * double(std::max<std::uint64_t>(1, boxes));
         octants_[i].shortest = double(sums[shortest]) / unit;
-        octants_[i].overlap = double(sums[overlap]) / unit;
+        octants_[i].overlap = double(sums[overlapped]) / unit;
         if (octant.level >= deepest || boxes <= most_ || !rule_.is_crowd(sums[inside])) return;
         const bool divided = SplitRule::worth_splitting({.inside = sums[inside],
                                                          .kept = sums[kept],
