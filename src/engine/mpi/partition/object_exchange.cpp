@@ -67,7 +67,7 @@ void ObjectExchange::decode_positions(Memory& memory) const {
                 position = Routing::position_after(position, low);
                 out[i] = position;
             }
-        } else {
+        } else if (count > 0) {
             std::memcpy(out, in, count * sizeof *out);
         }
         out += count;
