@@ -1,7 +1,7 @@
 // PositionedSource: the objects that a rank received, as the entries of an octree. Objects have their positions as numbers, so
 // that pairs need no renumbering.
 //
-// Invariants 1. The positions of the received objects ascend, set after set. So an object is found by binary search.
+// Invariants 1. The positions of the received objects ascend, set after set.
 #pragma once
 
 #include <array>
@@ -34,17 +34,32 @@ public:
     bool exact() const override { return boxes_.exact(); }
     RoundingSlack slack() const override { return boxes_.slack(); }
     bool is_pair(std::uint32_t a, std::uint32_t b) const override { return boxes_.is_pair(place(a), place(b)); }
-    std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override {
-        return refused_one_by_one(doubtful, out);
-    }
+    std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
     void load_bounds(std::span<Entry> entries) const override;
 
 private:
+    /// Finds the places of ascending positions. Positions [base + (i << shift), base + ((i + 1) << shift)) are at the places
+    /// [starts[i], starts[i + 1]): a few, so that a look-up reads two or three cache lines.
+    struct PlaceTable {
+        std::uint32_t base = 0;
+        unsigned shift = 0;
+        std::vector<std::uint32_t> starts;
+
+        void fill(std::span<const std::uint32_t> positions);
+        /// Returns the start of the element of `position`. The next start follows it.
+        const std::uint32_t* start(std::uint32_t position) const { return &starts[(position - base) >> shift]; }
+    };
+    struct Named {
+        unsigned set;
+        std::uint32_t position;
+    };
+    Named named(std::uint32_t object) const;
     std::uint32_t place(std::uint32_t object) const;
+    void find_places(std::span<std::uint32_t> objects) const;
 
     const BoxSource& boxes_;
     ObjectPositions positions_;
-    std::array<std::vector<std::uint32_t>, 2> milestones_;  // by set: every 64th position, which stay in the cache
+    std::array<PlaceTable, 2> tables_;  // by set
 };
 
 }  // namespace octopair
