@@ -85,7 +85,7 @@ struct RankCosts {
     double join = 0;   ///< exchanges the requests of all ranks
     double plan = 0;   ///< plans the octants
     double route = 0;  ///< finds the ranks that receive each object
-    double pack = 0;   ///< packs the objects to send
+    double pack = 0;   ///< packs the objects to send, and decodes the positions of received ones
     double build = 0;  ///< builds the octree of the received objects; a sorted list in the paper's arrangement
     double merge = 0;  ///< merges lists, in the paper's arrangement
     double scan = 0;   ///< finds the pairs

@@ -70,9 +70,6 @@ private:
     void search_frames() {
         search_->prepare();
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search_->search(frame);
-        group_.together([&] {
-            for (const InputSet* set : {&inputs_.first, &inputs_.second}) set->scene.check_mapped();
-        });
         search_->finish();
     }
 

@@ -23,6 +23,10 @@ struct DetectRun {
     bool join() const { return !request.against.empty(); }
     /// Returns the other set of a join, or the only set.
     const InputSet& second_or_first() const { return join() ? inputs.second : inputs.first; }
+    /// Throws: Error{bad_input} if an input file was shortened. Call before the results of a frame are completed.
+    void check_inputs() const {
+        for (const InputSet* set : {&inputs.first, &inputs.second}) set->scene.check_mapped();
+    }
     /// Returns the options of the call for a frame, given the frames that the report already counts.
     Options call_options(std::uint64_t frame);
 };

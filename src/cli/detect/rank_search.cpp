@@ -99,6 +99,7 @@ private:
     /// Finds this rank's piece of a frame's pairs. Without output and filters it only counts them.
     Summary find(std::uint64_t frame) {
         Summary summary = find_piece(frame);
+        cluster_.together([&] { run_.check_inputs(); });
         if (run_.request.verify) verify(frame, summary);
         return summary;
     }

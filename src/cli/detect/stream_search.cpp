@@ -31,9 +31,10 @@ public:
     }
 
     void search(std::uint64_t frame) override {
-        if (writer_ == nullptr) return find(frame);
-        timed_write([&] { writer_->begin_frame(frame); });
+        if (writer_ != nullptr) timed_write([&] { writer_->begin_frame(frame); });
         find(frame);
+        run_.check_inputs();
+        if (writer_ == nullptr) return;
         run_.progress.clear();
         timed_write([&] { writer_->end_frame(); });
     }

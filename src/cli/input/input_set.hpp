@@ -48,6 +48,7 @@ struct InputSet {
     /// Returns the objects of a slice of frame `f`. Requires: the set is not a slice itself.
     Objects frame_slice(std::uint64_t f, const SliceNumber& number) const;
     /// Returns a message about the first invalid box, with the file and the object; or nothing if all boxes are valid.
+    /// Throws: Error{bad_input} if the file of mapped boxes was shortened.
     std::optional<std::string> find_fault() const;
     /// Returns the position of the first invalid box: frame * total + object; or nothing if all boxes are valid.
     std::optional<std::uint64_t> fault_position() const;

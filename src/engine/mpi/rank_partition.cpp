@@ -76,6 +76,7 @@ RankShare RankSearch::grow(Task& task, OctreePlanning& planning, const OctantOwn
     return share;
 }
 
+/// Sends the objects of each set to their owners, and receives those of this rank.
 void RankSearch::exchange_objects(Task& task, Executor& executor, const Routing& routing) {
     const Metered metered(comm_, costs_.pack);
     std::uint64_t incoming = 0;

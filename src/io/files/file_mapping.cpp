@@ -40,20 +40,22 @@ Mapping* mapping_of(const std::byte* address) {
     return nullptr;
 }
 
-/// Replaces the page that a shortened file has lost. For any other address, restores the default action, which ends the process
+struct sigaction previous_action;  // of SIGBUS, before install_handler()
+
+/// Replaces the page that a shortened file has lost. For any other address, restores the previous action, which handles the signal
 /// when the access is repeated.
 void handle_lost_page(int, siginfo_t* info, void*) {
     const int error = errno;
     auto* const address = static_cast<std::byte*>(info->si_addr);
     Mapping* const mapping = mapping_of(address);
     std::byte* const page = address - reinterpret_cast<std::uintptr_t>(address) % page_bytes();
+    if (mapping != nullptr) mapping->shortened = true;  // before another thread can read the new page
     const bool replaced = mapping != nullptr && ::mmap(page, page_bytes(), PROT_READ | PROT_WRITE,
                                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
     if (replaced) {
         std::memset(page, 0xFF, page_bytes());
-        mapping->shortened = true;
     } else {
-        (void)std::signal(SIGBUS, SIG_DFL);
+        (void)::sigaction(SIGBUS, &previous_action, nullptr);
     }
     errno = error;
 }
@@ -64,7 +66,7 @@ void install_handler() {
         struct sigaction action {};
         action.sa_sigaction = handle_lost_page;
         action.sa_flags = SA_SIGINFO;
-        return ::sigaction(SIGBUS, &action, nullptr) == 0;
+        return ::sigaction(SIGBUS, &action, &previous_action) == 0;
     }();
     (void)installed;
 }

@@ -111,6 +111,7 @@ HWY_INLINE Lanes level_of(const Lanes& leaf) { return hn::ShiftRight<Directory::
 HWY_INLINE Lanes octant_of(const Lanes& leaf) { return hn::And(leaf, hn::Set(Words(), Directory::max_octants)); }
 /// Returns the bits of a fine cell within an octant of a level.
 HWY_INLINE Lanes offset_bits(const Lanes& level) { return hn::Shr(hn::Set(Words(), SpaceMap::last_fine_cell), level); }
+
 /// Boxes or entries of a register's lanes: ends by coordinate axis, masks and objects.
 struct Loaded {
     FloatLanes low[3], high[3];

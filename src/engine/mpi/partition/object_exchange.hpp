@@ -41,10 +41,10 @@ public:
     void exchange(Memory& memory) const;
 
 private:
-    /// What receivers need to decode the positions of a rank.
+    /// Data by which receivers decode the positions of a rank.
     struct Sender {
-        std::uint64_t begin;           ///< position of its first object
-        std::uint64_t position_bytes;  ///< 2 or 4
+        std::uint64_t begin;           // position of its first object
+        std::uint64_t position_bytes;  // 2 or 4
     };
     void decode_positions(Memory& memory) const;
 
@@ -53,7 +53,7 @@ private:
     const Routing& routing_;
     unsigned set_;
     Exchange counts_;
-    std::vector<Sender> senders_;  ///< by rank
+    std::vector<Sender> senders_;  // by rank
 };
 
 }  // namespace octopair

@@ -10,7 +10,6 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/build/octants_of.hpp"
 
 namespace octopair {
 

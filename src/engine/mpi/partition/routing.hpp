@@ -1,6 +1,6 @@
 // Routing: prepares the objects of a rank for sending to the ranks that own their octants.
 //
-//   find_homes     finds the home leaf of each object, and the load that this rank's objects add to each octant
+//   find_homes     finds the home leaf of each object, and the number of this rank's entries in each octant
 //   assign_owners  finds the ranks that each object is sent to, and the number of objects for each rank
 //   pack           copies boxes, paddings, and positions or indices to arrays: ordered by receiving rank, then by position.
 //                  Boxes and paddings that stay on this rank are copied to the arrays of received objects.
