@@ -14,7 +14,7 @@
 //           A scene that was moved from may only be destroyed or assigned to.
 // Threads   One thread at a time, also for queries.
 // Cost      A step's time depends on what moved; if most objects moved, it is that of a full detection. The first step in which
-//           few moved builds an octree, which takes about four full detections; a query right after a step builds it, too. At
+//           few moved builds an octree, which takes about two full detections; a query right after a step builds it, too. At
 //           most about 120 bytes per object and 16 per pair. docs/results.md has measurements.
 #pragma once
 

@@ -29,8 +29,8 @@ public:
         std::fill(memory_.data() + std::min(size, size_), memory_.data() + size, fresh);
         size_ = size;
     }
-    /// Appends an uninitialised element. Requires: it fits into the reserved memory.
-    void grow() { ++size_; }
+    /// Appends uninitialised elements. Requires: they fit into the reserved memory.
+    void grow(std::size_t count = 1) { size_ += count; }
     /// Removes all elements and keeps the memory.
     void clear() { size_ = 0; }
     void push_back(const T& element) {
@@ -41,6 +41,8 @@ public:
 
     bool empty() const { return size_ == 0; }
     std::size_t size() const { return size_; }
+    /// Returns the number of elements for which there is room.
+    std::size_t capacity() const { return memory_.size(); }
     std::span<const T> span() const { return {memory_.data(), size_}; }
     T& operator[](std::size_t i) { return memory_[i]; }
     const T& operator[](std::size_t i) const { return memory_[i]; }

@@ -107,6 +107,8 @@ struct Tuning {
         double max_cell_objects = 6;          ///< maximum number of objects that a cell of a grid should hold
         double max_growth = 2.2;              ///< maximum number of entries per object when a grid cuts a leaf
         unsigned max_grid_bits = 18;          ///< maximum number of bits of all axes of a grid together
+        std::size_t range_entries = 1 << 12;  ///< maximum number of entries of a share of the build, beside one octant
+        std::size_t min_range_entries = 1 << 9;  ///< the same in small octrees, which have a few shares for each thread
     } dynamic;
 
     /// How pairs are stored, sorted and delivered (engine/). Numbers of pairs, unless a comment says otherwise.

@@ -149,7 +149,8 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         if (!linear_matches_now_) build(SceneSource(objects_.table(), margin_), {});
         // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
         const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
-        octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, {});
+        TeamExecutor executor(team_);
+        octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});
         octree_matches_now_ = queried_ = true;
         octree_matches_last_step_ = has_stepped_ && !objects_.changed();
     }
@@ -171,7 +172,8 @@ void Scene::State::build_octree_of_last_step(const std::stop_token& stop) {
             std::memcpy(&entry, &then, sizeof(Box3f));
         }
     };
-    octree_.build(linear_, load_bounds, stop);
+    TeamExecutor executor(team_);
+    octree_.build(linear_, load_bounds, executor, stop);
     linear_ = {};
     linear_matches_now_ = linear_matches_last_step_ = false;
     refills_ = tuning().scene.max_refills;

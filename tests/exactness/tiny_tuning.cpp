@@ -155,6 +155,11 @@ void shrink(Tuning::Large& large, Shrinker& to) {
     to.one_of<std::size_t>(large.max_near_table, {1, 1 << 17});
 }
 
+void shrink_ranges(Tuning::Dynamic& dynamic, Shrinker& to) {
+    to.one_of<std::size_t>(dynamic.range_entries, {1, 10, 100});
+    dynamic.min_range_entries = 1;
+}
+
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
 void favour_crowds(Tuning& tuning) {
     tuning.sampling.stride = 5;
@@ -183,7 +188,8 @@ Tuning tiny_tuning(std::uint64_t seed) {
     shrink(tuning.processes, to);
     shrink(tuning.ranks, to);
     shrink(tuning.scene, to);
-    shrink(tuning.large, to);  // last, so that the seeds of earlier findings keep the other values
+    shrink(tuning.large, to);
+    shrink_ranges(tuning.dynamic, to);  // last, so that the seeds of earlier findings keep the other values
     if (seed % 3 == 0) favour_crowds(tuning);
     if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds its own nested octrees
     return tuning;

@@ -8,9 +8,11 @@
 #include <thread>
 
 #include "boxes/box_source.hpp"
+#include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "octree/linear_octree.hpp"
+#include "parallel/team.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -41,12 +43,19 @@ struct Linear {
     LinearOctree octree;
 };
 
+/// Builds `octree` from `linear` on 3 threads.
+void build(MutableOctree& octree, const Linear& linear, const std::stop_token& stop = {}) {
+    Team team(3);
+    TeamExecutor executor(team);
+    octree.build(linear.octree, linear.load_bounds(), executor, stop);
+}
+
 /// An octree, and the cells of its objects.
 class Changing {
 public:
     explicit Changing(const std::vector<Box3f>& boxes) {
         const Linear linear(boxes);
-        octree_.build(linear.octree, linear.load_bounds(), {});
+        build(octree_, linear);
         cells_.resize(boxes.size());
         octree_.space().cells(boxes, cells_);
         here_.assign(boxes.size(), true);
@@ -151,7 +160,7 @@ bool stopped_after(std::chrono::nanoseconds delay, const Linear& linear, Mutable
         stop.request_stop();
     });
     try {
-        octree.build(linear.octree, linear.load_bounds(), stop.get_token());
+        build(octree, linear, stop.get_token());
         return false;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled);
@@ -165,7 +174,7 @@ TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     const Linear linear(boxes);
     MutableOctree octree;
     const auto begin = std::chrono::steady_clock::now();
-    octree.build(linear.octree, linear.load_bounds(), {});
+    build(octree, linear);
     const auto whole = std::chrono::steady_clock::now() - begin;
     std::vector<CellBox> cells(boxes.size());
     octree.space().cells(boxes, cells);

@@ -34,6 +34,24 @@ CellBox joined(const CellBox& a, const CellBox& b) {
     return both;
 }
 
+/// One in this many ranges of octants is built first.
+constexpr std::size_t sample_stride = 32;
+
+/// Divides the octants into at least `sample_stride` ranges if there are enough entries. Returns the first octant of each
+/// range, then the number of octants.
+std::vector<OctantIndex> ranges_of(const LinearOctree& octree) {
+    const auto octants = OctantIndex(octree.directory().octants().size());
+    const std::uint64_t most = std::clamp<std::uint64_t>(
+        octree.entry_count() / sample_stride, tuning().dynamic.min_range_entries, tuning().dynamic.range_entries);
+    std::vector<OctantIndex> begins;
+    if (octants > 0) begins.push_back(0);
+    for (OctantIndex octant = 1; octant < octants; ++octant) {
+        if (octree.entry_count(begins.back(), octant + 1) > most) begins.push_back(octant);
+    }
+    begins.push_back(octants);
+    return begins;
+}
+
 }  // namespace
 
 /// Calls visit(unit, octant) for each unit of an octant that keeps an entry of `box`.
@@ -100,41 +118,69 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     }
 }
 
-void MutableOctree::build(const LinearOctree& octree, const LoadBounds& load_bounds, const std::stop_token& stop) {
+/// Octants are added in ranges, each as one share. The first ranges predict the memory of all.
+void MutableOctree::build(const LinearOctree& octree, const LoadBounds& load_bounds, Executor& executor,
+                          const std::stop_token& stop) {
     clear();
     space_ = octree.space();
     directory_ = octree.directory();
-    const auto octants = directory_.octants();
-    grids_.reserve(octants.size());
-    // Reserved memory is committed only when it is used, but an array that grows exists twice for a while. So the first 1/32 of
-    // the entries predicts the memory of all, and twice as much is reserved, for later changes.
-    const std::uint64_t part = octree.entry_count() / 32;
-    units_.reserve(part);
-    std::uint64_t done = 0;
-    std::vector<Entry> entries;
-    std::vector<CellBox> boxes;
-    for (OctantIndex octant = 0; octant < octants.size(); ++octant) {
-        if (stop.stop_requested()) clear();
+    grids_.resize(directory_.octants().size());
+    const std::vector<OctantIndex> begins = ranges_of(octree);
+    const std::size_t ranges = begins.size() - 1;
+    const auto add = [&](std::size_t range) {
         throw_if_stopped(stop);
-        entries.clear();
+        add_range(octree, begins[range], begins[range + 1], load_bounds);
+    };
+    try {
+        const std::size_t first = (ranges + sample_stride - 1) / sample_stride;
+        executor.for_each(first, [&](std::size_t i) { add(i * sample_stride); });
+        // Reserved memory is committed only when it is used, but an array that grows exists twice for a while. So twice what
+        // is expected is reserved, also for later changes.
+        const std::uint64_t of_one = 2 * (ranges / std::max<std::size_t>(1, first) + 1);
+        units_.reserve(units_.blocks() * of_one, units_.units() * of_one);
+        executor.for_each(ranges - first, [&](std::size_t i) { add(i + i / (sample_stride - 1) + 1); });
+    } catch (...) {
+        clear();
+        throw;
+    }
+    for (OctantIndex octant = 0; octant < grids_.size(); ++octant) {
+        if (!units_.empty(grids_[octant].begin)) use({&octant, 1});
+    }
+}
+
+/// Adds the grids of the octants [begin, end), and their entries.
+void MutableOctree::add_range(const LinearOctree& octree, OctantIndex begin, OctantIndex end,
+                              const LoadBounds& load_bounds) {
+    std::vector<Entry> entries;
+    entries.reserve(octree.entry_count(begin, end));
+    for (OctantIndex octant = begin; octant < end; ++octant) {
         octree.for_each_run(octant, [&](std::span<const CellEntry> run) {
             for (const CellEntry& entry : run) entries.push_back({{}, {}, entry.object, 0});
         });
-        load_bounds(entries);
-        boxes.resize(entries.size());
-        space_.cells(entries, boxes);
-        const LeafGrid& grid = grids_.emplace_back(LeafGrid::cut(octants[octant], units_.units(), boxes));
-        units_.add_units(grid.units());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
+    }
+    load_bounds(entries);
+    std::vector<CellBox> boxes(entries.size());
+    space_.cells(entries, boxes);
+
+    std::vector<UnitEntry> unit_entries;
+    unit_entries.reserve(entries.size() + entries.size() / 2);
+    std::vector<std::uint32_t> sizes;  // by unit of the range
+    std::size_t first = 0;
+    for (OctantIndex octant = begin; octant < end; ++octant) {
+        const std::size_t count = octree.entry_count(octant);
+        grids_[octant] = LeafGrid::cut(directory_.octants()[octant], std::uint32_t(sizes.size()),
+                                       std::span(boxes).subspan(first, count));
+        sizes.resize(sizes.size() + grids_[octant].units(), 0);
+        for (std::size_t i = first; i < first + count; ++i) {
             for_each_unit_of(octant, boxes[i], [&](const Unit& unit, OctantIndex) {
-                units_.reserve(1);
-                units_.put(unit.index, unit.small(boxes[i]), entries[i].object);
+                unit_entries.push_back({unit.index, entries[i].object, unit.small(boxes[i])});
+                ++sizes[unit.index];
             });
         }
-        if (!units_.empty(grid.begin)) use({&octant, 1});
-        if (done < part && done + entries.size() >= part) units_.reserve(units_.blocks() * 64);
-        done += entries.size();
+        first += count;
     }
+    const std::uint32_t first_unit = units_.add(sizes, unit_entries);
+    for (OctantIndex octant = begin; octant < end; ++octant) grids_[octant].begin += first_unit;
 }
 
 void MutableOctree::clear() {

@@ -31,6 +31,7 @@
 
 namespace octopair {
 
+class Executor;
 class LinearOctree;
 
 /// An object that is added, moved or removed.
@@ -78,9 +79,11 @@ class MutableOctree {
 public:
     /// Sets the bounds of entries whose object is set.
     using LoadBounds = std::function<void(std::span<Entry>)>;
-    /// Replaces the contents by the entries of `octree`. `load_bounds` must give the bounds that `octree` was built with.
+    /// Replaces the contents by the entries of `octree`. `load_bounds` must give the bounds that `octree` was built with; it
+    /// is called concurrently.
     /// Throws: Error{cancelled}; the octree is then empty.
-    void build(const LinearOctree& octree, const LoadBounds& load_bounds, const std::stop_token& stop);
+    void build(const LinearOctree& octree, const LoadBounds& load_bounds, Executor& executor,
+               const std::stop_token& stop);
     /// Removes all octants and entries, and keeps the memory.
     void clear();
     /// Removes all octants and entries, and frees the memory.
@@ -124,6 +127,8 @@ public:
 
 private:
     struct Work;
+
+    void add_range(const LinearOctree& octree, OctantIndex begin, OctantIndex end, const LoadBounds& load_bounds);
 
     template <typename Visit>
     void for_each_unit_of(OctantIndex octant, const CellBox& box, Visit&& visit) const;

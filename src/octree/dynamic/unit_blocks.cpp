@@ -2,8 +2,10 @@
 
 #include <hwy/cache_control.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "octopair/error.hpp"
 
@@ -21,10 +23,61 @@ void UnitBlocks::release() {
     blocks_ = {};
 }
 
-void UnitBlocks::reserve(std::uint64_t puts) {
-    const std::uint64_t wanted = blocks_.size() + puts;
-    if (wanted >= SmallBlock::none) throw Error(ErrorCode::resource_limit, "too many entries in an octree");
-    blocks_.reserve(std::size_t(wanted));
+std::uint32_t UnitBlocks::add(std::span<const std::uint32_t> sizes, std::span<const UnitEntry> entries) {
+    const auto blocks_of = [](std::uint32_t size) {
+        return std::uint32_t((size + SmallBlock::capacity - 1) / SmallBlock::capacity);
+    };
+    std::uint64_t blocks = 0;
+    for (const std::uint32_t size : sizes) blocks += blocks_of(size);
+    std::shared_lock filling(arrays_, std::defer_lock);
+    const Place place = take_place(sizes.size(), blocks, filling);
+
+    // The blocks of a unit lie side by side. They are filled from the last to the first, which may be filled only partly.
+    std::vector<std::uint32_t> filled(sizes.size());  // by unit: the block that is filled
+    std::uint32_t next = place.block;
+    for (std::size_t unit = 0; unit < sizes.size(); ++unit) {
+        const std::uint32_t begin = next;
+        next += blocks_of(sizes[unit]);
+        heads_[place.unit + unit] = begin == next ? SmallBlock::none : begin;
+        for (std::uint32_t block = begin; block < next; ++block) {
+            blocks_[block].next = block + 1 == next ? SmallBlock::none : block + 1;
+            blocks_[block].count = 0;
+        }
+        filled[unit] = next - 1;
+    }
+    for (const UnitEntry& entry : entries) {
+        std::uint32_t& block = filled[entry.unit];
+        if (blocks_[block].count == SmallBlock::capacity) --block;
+        blocks_[block].set(blocks_[block].count++, entry.box, entry.object);
+    }
+    return place.unit;
+}
+
+/// Takes numbers for units and blocks. Locks `filling`, so that the arrays stay where they are until it is unlocked.
+UnitBlocks::Place UnitBlocks::take_place(std::size_t units, std::uint64_t blocks,
+                                         std::shared_lock<std::shared_mutex>& filling) {
+    for (;;) {
+        filling.lock();
+        {
+            const std::lock_guard lock(mutex_);
+            const Place place{std::uint32_t(heads_.size()), std::uint32_t(blocks_.size())};
+            if (units <= heads_.capacity() - heads_.size() && blocks <= blocks_.capacity() - blocks_.size()) {
+                heads_.grow(units);
+                blocks_.grow(std::size_t(blocks));
+                return place;
+            }
+        }
+        filling.unlock();
+        const std::unique_lock moving(arrays_);
+        reserve(blocks, units);
+    }
+}
+
+void UnitBlocks::reserve(std::uint64_t puts, std::uint64_t units) {
+    const std::uint64_t most = std::max(blocks_.size() + puts, heads_.size() + units);
+    if (most >= SmallBlock::none) throw Error(ErrorCode::resource_limit, "too many entries in an octree");
+    blocks_.reserve(std::size_t(blocks_.size() + puts));
+    heads_.reserve(std::size_t(heads_.size() + units));
 }
 
 void UnitBlocks::put(std::uint32_t unit, const SmallBox& entry, std::uint32_t object) {

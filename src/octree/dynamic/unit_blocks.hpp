@@ -7,11 +7,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <shared_mutex>
+#include <span>
 
 #include "base/growing_array.hpp"
 #include "octree/dynamic/small_block.hpp"
 
 namespace octopair {
+
+/// An entry that is added together with its unit. `unit` counts from the first unit that is added with it.
+struct UnitEntry {
+    std::uint32_t unit;
+    std::uint32_t object;
+    SmallBox box;
+};
 
 class UnitBlocks {
 public:
@@ -19,12 +28,15 @@ public:
     void clear();
     /// Removes all units and frees the memory.
     void release();
-    void add_units(std::size_t count) { heads_.resize(heads_.size() + count, SmallBlock::none); }
+    /// Adds units with their entries. `sizes`: number of entries of each unit. Returns the number of the first unit.
+    /// Thread safety: any thread, while threads only add units.
+    /// Throws: Error{resource_limit}; std::bad_alloc.
+    std::uint32_t add(std::span<const std::uint32_t> sizes, std::span<const UnitEntry> entries);
     std::uint32_t units() const { return std::uint32_t(heads_.size()); }
     std::uint64_t blocks() const { return blocks_.size(); }
-    /// Makes room for `puts` calls of put().
+    /// Makes room for `puts` calls of put(), and for `units` more units.
     /// Throws: Error{resource_limit}; std::bad_alloc.
-    void reserve(std::uint64_t puts);
+    void reserve(std::uint64_t puts, std::uint64_t units = 0);
 
     bool empty(std::uint32_t unit) const { return heads_[unit] == SmallBlock::none; }
     /// Adds an entry.
@@ -46,12 +58,19 @@ public:
     void prefetch_next(std::uint32_t unit) const;
 
 private:
+    /// The first of some new units, and the first of their blocks.
+    struct Place {
+        std::uint32_t unit, block;
+    };
+    Place take_place(std::size_t units, std::uint64_t blocks, std::shared_lock<std::shared_mutex>& filling);
     std::uint32_t new_block(std::uint32_t next);
     void free_block(std::uint32_t block);
     void prefetch_block(std::uint32_t block) const;
 
+    std::shared_mutex arrays_;  // add(): held by threads that fill blocks; exclusively by one that moves the arrays
     GrowingArray<std::uint32_t> heads_;  // first block of each unit
-    std::mutex mutex_;                   // guards the number of blocks and the list of free ones, not what is in blocks
+    std::mutex
+        mutex_;  // guards the numbers of units and the number of blocks and the list of free ones, not what is in blocks
     GrowingArray<SmallBlock> blocks_;
     std::uint32_t free_ = SmallBlock::none;  // first of the free blocks
 };
