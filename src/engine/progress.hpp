@@ -9,6 +9,9 @@
 
 namespace octopair {
 
+/// Part of a pass in ascending order that its scan takes where objects have many pairs; the rest sorts pairs.
+inline constexpr double ascending_scan_part = 0.6;
+
 class Progress {
 public:
     /// Requires: `sink` outlives this object. `sink` may be empty.

@@ -40,10 +40,9 @@ void ThreadPasses::stream_octal(Call& call, const Deliver& deliver, double progr
 
 void ThreadPasses::list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
                                   double progress) {
-    constexpr double scan_part = 0.6;  // of the time of the pass, where objects have many pairs; the rest sorts
     AscendingExecutor executor(team_, list, bounds);
     const double begin = call.progress.end();
-    scan_into(call, executor, begin + scan_part * (progress - begin));
+    scan_into(call, executor, begin + ascending_scan_part * (progress - begin));
     const Timed timed(call.summary.steps.scan);
     call.progress.stage(progress, executor.pairs());
     executor.append_sorted(call.stop.get_token(), [&](std::uint64_t pairs) { call.progress.add(pairs); });

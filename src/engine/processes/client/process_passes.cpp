@@ -39,9 +39,11 @@ void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Regio
     pass_.pairs_region = pairs->number;
     std::vector<std::shared_ptr<Region>> needed = regions_;
     needed.push_back(pairs);
+    const double begin = call.progress.end();
+    const double scan_part = pass_.kind == PassKind::list_ascending ? ascending_scan_part : 1;
     // The progress of this stage includes the steps before the scan.
-    call.progress.stage(progress, std::max<std::uint64_t>(1, call.source.size() * 5 / 4));
-    std::uint64_t shown = 0;
+    call.progress.stage(begin + scan_part * (progress - begin), call.source.size() * 5 / 4);
+    PassProgress shown{progress, false, 0};
     watch.stop = call.stop.get_token();
     watch.poll = [&, poll = std::move(watch.poll)] {
         show_progress(call, shown);
@@ -59,10 +61,20 @@ void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Regio
     pass_.built = 1;
 }
 
-void ProcessPasses::show_progress(Call& call, std::uint64_t& shown) {
-    std::uint64_t scanned = 0;
-    for (unsigned slot = 0; slot < pass_.workers; ++slot) scanned += pool_.view().slot(slot).entries_scanned.load();
-    if (scanned > shown) call.progress.add(scanned - std::exchange(shown, scanned));
+void ProcessPasses::show_progress(Call& call, PassProgress& shown) {
+    std::uint64_t scanned = 0, to_order = 0, ordered = 0;
+    for (unsigned i = 0; i < pass_.workers; ++i) {
+        const Slot& slot = pool_.view().slot(i);
+        scanned += slot.entries_scanned.load();
+        to_order = std::max(to_order, slot.pairs_to_order.load());
+        ordered += slot.pairs_ordered.load();
+    }
+    if (to_order > 0 && !shown.ordering) {
+        call.progress.stage(shown.end, to_order);
+        shown = {shown.end, true, 0};
+    }
+    const std::uint64_t done = shown.ordering ? ordered : scanned;
+    if (done > shown.done) call.progress.add(done - std::exchange(shown.done, done));
 }
 
 /// Adds the times of the slowest worker to the summary: all workers leave a step together.

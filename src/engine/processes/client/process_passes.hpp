@@ -27,8 +27,15 @@ public:
     void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
 
 private:
+    /// What the progress of the call already includes. `done`: scanned entries; after `ordering` begins, sorted pairs.
+    struct PassProgress {
+        double end = 1;  // of the pass
+        bool ordering = false;
+        std::uint64_t done = 0;
+    };
+
     void run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch);
-    void show_progress(Call& call, std::uint64_t& shown);
+    void show_progress(Call& call, PassProgress& shown);
     void take_results(Call& call);
     void append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs);
     std::shared_ptr<Region> free_pairs();

@@ -114,6 +114,8 @@ void WorkerPool::publish_pass(const Pass& pass) {
         part.share.store(0);
         part.preparing.store(1);
         part.entries_scanned.store(0);
+        part.pairs_to_order.store(0);
+        part.pairs_ordered.store(0);
         part.pages_taken.store(0);
         part.ring_filled.store(0);
         part.ring_taken.store(0);

@@ -33,7 +33,7 @@ namespace octopair {
 
 inline constexpr unsigned max_workers = 256;
 inline constexpr std::uint64_t control_mark = 0x6f63746f70616972;  // "octopair"
-inline constexpr std::uint32_t layout_version = 5;                 // raised with every change of the layout
+inline constexpr std::uint32_t layout_version = 6;                 // raised with every change of the layout
 
 /// Step of the algorithm that a share belongs to. `encode` is encode and scatter; `order` sorts pairs into ascending order.
 enum class Step : std::uint32_t { prepare, encode, count, scan, order };
@@ -80,6 +80,8 @@ struct alignas(64) Slot {
     std::atomic<std::uint32_t> waits;      ///< 1: the worker waits for the client or another worker
     std::atomic<std::uint64_t> share;      ///< 1 + number of the current share; 0: none
     std::atomic<std::uint64_t> entries_scanned;
+    std::atomic<std::uint64_t> pairs_to_order;  ///< pairs of all slots, as soon as their sorting begins; before, 0
+    std::atomic<std::uint64_t> pairs_ordered;   ///< pairs that this slot has sorted (ascending)
     std::atomic<std::uint64_t> pages_taken;
     std::atomic<std::uint64_t> ring_filled, ring_taken;  ///< ring entries written and taken since the pass began
     Outcome outcome;

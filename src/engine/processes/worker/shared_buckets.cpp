@@ -12,6 +12,12 @@ namespace {
 
 std::uint64_t page_bytes() { return page_pairs() * sizeof(Pair); }
 
+std::uint64_t pairs_in(std::span<const PageString> strings) {
+    std::uint64_t pairs = 0;
+    for (const PageString& string : strings) pairs += string.size();
+    return pairs;
+}
+
 [[noreturn]] void throw_damaged_buckets() {
     throw Error(ErrorCode::engine_failed, "shared memory: the buckets of a worker are damaged");
 }
@@ -145,17 +151,23 @@ void SharedBuckets::order(WorkSharing& shares) {
     std::vector<Strings> of_slots;
     of_slots.reserve(workers_);
     for (unsigned slot = 0; slot < workers_; ++slot) of_slots.push_back(committed_strings(slot));
+    Slot& own = place_.view.slot(place_.shares.slot());
+    std::uint64_t all = 0;
+    for (const Strings& of_slot : of_slots) all += pairs_in(of_slot);
+    own.pairs_to_order.store(all);
     BucketSort sort(plan_, *pages_);
     std::vector<Pair*> spent;
     shares.run(Step::order, plan_.buckets(), [&](const WorkSharing::Task& task) {
         std::vector<PageString> strings;
         strings.reserve(of_slots.size());
         for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[task.index]));
+        const std::uint64_t pairs = pairs_in(strings);
         // The input pages of the previous share are free now, because that share is done. The input pages of this share must
         // stay unchanged until it is done, in case a replacement worker sorts them again.
         for (Pair* const page : spent) pages_->give_back(page);
         spent.clear();
         record_runs(place_, sort.sort(std::move(strings), place_.stop, &spent), task.record);
+        own.pairs_ordered.fetch_add(pairs);
     });
 }
 
