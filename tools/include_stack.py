@@ -97,7 +97,7 @@ PUBLIC = {
 THIRD_PARTY = {
     "tbb": {"parallel", "bench/baselines"}, "oneapi": {"parallel"},
     "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
-    "assimp": {"io"}, "ccd": {"narrow_phase"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase"},
+    "assimp": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},

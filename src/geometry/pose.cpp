@@ -13,10 +13,17 @@ Pose make_pose(const Point3d& place, const std::array<double, 4>& turn) {
     if (!(length > 0) || !std::isfinite(length)) {
         throw Error(ErrorCode::bad_input, "the quaternion of a pose must be finite and not 0");
     }
-    const double w = turn[0] / length, x = turn[1] / length, y = turn[2] / length, z = turn[3] / length;
-    return {{{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), place[0]},
-              {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), place[1]},
-              {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), place[2]}}}};
+    // Scaling by a power of two and a division by the square of the length, without a square root: so quarter turns and other
+    // rotations with coefficients in few bits are exact.
+    int exponent = 0;
+    (void)std::frexp(length, &exponent);
+    const auto scaled = [&](std::size_t i) { return std::ldexp(turn[i], -exponent); };
+    const double w = scaled(0), x = scaled(1), y = scaled(2), z = scaled(3);
+    const double square = w * w + x * x + y * y + z * z;
+    const auto part = [&](double sum) { return sum / square; };
+    return {{{{part(w * w + x * x - y * y - z * z), part(2 * (x * y - w * z)), part(2 * (x * z + w * y)), place[0]},
+              {part(2 * (x * y + w * z)), part(w * w - x * x + y * y - z * z), part(2 * (y * z - w * x)), place[1]},
+              {part(2 * (x * z - w * y)), part(2 * (y * z + w * x)), part(w * w - x * x - y * y + z * z), place[2]}}}};
 }
 
 }  // namespace octopair

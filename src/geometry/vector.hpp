@@ -21,6 +21,17 @@ inline Point3d cross(const Point3d& a, const Point3d& b) {
 /// Returns the length, without overflow or underflow of intermediate results.
 inline double length(const Point3d& a) { return std::hypot(a[0], a[1], a[2]); }
 
+/// Returns a vector perpendicular to `way`; 0 if `way` is 0.
+inline Point3d some_normal(const Point3d& way) {
+    std::size_t least = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+        if (std::abs(way[axis]) < std::abs(way[least])) least = axis;
+    }
+    Point3d unit = {};
+    unit[least] = 1;
+    return cross(way, unit);
+}
+
 inline Point3d column(const Pose& pose, std::size_t k) { return {pose.rows[0][k], pose.rows[1][k], pose.rows[2][k]}; }
 inline Point3d place(const Pose& pose) { return column(pose, 3); }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -11,14 +13,17 @@
 #include "narrow_phase/convex_oracle.hpp"
 #include "samples/meshes.hpp"
 #include "samples/random.hpp"
+#include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
 using samples::random_pose;
 using samples::RandomStream;
+using vector::dot;
 using vector::length;
 using vector::minus;
+using vector::plus;
 using vector::times;
 
 constexpr int kinds = 7;
@@ -155,6 +160,155 @@ TEST(ConvexPair, KnownDistancesAndDepths) {
     const Thing across(shape::Capsule{0.5, 2}, make_pose({0, 0, 0}, {1, 1, 0, 0}));
     EXPECT_DOUBLE_EQ(contact(rod, across).depth, 1);
     EXPECT_DOUBLE_EQ(gap(rod, across.moved({2, 0, 0})), 1);
+}
+
+TEST(ConvexPair, LeastDepthsOfSymmetricAndFlatThings) {
+    const Pose turned = make_pose({0, 0, 0}, {1, 1, 1, 1});
+    for (const Pose& pose : {Pose{}, turned}) {
+        EXPECT_NEAR(contact(Thing(shape::Capsule{2, 4}, pose), Thing(shape::Capsule{0.5, 0.5}, pose)).depth, 2.5,
+                    1e-12);
+    }
+    const Thing cone(shape::Cone{2, 4}), ball(shape::Sphere{0.25}, Point3d{0, 0, -0.25});
+    EXPECT_NEAR(contact(cone, ball).depth, 0.25 + 2.25 / std::sqrt(5.0), 1e-12);
+    // A plane separates these pairs.
+    const Thing flat(shape::ConvexHull{{{0, -2, 0.5}, {0, 2, 0.5}, {-0.5, 0, 1.5}}}, Point3d{-1, 0, -0.5});
+    EXPECT_NEAR(contact(Thing(shape::Cone{2, 2}), flat).depth, 0, 1e-14);
+    const Thing hull(shape::ConvexHull{{{0.5, 0.5, -0.5}, {0, 0.5, 0}, {-0.5, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, -0.5}}},
+                     turned);
+    EXPECT_NEAR(contact(hull, Thing(shape::Box{{0.5, 0.5, 0.25}}, Point3d{0.5, -0.75, 0.5})).depth, 0, 1e-14);
+}
+
+TEST(ConvexPair, LeastDepthsOfTinyThingsInLargeOnes) {
+    // Nearly all directions across the axis have the same overlap.
+    const auto depth = [](const shape::Any& large, const std::array<double, 4>& turn, const shape::Any& small,
+                          const std::array<double, 4>& small_turn) {
+        return contact(Thing(large, make_pose({0, 0, 0}, turn)), Thing(small, make_pose({0, 0, 0}, small_turn))).depth;
+    };
+    const shape::Any egg = shape::Ellipsoid{{0.001, 0.0008, 0.0013}};
+    EXPECT_LT(depth(shape::Cylinder{1, 4}, {2, 1, 1, 1}, egg, {-8, 7, 4, 12}), 1.00097211 + 1e-8);
+    EXPECT_LT(depth(shape::Ellipsoid{{1, 1, 3}}, {3, -2, 3, -1}, egg, {3, 22, 20, 2}), 1.00097211 + 1e-8);
+    EXPECT_LT(depth(shape::Cylinder{1, 4}, {2, -2, 1, 1}, shape::Cylinder{0.001, 0.001}, {-2, 4, 19, 3}),
+              1.00080474 + 1e-8);
+    EXPECT_NEAR(depth(shape::Cone{5, 10}, {0.25, -0.63, 0.61, -1.52}, shape::Sphere{1e-4}, {1, 0, 0, 0}),
+                std::sqrt(5.0) + 1e-4, 1e-9);
+}
+
+/// Least overlap of two things along many directions, improved where it is small.
+double least_overlap(const Thing& a, const Thing& b) {
+    const auto overlap = [&](const Point3d& way) {
+        const auto farthest = [&](const Thing& thing, const Point3d& along) {
+            const Point3d own = vector::turned_back(thing.posed.pose, along);
+            return dot(vector::posed(thing.posed.pose, support(thing.solid, own)), along) + thing.solid.radius;
+        };
+        return farthest(a, way) + farthest(b, times(way, -1));
+    };
+    constexpr int directions = 2000;
+    std::vector<std::pair<double, Point3d>> tried;
+    for (int i = 0; i < directions; ++i) {
+        const double z = 1 - (2 * i + 1.0) / directions, r = std::sqrt(1 - z * z), turn = i * 2.399963229728653;
+        const Point3d way = {r * std::cos(turn), r * std::sin(turn), z};
+        tried.emplace_back(overlap(way), way);
+    }
+    std::partial_sort(tried.begin(), tried.begin() + 8, tried.end());
+    double least = tried.front().first;
+    for (int i = 0; i < 8; ++i) {
+        auto [best, way] = tried[std::size_t(i)];
+        int turns = 0;
+        for (double step = 0.05; step > 1e-9 && turns < 400; ++turns) {
+            const Point3d across = length(vector::cross(way, {1, 0, 0})) > 0.5 ? Point3d{1, 0, 0} : Point3d{0, 1, 0};
+            const Point3d u = vector::cross(way, across), v = vector::cross(way, u);
+            bool better = false;
+            for (int turn = 0; turn < 12 && !better; ++turn) {
+                Point3d next =
+                    plus(way, plus(times(u, step * std::cos(turn * 0.5236)), times(v, step * std::sin(turn * 0.5236))));
+                next = times(next, 1 / length(next));
+                if (const double at = overlap(next); at < best) best = at, way = next, better = true;
+            }
+            if (!better) step /= 2;
+        }
+        least = std::min(least, best);
+    }
+    return std::max(0.0, least);
+}
+
+TEST(ConvexPair, DepthsAreTheLeastInEveryRotation) {
+    RandomStream random(14, 0);
+    std::uint64_t meeting = 0;
+    for (std::uint64_t i = 0; i < test::scaled(3000, 30) && !::testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE("pair " + std::to_string(i));
+        const int kind_a = int(random.below(unsigned(kinds))), kind_b = int(random.below(unsigned(kinds)));
+        // Aligned pairs have many directions of equal overlap.
+        const bool aligned = i % 2 == 0;
+        const auto place = [&] {
+            return aligned ? Point3d{double(random.below(5)) / 4 - 0.5, double(random.below(5)) / 4 - 0.5, 0}
+                           : random_point(random);
+        };
+        const Thing a(random_shape(kind_a, random), aligned ? make_pose(place()) : random_pose(random, 1));
+        const Thing b(random_shape(kind_b, random), aligned ? make_pose(place()) : random_pose(random, 1));
+        if (!meet(a, b)) continue;
+        ++meeting;
+        const double depth = contact(a, b).depth;
+        EXPECT_LE(depth, least_overlap(a, b) + 1e-6);
+        EXPECT_EQ(contact(b, a).depth, depth);
+        const Pose turn = random_pose(random, 0);
+        const auto turned = [&](const Thing& thing) {
+            Pose pose;
+            for (std::size_t row = 0; row < 3; ++row) {
+                for (std::size_t column = 0; column < 4; ++column) {
+                    double sum = column == 3 ? turn.rows[row][3] : 0;
+                    for (std::size_t k = 0; k < 3; ++k) sum += turn.rows[row][k] * thing.posed.pose.rows[k][column];
+                    pose.rows[row][column] = sum;
+                }
+            }
+            return Thing(thing.posed.shape, pose);
+        };
+        EXPECT_NEAR(contact(turned(a), turned(b)).depth, depth, 1e-6);
+    }
+    EXPECT_GT(meeting, test::scaled(1000, 30));
+}
+
+/// A convex polyhedron with integer corners, turned by an integer map: (1, 2, 2, 0) and the like, exact in rationals.
+struct Turned {
+    std::array<int, 4> quaternion;
+
+    Point3d operator()(const Point3d& at) const {
+        const auto [w, x, y, z] = quaternion;
+        const Point3d rows[] = {{double(w * w + x * x - y * y - z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                                {2.0 * (x * y + w * z), double(w * w - x * x + y * y - z * z), 2.0 * (y * z - w * x)},
+                                {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), double(w * w - x * x - y * y + z * z)}};
+        return {dot(rows[0], at), dot(rows[1], at), dot(rows[2], at)};
+    }
+    double scale() const {
+        const auto [w, x, y, z] = quaternion;
+        return w * w + x * x + y * y + z * z;
+    }
+};
+
+TEST(ConvexPair, HullsThatTouchOrPenetrateByConstruction) {
+    RandomStream random(15, 0);
+    const auto digit = [&](int most) { return double(random.below(unsigned(2 * most + 1))) - most; };
+    for (std::uint64_t i = 0; i < test::scaled(10'000, 30) && !::testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE("pair " + std::to_string(i));
+        const Turned turn{{1 + int(random.below(3)), int(digit(2)), int(digit(2)), int(digit(2))}};
+        // Corners below and above z = 0, with at least three at z = 0 around the origin: the hulls share a face in part.
+        const int deep = int(random.below(3));  // 0: they touch; otherwise they overlap by `deep`
+        std::array<std::vector<Point3d>, 2> corners;
+        for (const std::size_t side : {0U, 1U}) {
+            const double up = side == 0 ? -1 : 1;
+            for (const Point3d& foot : {Point3d{4, 1, 0}, Point3d{-4, 3, 0}, Point3d{-3, -4, 0}, Point3d{3, -3, 0}}) {
+                corners[side].push_back({foot[0] + digit(1), foot[1] + digit(1), side == 0 ? double(deep) : 0});
+            }
+            for (int k = 0; k < 3; ++k) {
+                corners[side].push_back(
+                    {digit(3), digit(3), up * (5 + double(random.below(4))) + (side == 0 ? deep : 0)});
+            }
+            for (Point3d& corner : corners[side]) corner = turn(corner);
+        }
+        const Thing a(shape::ConvexHull{corners[0]}), b(shape::ConvexHull{corners[1]});
+        EXPECT_TRUE(meet(a, b));
+        const double size = 8 * turn.scale();
+        EXPECT_NEAR(contact(a, b).depth, deep * turn.scale(), deep == 0 ? 1e-13 * size : 1e-9 * size);
+    }
 }
 
 TEST(ConvexPair, ContactsAreInThinThingsToo) {
