@@ -24,12 +24,21 @@ Point3d between(const Point3d& from, const Point3d& to, double part) {
     return {std::lerp(from[0], to[0], part), std::lerp(from[1], to[1], part), std::lerp(from[2], to[2], part)};
 }
 
-/// Returns the point where edge 0i of a triangle crosses the other triangle's plane.
-Point3d edge_crossing(const Triangle3d& triangle, const PlaneCrossing::CornerOrder& corners, unsigned i,
-                      const Triangle3d& other) {
-    const Point3d &from = triangle[corners[0]], &to = triangle[corners[i]];
-    return between(from, to, part_to_plane(other, from, to));
-}
+/// A triangle that crosses the plane of another one.
+struct CrossingTriangle {
+    const Triangle3d& triangle;
+    const CornerSides& sides;
+    const PlaneCrossing::CornerOrder& corners;
+    const Triangle3d& other;
+
+    /// Returns the point where edge 0i crosses the plane.
+    Point3d on_edge(unsigned i) const {
+        const Point3d &from = triangle[corners[0]], &to = triangle[corners[i]];
+        if (sides[corners[0]] == 0) return from;
+        if (sides[corners[i]] == 0) return to;
+        return between(from, to, part_to_plane(other, from, to));
+    }
+};
 
 bool on_both_sides(const CornerSides& sides) {
     return std::min({sides[0], sides[1], sides[2]}) < 0 && std::max({sides[0], sides[1], sides[2]}) > 0;
@@ -44,10 +53,9 @@ TriangleContact crossing_contact(const std::array<Triangle3d, 2>& triangles, con
     const int begins = line.order(1, 1), ends = line.order(2, 2);
     if (begins > 0 || ends < 0) return contact;
     const bool a_is_point = sides[0][line.first()[0]] == 0, b_is_point = sides[1][line.second()[0]] == 0;
-    contact.points[0] =
-        line.order(1, 2) >= 0 ? edge_crossing(a, line.first(), 1, b) : edge_crossing(b, line.second(), 2, a);
-    contact.points[1] =
-        line.order(2, 1) <= 0 ? edge_crossing(a, line.first(), 2, b) : edge_crossing(b, line.second(), 1, a);
+    const CrossingTriangle of_a{a, sides[0], line.first(), b}, of_b{b, sides[1], line.second(), a};
+    contact.points[0] = line.order(1, 2) >= 0 ? of_a.on_edge(1) : of_b.on_edge(2);
+    contact.points[1] = line.order(2, 1) <= 0 ? of_a.on_edge(2) : of_b.on_edge(1);
     contact.count = begins == 0 || ends == 0 || a_is_point || b_is_point ? 1 : 2;
     const bool pass = begins < 0 && ends > 0 && on_both_sides(sides[0]) && on_both_sides(sides[1]);
     contact.meeting = pass ? TriangleMeeting::crossing : TriangleMeeting::touching;
@@ -201,15 +209,6 @@ Point3d across(const Point3d& a, const Point3d& b) {
     return square > 0 ? minus(product, times(longer, dot(product, longer) / square)) : product;
 }
 
-/// Returns a vector perpendicular to `way`; 0 if `way` is 0.
-Point3d some_normal(const Point3d& way) {
-    Point3d unit = {};
-    unit[std::size_t(
-        std::min_element(way.begin(), way.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
-        way.begin())] = 1;
-    return cross(way, unit);
-}
-
 }  // namespace
 
 TriangleContact triangle_contact(const Triangle3d& a, const Triangle3d& b) {
@@ -237,7 +236,7 @@ TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b) {
     for (const auto* edges : {&a_edges, &b_edges}) {
         // No direction found: all edges lie along one line. Any translation across that line separates the triangles.
         for (const Point3d& edge : *edges) {
-            if (!least.found()) least.offer(some_normal(edge));
+            if (!least.found()) least.offer(vector::some_normal(edge));
         }
     }
     return least.out();

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/exact/orientation.hpp"
+#include "narrow_phase/convex/convex_pair.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
+#include "narrow_phase/mesh/mesh_interiors.hpp"
 #include "narrow_phase/mesh/mesh_leaves.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
@@ -105,15 +106,6 @@ private:
     double outside_radius_ = 0;
 };
 
-/// Returns true if two coplanar triangles have their normals on the same side of the plane.
-bool face_alike(const Triangle3d& a, const Triangle3d& b) {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        const int side_a = line_side(a[0], a[1], a[2], axis);
-        if (side_a != 0) return side_a == line_side(b[0], b[1], b[2], axis);
-    }
-    return false;
-}
-
 /// Order of the contacts: by descending depth, then by ascending triangle numbers.
 bool comes_first(const Contact& a, const Contact& b) {
     return std::tuple(-a.depth, a.feature_a, a.feature_b) < std::tuple(-b.depth, b.feature_a, b.feature_b);
@@ -122,17 +114,22 @@ bool comes_first(const Contact& a, const Contact& b) {
 class ContactSearch {
 public:
     ContactSearch(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request)
-        : a_(a), b_(b), request_(request), same_handed_(mirrors(a.pose) == mirrors(b.pose)) {}
+        : a_(a), b_(b), request_(request) {}
 
     void run(Finding& finding) {
         visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
             add(at);
             return !request_.stop.stop_requested();
         });
-        const double depth = depth_of_meshes(a_, b_, request_.stop);
-        const bool inside = penetrating_ || depth > 0;
-        finding.collision_class = inside ? CollisionClass::penetrating : CollisionClass::touching;
-        finding.depth = !inside ? 0 : depth > 0 ? depth : deepest_;
+        const bool penetrating = crossing_ || interiors_meet(a_, b_, touching_, request_.stop);
+        finding.collision_class = penetrating ? CollisionClass::penetrating : CollisionClass::touching;
+        if (penetrating) {
+            set_depth_of_meshes(a_, b_, request_, finding);
+            if (finding.depth_kind == DepthKind::at_least) finding.depth = std::max(finding.depth, deepest_);
+        } else {
+            finding.depth = 0;
+            finding.depth_kind = DepthKind::least;
+        }
         std::sort(contacts_.begin(), contacts_.end(), comes_first);
         finding.more_contacts = more_;
         finding.contacts = std::move(contacts_);
@@ -141,10 +138,8 @@ public:
 private:
     void add(const MeetingTriangles& at) {
         const TriangleContact contact = triangle_contact(at.a, at.b);
-        penetrating_ |= contact.meeting == TriangleMeeting::crossing;
-        if (contact.meeting == TriangleMeeting::overlapping && at.both_oriented) {
-            penetrating_ |= face_alike(at.a, at.b) == same_handed_;
-        }
+        crossing_ |= contact.meeting == TriangleMeeting::crossing;
+        if (!crossing_) touching_.push_back({at.place_a, at.place_b});
         Contact made = contact_of(at.a, at.b, contact);
         deepest_ = std::max(deepest_, made.depth);
         made.feature_a = at.number_a;
@@ -166,17 +161,37 @@ private:
 
     const PosedMesh &a_, &b_;
     const ContactRequest& request_;
-    bool same_handed_;
-    bool penetrating_ = false, more_ = false;
+    bool crossing_ = false;                    // triangles pass through each other
+    std::vector<TouchingTriangles> touching_;  // all that meet, unless some pass through each other
+    bool more_ = false;
     double deepest_ = 0;  // depth of the deepest contact, kept or not
     std::vector<Contact> contacts_;
 };
 
 }  // namespace
 
-double depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop) {
-    if (a.tree.nodes.empty() || b.tree.nodes.empty()) return 0;
-    return std::max(DepthSearch(a, stop).deepest(b), DepthSearch(b, stop).deepest(a));
+bool meshes_penetrate(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop) {
+    bool crossing = false;
+    std::vector<TouchingTriangles> touching;
+    visit_meeting_triangles(a, b, [&](const MeetingTriangles& at) {
+        crossing = triangle_contact(at.a, at.b).meeting == TriangleMeeting::crossing;
+        touching.push_back({at.place_a, at.place_b});
+        return !crossing && !stop.stop_requested();
+    });
+    if (crossing) return true;
+    if (touching.empty()) return encloses_part(a, b) || encloses_part(b, a);
+    return interiors_meet(a, b, touching, stop);
+}
+
+void set_depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding) {
+    if (is_solid(a, request.max_error) && is_solid(b, request.max_error)) {
+        finding.depth = convex_contact({a.tree.solid, a.pose}, {b.tree.solid, b.pose}).depth;
+        finding.depth_kind = DepthKind::least;
+        return;
+    }
+    finding.depth_kind = DepthKind::at_least;
+    if (a.tree.nodes.empty() || b.tree.nodes.empty()) return;
+    finding.depth = std::max(DepthSearch(a, request.stop).deepest(b), DepthSearch(b, request.stop).deepest(a));
 }
 
 void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding) {

@@ -11,12 +11,15 @@ namespace octopair {
 
 namespace {
 
-/// Returns false only if the ray misses the node's box.
-bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Point3d& from) {
+Box3d box_of(const Point3d& from) { return {{from[0], from[1], from[2]}, {from[0], from[1], from[2]}}; }
+Box3d box_of(const NearbyPoint& from) { return from.box(); }
+
+/// Returns false only if rays from the box `from` miss the node's box.
+bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Box3d& from) {
     for (int row = 0; row < 3; ++row) {
         const auto [low, high] = boxes.span(node, row);
-        if (high < from[row]) return false;
-        if (row > 0 && low > from[row]) return false;
+        if (high < from.min[row]) return false;
+        if (row > 0 && low > from.max[row]) return false;
     }
     return true;
 }
@@ -27,12 +30,13 @@ struct Crossings {
     std::uint64_t unoriented = 0;  ///< closed parts without a consistent orientation: all crossings
 };
 
-void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const Point3d& from, Crossings& crossings) {
+template <typename From>
+void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const From& from, Crossings& crossings) {
     for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const MeshParts::Side side = mesh.tree.parts.sides[i];
         if (side == MeshParts::Side::open) continue;
         const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, i);
-        if (!ray_crosses(from, triangle, 0)) continue;
+        if (!ray_crosses(from, triangle)) continue;
         if (side == MeshParts::Side::unoriented) {
             ++crossings.unoriented;
         } else {
@@ -41,17 +45,17 @@ void count_leaf(const PosedMesh& mesh, const MeshNode& leaf, const Point3d& from
     }
 }
 
-}  // namespace
-
-bool encloses(const PosedMesh& mesh, const Point3d& point) {
+template <typename From>
+bool encloses_any(const PosedMesh& mesh, const From& point) {
     if (!mesh.tree.parts.any_closed) return false;
     const WorldBoxes boxes(mesh);
+    const Box3d from = box_of(point);
     Crossings crossings;
     NodeStack<std::uint32_t> waiting;
     waiting.push(0);
     while (!waiting.empty()) {
         const MeshNode& node = mesh.tree.nodes[waiting.pop()];
-        if (!may_pass(boxes, node, point)) continue;
+        if (!may_pass(boxes, node, from)) continue;
         if (node.is_leaf()) {
             count_leaf(mesh, node, point, crossings);
         } else {
@@ -61,6 +65,12 @@ bool encloses(const PosedMesh& mesh, const Point3d& point) {
     }
     return crossings.winding != 0 || crossings.unoriented % 2 != 0;
 }
+
+}  // namespace
+
+bool encloses(const PosedMesh& mesh, const Point3d& point) { return encloses_any(mesh, point); }
+
+bool encloses(const PosedMesh& mesh, const NearbyPoint& point) { return encloses_any(mesh, point); }
 
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner) {
     const auto& corners = inner.tree.parts.corners;

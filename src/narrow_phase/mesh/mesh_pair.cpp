@@ -96,9 +96,8 @@ void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
         const WorldLeaf leaf_a(a, node_a), leaf_b(b, node_b);
         return visit_meeting(leaf_a, leaf_b, [&](std::uint32_t i, std::uint32_t j) {
             const std::uint32_t at_a = leaf_a.place(i), at_b = leaf_b.place(j);
-            constexpr auto oriented = MeshParts::Side::oriented;
-            return visit({a.tree.numbers[at_a], b.tree.numbers[at_b], leaf_a.triangle(i), leaf_b.triangle(j),
-                          a.tree.parts.sides[at_a] == oriented && b.tree.parts.sides[at_b] == oriented});
+            return visit(
+                {at_a, at_b, a.tree.numbers[at_a], b.tree.numbers[at_b], leaf_a.triangle(i), leaf_b.triangle(j)});
         });
     });
 }

@@ -4,12 +4,15 @@
 // that cannot change the result. So the result equals that of testing all pairs of triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 
 #include "geometry/vector.hpp"
+#include "narrow_phase/exact/nearby_point.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/mesh/mesh_tree.hpp"
 
@@ -26,15 +29,23 @@ inline bool mirrors(const Pose& pose) {
     return plane_side({0, 0, 0}, vector::column(pose, 0), vector::column(pose, 1), vector::column(pose, 2)) < 0;
 }
 
+/// Returns whether MeshTree::solid may stand for the mesh: it exists, and in the world it errs by at most `max_error`.
+inline bool is_solid(const PosedMesh& mesh, double max_error) {
+    if (!mesh.tree.solid.exists() || mesh.tree.solid_error == 0) return mesh.tree.solid.exists();
+    double scale = 0;
+    for (std::size_t k = 0; k < 3; ++k) scale = std::max(scale, vector::length(vector::column(mesh.pose, k)));
+    return 2 * scale * mesh.tree.solid_error <= max_error;
+}
+
 /// Returns true if some triangle of a meets some triangle of b. Only the surfaces count, not the enclosed space.
 bool surfaces_meet(const PosedMesh& a, const PosedMesh& b);
 
 /// Two triangles that meet.
 struct MeetingTriangles {
+    std::uint32_t place_a, place_b;    ///< in the trees' order
     std::uint32_t number_a, number_b;  ///< indices in the given meshes
     const Triangle3d& a;               ///< in the world
     const Triangle3d& b;
-    bool both_oriented;  ///< both triangles belong to closed, consistently oriented surfaces
 };
 /// Calls `visit` for each pair of triangles that meet, in an order that depends only on meshes and poses. Ends when `visit`
 /// returns false.
@@ -44,6 +55,8 @@ void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
 /// Returns true if the point is inside the mesh: the winding number of the closed, oriented parts is not 0, or an odd number of
 /// closed parts without a consistent orientation contains the point. Requires: the point is not on the surface.
 bool encloses(const PosedMesh& mesh, const Point3d& point);
+/// The same for a point near a place, which may be on the surface.
+bool encloses(const PosedMesh& mesh, const NearbyPoint& point);
 
 /// Returns true if some part of `inner` lies inside `outer`. Requires: the surfaces do not meet.
 bool encloses_part(const PosedMesh& outer, const PosedMesh& inner);

@@ -97,15 +97,19 @@ MeshParts find_parts(const MeshTree& tree) {
     judge_edges(edges, states);
 
     MeshParts parts;
-    std::vector<bool> seen(tree.vertices.size());
+    constexpr std::uint32_t none = ~std::uint32_t(0);
+    std::vector<std::uint32_t> numbers(tree.vertices.size(), none);
     for (const auto& corners : tree.triangles) {
         const std::uint32_t part = sets.find(place[corners[0]]);
         const PartState& state = states[part];
         using Side = MeshParts::Side;
         parts.sides.push_back(!state.closed ? Side::open : state.oriented ? Side::oriented : Side::unoriented);
         parts.any_closed |= state.closed;
-        if (!seen[part]) parts.corners.push_back(tree.vertices[corners[0]]);
-        seen[part] = true;
+        if (numbers[part] == none) {
+            numbers[part] = std::uint32_t(parts.corners.size());
+            parts.corners.push_back(tree.vertices[corners[0]]);
+        }
+        parts.numbers.push_back(numbers[part]);
     }
     return parts;
 }

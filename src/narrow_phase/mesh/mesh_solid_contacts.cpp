@@ -38,14 +38,32 @@ std::vector<Point3d> places_of(const BoxedSolid& solid) {
     return places;
 }
 
-double deepest_in_mesh(const PosedMesh& mesh, const BoxedSolid& solid) {
+/// Returns the depth of the deepest of some points of the core in the mesh.
+double deepest_in_mesh(const PosedMesh& mesh, double radius, const std::vector<Point3d>& places) {
     SurfaceProbe probe(mesh);
     double deepest = 0;
-    for (const Point3d& place : places_of(solid)) {
+    for (const Point3d& place : places) {
         const double distance = probe.distance(place, 0);
-        if (distance > 0 && encloses(mesh, place)) deepest = std::max(deepest, distance + solid.solid.radius);
+        if (distance > 0 && encloses(mesh, place)) deepest = std::max(deepest, distance + radius);
     }
     return deepest;
+}
+
+/// Returns the middles between some points of a hull: its own, and those of contacts. A flat hull has no interior whose points
+/// could be deep in triangles, so it may pass through a mesh while its own points are outside.
+std::vector<Point3d> middles_of(const BoxedSolid& solid, const std::vector<Contact>& contacts) {
+    constexpr std::size_t most = 16;
+    std::vector<Point3d> points;
+    for (std::size_t i = 0; i < contacts.size(); i += contacts.size() / most + 1) points.push_back(contacts[i].point);
+    const std::vector<Point3d>& own = solid.solid.points;
+    for (std::size_t i = 0; i < own.size(); i += own.size() / most + 1) {
+        points.push_back(vector::posed(solid.box.pose, own[i]));
+    }
+    std::vector<Point3d> middles;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) middles.push_back(vector::times(vector::plus(points[i], points[k]), 0.5));
+    }
+    return middles;
 }
 
 /// Returns the depth of the deepest corner or centroid in the solid. Tests at most about 1024 triangles, at a fixed stride.
@@ -85,9 +103,16 @@ void turn_outward(const Triangle3d& triangle, const Point3d& outward, const Boxe
 
 }  // namespace
 
-double depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
-    const double in_solid = deepest_in_solid(mesh, solid);
-    return mesh.tree.parts.any_closed ? std::max(in_solid, deepest_in_mesh(mesh, solid)) : in_solid;
+void set_depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, double max_error, Finding& finding) {
+    if (is_solid(mesh, max_error)) {
+        finding.depth = convex_contact({mesh.tree.solid, mesh.pose}, solid.posed()).depth;
+        finding.depth_kind = DepthKind::least;
+        return;
+    }
+    finding.depth = deepest_in_solid(mesh, solid);
+    finding.depth_kind = DepthKind::at_least;
+    if (!mesh.tree.parts.any_closed) return;
+    finding.depth = std::max(finding.depth, deepest_in_mesh(mesh, solid.solid.radius, places_of(solid)));
 }
 
 void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
@@ -103,8 +128,18 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
         finding.contacts.push_back(contact);
         return !request.stop.stop_requested();
     });
-    const double inside = mesh.tree.parts.any_closed ? depth_of_mesh_and_solid(mesh, solid) : 0;
-    finding.depth = std::max(inside, deepest);
+    // A solid that errs says how deep, but not whether.
+    set_depth_of_mesh_and_solid(mesh, solid, 0, finding);
+    if (finding.depth_kind == DepthKind::at_least) finding.depth = std::max(finding.depth, deepest);
+    const bool hull = solid.solid.core == ConvexSolid::Core::points && solid.solid.radius == 0;
+    if (finding.depth <= request.touching_depth && hull && mesh.tree.parts.any_closed) {
+        finding.depth = deepest_in_mesh(mesh, 0, middles_of(solid, finding.contacts));
+        finding.depth_kind = DepthKind::at_least;
+    }
+    if (finding.depth > request.touching_depth && finding.depth_kind == DepthKind::at_least &&
+        is_solid(mesh, request.max_error)) {
+        set_depth_of_mesh_and_solid(mesh, solid, request.max_error, finding);
+    }
     std::sort(finding.contacts.begin(), finding.contacts.end(), [](const Contact& a, const Contact& b) {
         return a.depth != b.depth ? a.depth > b.depth : a.feature_a < b.feature_a;
     });

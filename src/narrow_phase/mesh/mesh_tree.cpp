@@ -197,6 +197,7 @@ std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh) {
     auto tree = std::make_shared<MeshTree>();
     Builder(mesh, *tree).build();
     tree->parts = find_parts(*tree);
+    set_convex_solid(*tree);
     return tree;
 }
 

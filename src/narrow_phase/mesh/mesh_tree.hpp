@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "geometry/vector.hpp"
+#include "narrow_phase/convex/convex_solid.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair {
@@ -32,7 +33,8 @@ struct MeshParts {
     std::vector<Point3d> corners;  ///< one corner of each part
     /// Kind of the part that a triangle belongs to: not closed, closed and consistently oriented, or closed only.
     enum class Side : std::uint8_t { open, oriented, unoriented };
-    std::vector<Side> sides;  ///< by triangle, in the tree's order
+    std::vector<Side> sides;             ///< by triangle, in the tree's order
+    std::vector<std::uint32_t> numbers;  ///< by triangle, in the tree's order: the index of its part in `corners`
     bool any_closed = false;
 };
 
@@ -46,6 +48,9 @@ struct MeshTree {
     std::vector<std::uint32_t> numbers;  ///< index of each triangle in the given mesh
     std::vector<MeshNode> nodes;         ///< empty for a mesh without triangles
     MeshParts parts;
+    /// Convex hull of a closed mesh of few triangles that is convex but for rounding of its vertices; of other meshes none exists.
+    ConvexSolid solid;
+    double solid_error = 0;  ///< how far vertices are above the planes of triangles, at most; 0: the mesh is convex
 
     Triangle3d world_triangle(const Pose& pose, std::uint32_t triangle) const {
         const auto& [a, b, c] = triangles[triangle];
@@ -58,6 +63,10 @@ std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh);
 
 /// Returns a tree of one node with the given box and without triangles, to test a mesh against another kind of object.
 MeshTree make_box_tree(const Box3d& box);
+
+/// Sets solid and solid_error. Tests few triangles only, because the test takes quadratic time.
+/// Requires: vertices, triangles and parts of `tree` are set.
+void set_convex_solid(MeshTree& tree);
 
 /// Returns the parts of the tree's mesh. Requires: vertices and triangles of `tree` are set.
 MeshParts find_parts(const MeshTree& tree);
