@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,9 +18,20 @@ enum class CollisionClass : std::uint8_t {
     unknown,      ///< no exact filter has tested the pair
     clearance,    ///< the objects do not meet; their distance is at most margin and paddings
     collision,    ///< the objects meet; no exact feature filter has determined how
-    touching,     ///< the objects meet, but their interiors do not
-    penetrating,  ///< their interiors, or surfaces, pass through each other
+    touching,     ///< the objects meet, but their interiors do not, or a motion within the tolerance separates them
+    penetrating,  ///< their interiors meet, or their surfaces pass through each other
     contained,    ///< one object lies inside the other, and their surfaces do not meet
+    duplicate,    ///< the objects have the same geometry, in the same place within the tolerance
+};
+
+/// Number of classes, for arrays that a class indexes.
+inline constexpr std::size_t collision_classes = 7;
+
+/// What a depth says about the shortest translation that separates two objects.
+enum class DepthKind : std::uint8_t {
+    unknown,   ///< no filter computed a depth
+    least,     ///< its length, to about 1e-7 of the smaller object's size; of two polyhedra, to rounding
+    at_least,  ///< a lower bound: no shorter translation separates the objects
 };
 
 /// The contact of two features. If b moves by `depth` along `normal`, this contact ends.
@@ -39,10 +51,13 @@ struct Finding {
     double distance = 0;                  ///< distance of objects that do not meet
     std::array<Point3d, 2> nearest = {};  ///< nearest points of a and b, if they do not meet; `distance` apart
     double depth = 0;                     ///< penetration depth of objects that meet, if a filter computed it
-    double time = 0;                      ///< time of impact of moving objects, 0 to 1
-    std::vector<Contact> contacts = {};   ///< deepest first
-    bool more_contacts = false;           ///< true if contacts were left out because of a limit
-    std::uint64_t note = 0;               ///< free for a user's own filters; octopair does not use it
+    DepthKind depth_kind = DepthKind::unknown;
+    double depth_at_most = 0;       ///< length of a translation that was found to separate the objects; >= depth
+    std::array<bool, 2> open = {};  ///< whether a and b are meshes with a part that is not closed (Geometry::closed)
+    double time = 0;                ///< time of impact of moving objects, 0 to 1
+    std::vector<Contact> contacts = {};  ///< deepest first
+    bool more_contacts = false;          ///< true if contacts were left out because of a limit
+    std::uint64_t note = 0;              ///< free for a user's own filters; octopair does not use it
 };
 
 }  // namespace octopair

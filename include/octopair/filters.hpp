@@ -49,6 +49,12 @@ std::unique_ptr<Filter> make_parent_filter(std::span<const std::uint32_t> parent
 struct ExactOptions {
     double margin = 0;  ///< largest Euclidean distance, besides paddings, at which a pair is kept; finite, >= 0
     std::uint32_t max_contacts = 16;  ///< contacts stored per pair, the deepest first; 0: none
+    /// Length, finite, >= 0. Objects are `touching` if a translation of at most this length is proven to separate them, to
+    /// rounding.
+    double tolerance = 0;
+    /// Length, finite, >= 0; the default is the tolerance. Objects of the same geometry are `duplicate` if no corner is further
+    /// from its counterpart.
+    std::optional<double> duplicate_tolerance = {};
 };
 
 /// Returns the filter "bounding spheres". Drops pairs whose bounding spheres are further apart than margin and paddings.
@@ -68,6 +74,10 @@ std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, con
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options = {},
                                                   const ShapedObjects* second = nullptr);
 
+/// Returns the filter "depth", which drops pairs that are certainly less deep than `min_depth`: Finding::depth_at_most is smaller.
+/// Keeps pairs without a depth. Requires: "exact feature" or "exact triangle" is before it.
+std::unique_ptr<Filter> make_depth_filter(double min_depth);
+
 /// Triangles as objects.
 struct TriangleSet {
     std::span<const Triangle3d> triangles;
@@ -85,7 +95,9 @@ struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
     double margin = 0;      ///< largest distance at which triangles that are not adjacent are kept; finite, >= 0
     bool features = false;  ///< true: computes contact and depth, and distinguishes penetrating from touching
-    unsigned threads = 0;   ///< threads that check the triangles when the filter is made; 0: one per core
+    double tolerance =
+        0;  ///< with `features`: triangles that a translation of at most this length separates only touch
+    unsigned threads = 0;  ///< threads that check the triangles when the filter is made; 0: one per core
 };
 
 /// Returns the filter "exact triangle". Keeps triangles that meet (closed sets, no epsilon), or whose distance is at most the

@@ -13,6 +13,7 @@
 // CMake     Link octopair::pipeline.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -114,9 +115,10 @@ struct FilterCounts {
 };
 
 struct PipelineSummary {
-    std::uint64_t collisions = 0;  ///< number of pairs that passed all filters
-    bool truncated = false;        ///< true if `limit` was reached and at least one more collision exists
-    double seconds = 0;            ///< wall-clock time
+    std::uint64_t collisions = 0;                                ///< number of pairs that passed all filters
+    std::array<std::uint64_t, collision_classes> of_class = {};  ///< the same, by CollisionClass
+    bool truncated = false;  ///< true if `limit` was reached and at least one more collision exists
+    double seconds = 0;      ///< wall-clock time
     /// Summary of the all-pairs stage. Its seconds exclude the calling thread's work for filters and the sink. If the limit
     /// ended the search early, only pairs and seconds are valid.
     Summary search;

@@ -72,6 +72,12 @@ struct PreparedShape;
 const PreparedShape& prepared(const Geometry& geometry);
 }  // namespace detail
 
+/// Closes small gaps. Joins vertices at the edges of gaps (edges that are in an odd number of triangles) that are at most
+/// `tolerance` apart, and those that chains of such steps connect, at the place of the first. Other vertices, and closed meshes, stay as
+/// they are, but vertices in equal places become one. Triangles keep their numbers; some may become degenerate.
+/// Throws: Error{bad_input} if the tolerance is negative or not finite.
+void weld(shape::Mesh& mesh, double tolerance);
+
 /// A shape that is prepared for tests; a mesh with its bounding volume hierarchy. Objects of equal shape should share one.
 class Geometry {
 public:
@@ -79,6 +85,9 @@ public:
     explicit Geometry(shape::Any shape);
 
     const shape::Any& shape() const;
+    /// Returns false if a part of a mesh is not closed: an edge is in an odd number of triangles. Such a part has no inside, so an
+    /// object within it does not meet it. Always true for other shapes.
+    bool closed() const;
 
 private:
     friend const detail::PreparedShape& detail::prepared(const Geometry& geometry);

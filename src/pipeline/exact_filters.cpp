@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/floating_point_scope.hpp"
 #include "narrow_phase/motion/object_impact.hpp"
@@ -24,6 +26,8 @@ public:
           moving_(!first_.end_poses.empty() || !second_.end_poses.empty()) {
         check(first_);
         check(second_);
+        first_open_ = open_geometries(first_);
+        second_open_ = open_geometries(second_);
     }
 
     /// Returns whether any object moves.
@@ -32,6 +36,9 @@ public:
     PosedObject b(const Pair& pair) const { return {prepared(second_, pair.b), second_.poses[pair.b]}; }
     MovingObject moving_a(const Pair& pair) const { return moving(first_, pair.a); }
     MovingObject moving_b(const Pair& pair) const { return moving(second_, pair.b); }
+    std::array<bool, 2> open(const Pair& pair) const {
+        return {first_open_[first_.geometry[pair.a]], second_open_[second_.geometry[pair.b]]};
+    }
     double padding(const Pair& pair) const { return padding_of(first_, pair.a) + padding_of(second_, pair.b); }
 
 private:
@@ -43,12 +50,18 @@ private:
         return {prepared(objects, i),
                 *Motion::between(begin, objects.end_poses.empty() ? begin : objects.end_poses[i])};
     }
+    static std::vector<bool> open_geometries(const ShapedObjects& objects) {
+        std::vector<bool> open(objects.geometries.size());
+        for (std::size_t i = 0; i < open.size(); ++i) open[i] = !objects.geometries[i].closed();
+        return open;
+    }
     static double padding_of(const ShapedObjects& objects, std::uint32_t i) {
         return objects.padding.empty() ? 0 : objects.padding[i];
     }
 
     ShapedObjects first_, second_;
     bool moving_;
+    std::vector<bool> first_open_, second_open_;  // by geometry
 };
 
 /// The poses of two moving objects at one time.
@@ -101,6 +114,7 @@ void find_impact(const Moment& moment, const ContactRequest& request, Finding& f
         return;
     }
     finding.collision_class = CollisionClass::touching;
+    finding.depth_kind = DepthKind::least;
     finding.more_contacts = request.max_contacts == 0;
     if (request.max_contacts == 0) return;
     const auto& [on_a, on_b] = at_moment.nearest;
@@ -123,6 +137,7 @@ bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i
     if (!counts) return false;
     Finding& finding = batch.finding(i);
     found.note = finding.note;
+    found.open = objects.open(pair);
     finding = std::move(found);
     return true;
 }
@@ -149,7 +164,8 @@ public:
     std::string_view name() const override { return "exact feature"; }
 
     void apply(Batch& batch) const override {
-        const ContactRequest request{options_.max_contacts, batch.stop()};
+        const ContactRequest request{options_.max_contacts, batch.stop(), options_.tolerance,
+                                     options_.duplicate_tolerance.value_or(options_.tolerance)};
         batch.keep_if([&](std::size_t i) {
             const Pair pair = batch.pairs()[i];
             // Without an "exact object" filter before, this filter also decides whether the pair counts.
@@ -171,12 +187,40 @@ private:
     ExactOptions options_;
 };
 
-void check(const ExactOptions& options) {
-    if (std::isfinite(options.margin) && options.margin >= 0) return;
-    throw Error(ErrorCode::bad_input, "the margin must be finite and >= 0");
+void check_length(double length, const std::string& what) {
+    if (std::isfinite(length) && length >= 0) return;
+    throw Error(ErrorCode::bad_input, what + " must be finite and >= 0");
 }
 
+void check(const ExactOptions& options) {
+    check_length(options.margin, "the margin");
+    check_length(options.tolerance, "the tolerance");
+    check_length(options.duplicate_tolerance.value_or(0), "the tolerance of duplicates");
+}
+
+class DepthFilter final : public Filter {
+public:
+    explicit DepthFilter(double min_depth) : min_depth_(min_depth) {}
+
+    std::string_view name() const override { return "depth"; }
+
+    void apply(Batch& batch) const override {
+        batch.keep_if([&](std::size_t i) {
+            const Finding& finding = batch.finding(i);
+            return finding.depth_kind == DepthKind::unknown || finding.depth_at_most >= min_depth_;
+        });
+    }
+
+private:
+    double min_depth_;
+};
+
 }  // namespace
+
+std::unique_ptr<Filter> make_depth_filter(double min_depth) {
+    check_length(min_depth, "the minimum depth");
+    return std::make_unique<DepthFilter>(min_depth);
+}
 
 std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, const ExactOptions& options,
                                                  const ShapedObjects* second) {

@@ -144,6 +144,7 @@ private:
         if (too_many) detail::BatchAccess::cut(batch, std::size_t(left_));
         left_ -= batch.pairs().size();
         summary_.collisions += batch.pairs().size();
+        for (const Finding& finding : batch.findings()) ++summary_.of_class[std::size_t(finding.collision_class)];
         if (sink_ && !batch.pairs().empty()) sink_(batch);
         if (too_many) {
             summary_.truncated = true;

@@ -163,10 +163,14 @@ private:
         finding.collision_class = CollisionClass::collision;
         if (!options_.features) return;
         const TriangleContact common = triangle_contact(a, b);
-        finding.collision_class =
-            common.meeting == TriangleMeeting::crossing ? CollisionClass::penetrating : CollisionClass::touching;
         finding.contacts = {contact_of(a, b, common)};
         finding.depth = finding.contacts[0].depth;
+        finding.depth_kind = DepthKind::least;
+        finding.depth_at_most = finding.depth;
+        const bool tolerated = options_.tolerance > 0 && finding.depth <= options_.tolerance;
+        finding.collision_class = common.meeting == TriangleMeeting::crossing && !tolerated
+                                      ? CollisionClass::penetrating
+                                      : CollisionClass::touching;
     }
 
     TriangleOptions options_;

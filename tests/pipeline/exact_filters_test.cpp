@@ -8,73 +8,21 @@
 #include <vector>
 
 #include "narrow_phase/motion/motion.hpp"
-#include "narrow_phase/object_pair.hpp"
 #include "octopair/error.hpp"
-#include "octopair/filters.hpp"
-#include "octopair/pipeline.hpp"
-#include "samples/meshes.hpp"
+#include "pipeline/exact_scene.hpp"
 #include "samples/random.hpp"
 
 namespace octopair::test {
 namespace {
 
-using samples::box_mesh;
 using samples::random_pose;
 using samples::RandomStream;
-
-/// Owns the objects that ShapedObjects borrows.
-struct Scene {
-    std::vector<Geometry> geometries;
-    std::vector<std::uint32_t> geometry;
-    std::vector<Pose> poses, end_poses;
-    std::vector<double> padding;
-
-    void add(shape::Any shape, const Pose& pose = {}) {
-        geometry.push_back(std::uint32_t(geometries.size()));
-        geometries.emplace_back(std::move(shape));
-        poses.push_back(pose);
-    }
-    ShapedObjects objects() const { return {geometries, geometry, poses, end_poses, padding}; }
-    PosedObject object(std::uint32_t i) const { return {detail::prepared(geometries[geometry[i]]), poses[i]}; }
-};
-
-struct Collision {
-    Pair pair;
-    Finding finding;
-};
-
-std::vector<Collision> find(const Scene& scene, const ExactOptions& options = {}, unsigned threads = 2) {
-    const ShapedObjects objects = scene.objects();
-    const std::vector<Box3d> boxes = boxes_of(objects);
-    Pipeline pipeline(threads);
-    pipeline.add(make_exact_object_filter(objects, options));
-    pipeline.add(make_exact_feature_filter(objects, options));
-    std::vector<Collision> collisions;
-    Options search;
-    search.margin = options.margin;
-    pipeline.run(
-        *make_local_engine(threads), {std::span(boxes), scene.padding},
-        [&](const Batch& batch) {
-            for (std::size_t i = 0; i < batch.pairs().size(); ++i) {
-                collisions.push_back({batch.pairs()[i], batch.findings()[i]});
-            }
-        },
-        search);
-    return collisions;
-}
 
 std::vector<Pair> pairs_of(const std::vector<Collision>& collisions) {
     std::vector<Pair> pairs;
     pairs.reserve(collisions.size());
     for (const Collision& collision : collisions) pairs.push_back(collision.pair);
     return pairs;
-}
-
-/// Returns the only collision of two objects.
-Finding collision_of(const Scene& scene, const ExactOptions& options = {}) {
-    const std::vector<Collision> collisions = find(scene, options);
-    EXPECT_EQ(collisions.size(), 1u);
-    return collisions.empty() ? Finding{} : collisions[0].finding;
 }
 
 std::vector<Pair> all_that_count(const Scene& scene, double margin) {
@@ -158,14 +106,6 @@ TEST(ExactFilters, DistancesAreThoseOfTheNearestPoints) {
     EXPECT_GT(apart, 20u);
 }
 
-/// Makes two box meshes, the second at `place`.
-Scene two_boxes(const Point3d& size_a, const Point3d& size_b, const Point3d& place) {
-    Scene scene;
-    scene.add(box_mesh({0, 0, 0}, size_a));
-    scene.add(box_mesh({0, 0, 0}, size_b), make_pose(place));
-    return scene;
-}
-
 TEST(ExactFilters, MeshInMesh) {
     const Finding inside = collision_of(two_boxes({10, 10, 10}, {1, 1, 1}, {2, 3, 4}));
     EXPECT_EQ(inside.collision_class, CollisionClass::contained);
@@ -175,8 +115,11 @@ TEST(ExactFilters, MeshInMesh) {
 
 TEST(ExactFilters, MeshesOnTopOfEachOther) {
     const Finding same = collision_of(two_boxes({1, 2, 3}, {1, 2, 3}, {0, 0, 0}));
-    EXPECT_EQ(same.collision_class, CollisionClass::penetrating);
-    EXPECT_FALSE(same.contacts.empty());
+    EXPECT_EQ(same.collision_class, CollisionClass::duplicate);
+    // Not the same corners: the space between two coordinates is no place for a third.
+    const Finding near = collision_of(two_boxes({1, 2, 3}, {1, 2, 3}, {std::nextafter(0.0, 1.0), 0x1p-52, 0}));
+    EXPECT_EQ(near.collision_class, CollisionClass::penetrating);
+    EXPECT_FALSE(near.contacts.empty());
 }
 
 TEST(ExactFilters, FacesInOnePlane) {
@@ -190,9 +133,11 @@ TEST(ExactFilters, FacesInOnePlane) {
 }
 
 TEST(ExactFilters, OneMeshTwice) {
-    const Finding twice = collision_of(two_boxes({2, 3, 4}, {2, 3, 4}, {0, 0, 0}));
-    EXPECT_EQ(twice.collision_class, CollisionClass::penetrating);
-    EXPECT_EQ(twice.depth, 1);  // depth of the middle; no corner is inside
+    EXPECT_EQ(collision_of(two_boxes({2, 3, 4}, {2, 3, 4}, {0, 0, 0})).collision_class, CollisionClass::duplicate);
+    const Finding longer = collision_of(two_boxes({2, 3, 4}, {2, 3, 5}, {0, 0, 0}));
+    EXPECT_EQ(longer.collision_class, CollisionClass::penetrating);
+    EXPECT_EQ(longer.depth, 2);  // no corner is inside
+    EXPECT_EQ(longer.depth_kind, DepthKind::least);
 }
 
 TEST(ExactFilters, CoaxialWallsThatOverlap) {
