@@ -48,7 +48,7 @@ _octopair() {
     case $subcommand in
         detect)
             if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --exclude --same-parent --baseline --report --objects --margin --padding --output --order
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --tolerance --duplicate-tolerance --min-depth --weld --exclude --same-parent --baseline --report --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --verify --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else

@@ -161,7 +161,10 @@ TEST_F(Stages, StatsListTheFilters) {
     EXPECT_EQ(told["filters"][3]["in"], told["filters"][2]["out"]);
     EXPECT_EQ(told["filters"][3]["out"], 0);
     const std::string summary = run("detect t.obj --output p.npy").err;
-    EXPECT_NE(summary.find("pairs       1\ncandidates  2\nfilter      bounding spheres: "), std::string::npos)
+    EXPECT_NE(summary.find(
+                  "pairs       1\nclasses     1 collision\nnot closed  3 of 3 objects have no inside (--weld joins "
+                  "vertices): t.obj/flat, t.obj/beside, t.obj/through\ncandidates  2\nfilter      bounding spheres: "),
+              std::string::npos)
         << summary;
     EXPECT_NE(summary.find("\nfilter      exact object: 1 of "), std::string::npos) << summary;
     EXPECT_FALSE(stats("t.obj --stage pairs").contains("filters"));
@@ -173,7 +176,7 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     ASSERT_EQ(fewer.status, 0);
     EXPECT_NE(fewer.err.find("\nchanges     0 new, 1 same, 2 gone\n"), std::string::npos) << fewer.err;
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
-    EXPECT_NE(content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,same\n0,1,"), std::string::npos);
+    EXPECT_NE(content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,same\n0,1,"), std::string::npos);
     // The result is the next baseline. Rows that are marked as gone are not part of that baseline.
     ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
     ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);

@@ -24,10 +24,14 @@ std::vector<Finding> findings() {
     findings[0].nearest = {{{1, 2, 3}, {1, 2, 3.1}}};
     findings[1].collision_class = CollisionClass::penetrating;
     findings[1].depth = 1.0 / 3;
+    findings[1].depth_kind = DepthKind::at_least;
+    findings[1].depth_at_most = 0.5;
+    findings[1].open = {false, true};
     findings[1].time = 0.5;
     findings[1].contacts = {{{0, 1e300, -0.0}, {0, 0, 1}, 1.0 / 3, 7, Contact::no_feature}};
     findings[1].more_contacts = true;
     findings[2].collision_class = CollisionClass::touching;
+    findings[2].depth_kind = DepthKind::least;
     return findings;
 }
 
@@ -46,30 +50,33 @@ std::string written(const std::string& ending, const CollisionForm& form, const 
 
 TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
     const auto found = findings();
-    EXPECT_EQ(written(".jsonl", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
-              R"({"a":0,"b":1,"a_name":"left, \"l\"","class":"clearance","time":0,"distance":0.1,)"
-              R"("nearest":[[1,2,3],[1,2,3.1]]}
+    EXPECT_EQ(
+        written(".jsonl", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
+        R"({"a":0,"b":1,"a_name":"left, \"l\"","class":"clearance","time":0,"distance":0.1,)"
+        R"("nearest":[[1,2,3],[1,2,3.1]]}
 {"a":0,"b":2,"a_name":"left, \"l\"","b_name":"r)"
-              "\xEF\xBF\xBD"
-              R"(ight","class":"penetrating","time":0.5,"depth":0.3333333333333333,)"
-              R"("contacts":[{"point":[0,1e+300,-0],"normal":[0,0,1],"depth":0.3333333333333333,"a_feature":7}],)"
-              R"("more_contacts":true}
+        "\xEF\xBF\xBD"
+        R"(ight","class":"penetrating","time":0.5,"depth":0.3333333333333333,"depth_kind":"at_least","depth_at_most":0.5,)"
+        R"("contacts":[{"point":[0,1e+300,-0],"normal":[0,0,1],"depth":0.3333333333333333,"a_feature":7}],)"
+        R"("more_contacts":true,"b_open":true}
 {"a":1,"b":2,"b_name":"r)"
-              "\xEF\xBF\xBD"
-              R"(ight","class":"touching","time":0,"depth":0,"contacts":[]}
+        "\xEF\xBF\xBD"
+        R"(ight","class":"touching","time":0,"depth":0,"depth_kind":"least","contacts":[]}
 )");
     EXPECT_EQ(written(".jsonl", {}, {pairs, {}}), "{\"a\":0,\"b\":1}\n{\"a\":0,\"b\":2}\n{\"a\":1,\"b\":2}\n");
 }
 
 TEST(CollisionWriter, CsvLeavesEmptyWhatIsNotKnown) {
     const auto found = findings();
-    const std::string header = "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts";
+    const std::string header =
+        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open";
     EXPECT_EQ(written(".csv", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
               header +
-                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,\n"
-                  "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,0 1e+300 -0,true\n"
-                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,,\n");
-    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,,\n");
+                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,,,\n"
+                  "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,0 1e+300 "
+                  "-0,true,at_least,b\n"
+                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,,,least,\n");
+    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,,,,\n");
 }
 
 TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
@@ -98,8 +105,9 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
                                                                        std::string(old.substr(0, old.size() - 1)) +
                                                                        ",\"change\":\"gone\"}\n");
     EXPECT_EQ(written(".csv", form, {pair, {}, changes}, {old}),
-              "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,change\n0,1,,,,,,,,,,new\n"
-              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3,true,gone\n");
+              "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,change\n0,1,,,"
+              ",,,,,,,,,new\n"
+              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3,true,,,gone\n");
 }
 
 class BaselineTest : public ::testing::Test {

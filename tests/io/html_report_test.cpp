@@ -23,6 +23,7 @@ std::vector<Finding> reported_findings() {
     std::vector<Finding> findings(2);
     findings[0].collision_class = CollisionClass::penetrating;
     findings[0].depth = 0.5;
+    findings[0].depth_kind = DepthKind::at_least;
     findings[0].contacts = {{{0.75, 0.5, 0.5}, {1, 0, 0}, 0.5}};
     findings[1].collision_class = CollisionClass::clearance;
     findings[1].distance = 0.25;
@@ -64,7 +65,7 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
     const std::string text = page(scene, {reported_pairs, found, {}});
     EXPECT_EQ(
         data_of(text, "rows"),
-        json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5]],[1,2,1,null,0.25,null,null,null,0,[0,0,0]]]"));
+        json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5],1],[1,2,1,null,0.25,null,null,null,0,[0,0,0],0]]"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 1u);
     EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1]"));
@@ -96,7 +97,7 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
         "t", {{{reported_names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
     const std::string text =
         page(scene, {pair, {}, changes}, {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"contacts":[{}]})"});
-    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null]]"));
+    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null,0]]"));
     EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1]])"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 2u);

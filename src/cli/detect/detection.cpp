@@ -1,10 +1,14 @@
 #include "cli/detect/detection.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
 #include "base/timed.hpp"
+#include "cli/detect/filter_chain.hpp"
 #include "cli/detect/frame_search.hpp"
+#include "cli/input/shaped_set.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_MPI
 #include "cli/ranks/cluster.hpp"
@@ -45,6 +49,9 @@ private:
         report_.moving = inputs_.frames.moving;
         report_.objects = inputs_.first.total + inputs_.second.total;
         report_.engine = describe_engine(request_.engine);
+#ifdef OCTOPAIR_WITH_PIPELINE
+        describe_shapes();
+#endif
 #ifdef OCTOPAIR_WITH_MPI
         if (request_.engine.has_ranks()) {
             check_index_width(run_);
@@ -52,6 +59,27 @@ private:
         }
 #endif
     }
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+    void describe_shapes() {
+        if (stage_of(request_) == Stage::features) {
+            report_.tolerance = tolerance_of(request_, {inputs_.first, run_.join() ? &inputs_.second : nullptr});
+            report_.tolerance_is_precision = !request_.pipeline.tolerance && *report_.tolerance > 0;
+        }
+        if (stage_of(request_) == Stage::pairs) return;
+        constexpr std::size_t named = 3;
+        for (const InputSet* set : {&inputs_.first, &inputs_.second}) {
+            if (set->shaped == nullptr) continue;
+            const std::vector<std::uint32_t> open = set->shaped->open_objects();
+            report_.open_objects += open.size();
+            for (std::size_t i = 0; i < open.size() && report_.first_open.size() < named; ++i) {
+                const std::vector<std::string>& names = set->scene.names;
+                const bool has_name = open[i] < names.size() && !names[open[i]].empty();
+                report_.first_open.push_back(has_name ? names[open[i]] : fmt::format("object {}", open[i]));
+            }
+        }
+    }
+#endif
 
 #ifdef OCTOPAIR_WITH_MPI
     void read_inputs() {
@@ -124,6 +152,7 @@ void DetectReport::add(const PipelineSummary& summary, double written) {
     seconds.detect += summary.search.seconds;
     const double search = summary.search.seconds + summary.search.verification.seconds;
     seconds.filter += std::max(0.0, summary.seconds - search - written);
+    for (std::size_t i = 0; i < of_class.size(); ++i) of_class[i] += summary.of_class[i];
     filters.resize(summary.filters.size());
     for (std::size_t i = 0; i < filters.size(); ++i) {
         const FilterCounts& counts = summary.filters[i];

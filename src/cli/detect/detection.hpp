@@ -57,12 +57,17 @@ struct DetectReport {
     bool moving = false;
     std::uint64_t pairs = 0;  ///< what came out, of all frames
     bool truncated = false;
-    bool verified = false;                    ///< the pairs of boxes in each frame so far
-    std::string_view not_checked;             ///< in one of the frames at least (Verification)
-    std::uint64_t candidates = 0;             ///< pairs of boxes, as far as they were looked for
-    std::vector<FilterCounts> filters;        ///< of all frames
-    std::optional<io::ChangeCounts> changes;  ///< where there is a baseline
-    std::optional<EventCounts> events;        ///< if they were asked for; then `entries` and `steps` are not known
+    bool verified = false;                                       ///< the pairs of boxes in each frame so far
+    std::string_view not_checked;                                ///< in one of the frames at least (Verification)
+    std::uint64_t candidates = 0;                                ///< pairs of boxes, as far as they were looked for
+    std::vector<FilterCounts> filters;                           ///< of all frames
+    std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
+    std::optional<double> tolerance;                             ///< of the exact stages
+    bool tolerance_is_precision = false;                         ///< the tolerance is the precision of mesh files
+    std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
+    std::vector<std::string> first_open;                         ///< names of the first of them
+    std::optional<io::ChangeCounts> changes;                     ///< where there is a baseline
+    std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;

@@ -1,9 +1,13 @@
 #include "cli/detect/filter_chain.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <variant>
 
 #include "cli/detect/exclusions.hpp"
 #include "cli/input/shaped_set.hpp"
+#include "io/formats.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::cli {
@@ -35,7 +39,8 @@ public:
 
 private:
     void add_exact(const DetectRequest& request) {
-        ExactOptions options{.margin = request.margin};
+        ExactOptions options{.margin = request.margin, .tolerance = tolerance_of(request, sets_)};
+        options.duplicate_tolerance = request.pipeline.duplicate_tolerance;
         options.max_contacts = request.pipeline.max_contacts.value_or(options.max_contacts);
         const ShapedObjects first = shaped(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
@@ -44,15 +49,22 @@ private:
         pipeline_.add(make_oriented_box_filter(first, request.margin, other));
         pipeline_.add(make_exact_object_filter(first, options, other));
         if (stage_of(request) == Stage::features) pipeline_.add(make_exact_feature_filter(first, options, other));
+        add_min_depth(request);
+    }
+
+    void add_min_depth(const DetectRequest& request) {
+        if (request.pipeline.min_depth) pipeline_.add(make_depth_filter(*request.pipeline.min_depth));
     }
 
     void add_triangles(const DetectRequest& request) {
         TriangleOptions options{.margin = request.margin, .features = stage_of(request) == Stage::features};
         options.adjacent = request.pipeline.adjacent.value_or(options.adjacent);
         options.threads = local_threads(request.engine);
+        options.tolerance = tolerance_of(request, sets_);
         const TriangleSet first = triangles(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
         pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));
+        add_min_depth(request);
     }
 
     static ShapedObjects shaped(const InputSet& set) { return set.shaped->objects(set.padding); }
@@ -65,7 +77,32 @@ private:
     Pipeline pipeline_;
 };
 
+/// Returns the largest coordinate of the boxes of a set that has mesh files; otherwise 0.
+double largest_in_mesh_files(const InputSet& set) {
+    const auto is_mesh = [](const Part& part) { return io::is_mesh_file(part.path); };
+    if (std::none_of(set.parts.begin(), set.parts.end(), is_mesh)) return 0;
+    double largest = 0;
+    std::visit(
+        [&](const auto& boxes) {
+            for (const auto& box : boxes.span()) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    largest = std::max({largest, std::fabs(double(box.min[axis])), std::fabs(double(box.max[axis]))});
+                }
+            }
+        },
+        set.scene.boxes);
+    return largest;
+}
+
 }  // namespace
+
+double tolerance_of(const DetectRequest& request, const SetPair& sets) {
+    if (request.pipeline.tolerance) return *request.pipeline.tolerance;
+    const double largest =
+        std::max(largest_in_mesh_files(sets.first), sets.second != nullptr ? largest_in_mesh_files(*sets.second) : 0);
+    constexpr double float32_step = 0x1p-23;
+    return 2 * largest * float32_step;
+}
 
 std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
                                                const std::stop_token& stop) {

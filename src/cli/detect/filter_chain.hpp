@@ -18,6 +18,10 @@ struct SetPair {
     const InputSet* second = nullptr;
 };
 
+/// Returns the tolerance of --tolerance. Without it: two steps of float32 at the largest coordinate of mesh files, whose
+/// coordinates have that precision; 0 if there are no mesh files.
+double tolerance_of(const DetectRequest& request, const SetPair& sets);
+
 class FilterChain {
 public:
     virtual ~FilterChain() = default;

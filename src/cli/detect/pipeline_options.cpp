@@ -52,7 +52,8 @@ std::vector<std::string> all_inputs(const DetectRequest& request) {
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {
     for (const std::string& input : all_inputs(request)) {
-        if (!io::is_mesh_file(input) && !io::is_json_file(input)) return input;
+        const io::SceneFormat format = io::scene_format(input);
+        if (format == io::SceneFormat::npy || format == io::SceneFormat::csv) return input;
     }
     return std::nullopt;
 }
@@ -82,6 +83,22 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
             "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
             "with --stage features: maximum contacts of a pair, the deepest first (default 16)")
         .type_name("N");
+    const auto add_length = [&](const char* name, std::optional<double>& value, const char* what) {
+        const auto parse = [name, &value](const std::string& text) { value = parse_length(name, text); };
+        command.add_option(name, parse, what).type_name("LENGTH");
+    };
+    add_length(
+        "--tolerance", request.tolerance,
+        "with --stage features: the class is touching, not penetrating, if a translation of at most this length is "
+        "found to separate the objects (default: the precision of the coordinates in mesh files; otherwise 0)");
+    add_length(
+        "--duplicate-tolerance", request.duplicate_tolerance,
+        "with --stage features: objects of the same geometry are duplicates if no corner is further than this from "
+        "its counterpart (default: the tolerance)");
+    add_length("--min-depth", request.min_depth,
+               "with --stage features: leave out collisions that are certainly less deep");
+    add_length("--weld", request.weld,
+               "close gaps in meshes: join vertices at the edges of gaps that are at most this far apart");
     command.add_option("--exclude", request.exclude, "leave out pairs by rules on names, see docs/formats.md")
         .type_name("RULES.json");
     command
@@ -125,7 +142,8 @@ std::string filter_option(const DetectRequest& request) {
     return request.pipeline.exclude.empty() ? "--same-parent exclude" : "--exclude";
 }
 
-void check_triangle_options(const DetectRequest& request) {
+/// Checks the options that need a stage, or objects of a kind.
+void check_exact_options(const DetectRequest& request) {
     const bool exact = stage_of(request) != Stage::pairs;
     const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
     if (request.pipeline.adjacent && !(triangles && exact)) {
@@ -133,6 +151,18 @@ void check_triangle_options(const DetectRequest& request) {
     }
     if (request.pipeline.max_contacts && (triangles || stage_of(request) != Stage::features)) {
         refuse("--max-contacts: only with --stage features and --objects node");
+    }
+    for (const auto& [option, value] :
+         {std::pair("--tolerance", request.pipeline.tolerance), std::pair("--min-depth", request.pipeline.min_depth),
+          std::pair("--duplicate-tolerance", request.pipeline.duplicate_tolerance)}) {
+        if (value && stage_of(request) != Stage::features)
+            refuse(fmt::format("{}: only with --stage features", option));
+    }
+    if (request.pipeline.duplicate_tolerance && triangles) {
+        refuse("--duplicate-tolerance: only with --objects node");
+    }
+    if (request.pipeline.weld && (triangles || !exact)) {
+        refuse("--weld: only with --stage objects or features and --objects node");
     }
     if (!triangles || !has_filters(request)) return;
     if (!request.pipeline.exclude.empty()) refuse("--exclude: not with --objects triangle");
@@ -163,7 +193,7 @@ void check_outcome_options(const DetectRequest& request) {
 }  // namespace
 
 void check_pipeline_options(const DetectRequest& request) {
-    check_triangle_options(request);
+    check_exact_options(request);
     check_outcome_options(request);
     if (!has_filters(request)) return;
     const std::string asked = filter_option(request);

@@ -24,6 +24,7 @@ struct PipelineRequest {
     std::optional<bool> same_parent;
     std::optional<AdjacentTriangles> adjacent;
     std::optional<std::uint32_t> max_contacts;
+    std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
     std::string baseline;  ///< path of an older result, or empty
     std::string report;    ///< path of the HTML report to write, or empty
 };
@@ -31,7 +32,8 @@ struct PipelineRequest {
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
-/// Adds --stage, --adjacent, --max-contacts, --exclude, --same-parent, --baseline and --report.
+/// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent, --baseline and
+/// --report.
 void add_pipeline_options(Command& command, PipelineRequest& request);
 
 /// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the

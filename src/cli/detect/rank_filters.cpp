@@ -38,10 +38,25 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
         cluster_.together(
             [&] { summary = filters_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
         const std::uint64_t own = join(summary, options);
-        if (kept != nullptr) kept->cut(own);
+        if (kept != nullptr) {
+            kept->cut(own);
+            summary.of_class = kept->of_class();
+        }
+        add_classes(summary);
     }
     summary.seconds = seconds;
     return summary;
+}
+
+/// Sums the classes of all ranks. They are unknown if the limit left out collisions that no rank keeps.
+void RankFilters::add_classes(PipelineSummary& summary) {
+    const auto of_ranks = cluster_.all_gather(summary.of_class);
+    summary.of_class = {};
+    std::uint64_t all = 0;
+    for (const auto& own : of_ranks) {
+        for (std::size_t i = 0; i < own.size(); ++i) all += own[i], summary.of_class[i] += own[i];
+    }
+    if (all != summary.collisions) summary.of_class = {};
 }
 
 std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options) {

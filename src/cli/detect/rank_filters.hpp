@@ -23,6 +23,7 @@ public:
 private:
     /// Replaces `summary` by the sums over all ranks. Returns how many collisions this rank keeps under the limit.
     std::uint64_t join(PipelineSummary& summary, const Options& options);
+    void add_classes(PipelineSummary& summary);
 
     Cluster& cluster_;
     std::unique_ptr<FilterChain> filters_;

@@ -14,19 +14,46 @@
 
 namespace octopair::cli {
 
-ShapedSet::ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop)
+ShapedSet::ShapedSet(io::LoadedShapes loaded, const HowToPrepare& how, const std::stop_token& stop)
     : loaded_(std::move(loaded)) {
-    prepare(std::exchange(loaded_.shapes, {}), threads, stop);
+    prepare(std::exchange(loaded_.shapes, {}), how, stop);
 }
 
-void ShapedSet::prepare(std::vector<shape::Any> shapes, unsigned threads, const std::stop_token& stop) {
+void ShapedSet::prepare(std::vector<shape::Any> shapes, const HowToPrepare& how, const std::stop_token& stop) {
+    const std::vector<double> scale_of = how.weld > 0 ? scales() : std::vector<double>();
     std::vector<std::optional<Geometry>> ready(shapes.size());
-    Team(threads).for_each(shapes.size(), [&](std::size_t i, unsigned) {
+    Team(how.threads).for_each(shapes.size(), [&](std::size_t i, unsigned) {
         if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+        auto* const mesh = std::get_if<shape::Mesh>(&shapes[i]);
+        if (mesh != nullptr && how.weld > 0 && scale_of[i] > 0) weld(*mesh, how.weld / scale_of[i]);
         ready[i].emplace(std::move(shapes[i]));
     });
     geometries_.reserve(ready.size());
     for (auto& geometry : ready) geometries_.push_back(std::move(*geometry));
+}
+
+/// Returns the largest scale of the poses of each shape: the largest factor by which a pose lengthens an axis of the shape.
+std::vector<double> ShapedSet::scales() const {
+    std::vector<double> largest;
+    for (std::size_t i = 0; i < loaded_.geometry.size(); ++i) {
+        const std::uint32_t shape = loaded_.geometry[i];
+        if (shape >= largest.size()) largest.resize(shape + 1, 0);
+        const auto& rows = loaded_.poses[i].rows;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            largest[shape] = std::max(largest[shape], std::hypot(rows[0][axis], rows[1][axis], rows[2][axis]));
+        }
+    }
+    return largest;
+}
+
+std::vector<std::uint32_t> ShapedSet::open_objects() const {
+    std::vector<bool> open(geometries_.size());
+    for (std::size_t i = 0; i < open.size(); ++i) open[i] = !geometries_[i].closed();
+    std::vector<std::uint32_t> objects;
+    for (std::uint32_t i = 0; i < loaded_.geometry.size(); ++i) {
+        if (open[loaded_.geometry[i]]) objects.push_back(i);
+    }
+    return objects;
 }
 
 ShapedObjects ShapedSet::objects(std::span<const double> padding) const {
@@ -92,23 +119,23 @@ bool has_planes(const InputSet& set) { return set.shaped != nullptr && set.shape
 
 }  // namespace
 
-void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop) {
+void make_shaped(InputSet& set, const HowToPrepare& how, const std::stop_token& stop) {
     if (set.scene.triangles && set.scene.lacks_boxes())
-        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles, threads));
+        set.scene.boxes = copy_of(boxes_of(set.scene.triangles->triangles, how.threads));
     if (!set.scene.shapes) return;
     set.moves_meanwhile = !set.scene.shapes->end_poses.empty();
     with_file(set, [&] {
-        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), threads, stop);
+        set.shaped = std::make_shared<ShapedSet>(std::move(*std::exchange(set.scene.shapes, {})), how, stop);
         set.padding = set.shaped->padding();
         if (set.scene.lacks_boxes()) set.scene.boxes = copy_of(boxes_of(set.shaped->objects()));
     });
 }
 
-void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop) {
-    make_shaped(first, threads, stop);
-    make_shaped(second, threads, stop);
+void make_shaped(InputSet& first, InputSet& second, const HowToPrepare& how, const std::stop_token& stop) {
+    make_shaped(first, how, stop);
+    make_shaped(second, how, stop);
     if (!has_planes(first) && !has_planes(second)) return;
-    const ShapedSet around_first(bounds_of(first), 1, {}), around_second(bounds_of(second), 1, {});
+    const ShapedSet around_first(bounds_of(first), {1}, {}), around_second(bounds_of(second), {1}, {});
     const ShapedSet& first_shapes = first.shaped != nullptr ? *first.shaped : around_first;
     const ShapedSet& second_shapes = second.shaped != nullptr ? *second.shaped : around_second;
     const JoinBoxes boxes = boxes_of(first_shapes.objects(), second_shapes.objects());

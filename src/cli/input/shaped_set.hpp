@@ -9,11 +9,17 @@
 
 namespace octopair::cli {
 
+struct HowToPrepare {
+    unsigned threads = 0;
+    double weld =
+        0;  ///< in the world: vertices of a mesh that are at most this far apart are joined; 0: no mesh is changed
+};
+
 class ShapedSet {
 public:
-    /// Prepares the shapes on `threads` threads; 0 means one per core.
+    /// Prepares the shapes on `how.threads` threads; 0 means one per core.
     /// Throws: what Geometry throws; Error{cancelled}.
-    ShapedSet(io::LoadedShapes loaded, unsigned threads, const std::stop_token& stop);
+    ShapedSet(io::LoadedShapes loaded, const HowToPrepare& how, const std::stop_token& stop);
     ShapedSet(const ShapedSet&) = delete;
     ShapedSet& operator=(const ShapedSet&) = delete;
 
@@ -24,12 +30,15 @@ public:
     std::span<const double> padding() const { return loaded_.padding; }
     std::span<const std::uint32_t> parents() const { return loaded_.parents; }
     bool has_planes() const;
+    /// Returns the objects whose geometry is not closed (Geometry::closed).
+    std::vector<std::uint32_t> open_objects() const;
     bool has_groups() const { return !loaded_.groups.empty() || !loaded_.masks.empty(); }
     /// Returns the groups and masks of all objects, with defaults for objects without any.
     GroupMasks group_masks();
 
 private:
-    void prepare(std::vector<shape::Any> shapes, unsigned threads, const std::stop_token& stop);
+    void prepare(std::vector<shape::Any> shapes, const HowToPrepare& how, const std::stop_token& stop);
+    std::vector<double> scales() const;
 
     io::LoadedShapes loaded_;
     std::vector<Geometry> geometries_;
@@ -39,10 +48,10 @@ private:
 /// of triangles, only computes the boxes.
 /// Throws: what ShapedSet throws; Error{bad_input} for poses that do not fit their shapes. The message begins with the file if
 /// the set has only one.
-void make_shaped(InputSet& set, unsigned threads, const std::stop_token& stop);
+void make_shaped(InputSet& set, const HowToPrepare& how, const std::stop_token& stop);
 
 /// Does the same for both sets of a join. `second` may be empty. A plane gets a box that encloses the extent of the other set.
 /// Throws: what make_shaped() of one set throws.
-void make_shaped(InputSet& first, InputSet& second, unsigned threads, const std::stop_token& stop);
+void make_shaped(InputSet& first, InputSet& second, const HowToPrepare& how, const std::stop_token& stop);
 
 }  // namespace octopair::cli

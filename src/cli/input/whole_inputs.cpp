@@ -12,7 +12,7 @@ void WholeInputs::read(const DetectRequest& request, const std::stop_token& stop
     first = read_input_set(request.inputs, content, stop);
     if (!request.against.empty()) second = read_input_set({request.against}, content, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_shaped(first, second, local_threads(request.engine), stop);
+    make_shaped(first, second, {local_threads(request.engine), request.pipeline.weld.value_or(0)}, stop);
 #endif
     const io::LoadedScene &a = first.scene, &b = second.scene;
     frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request);

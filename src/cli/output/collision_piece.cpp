@@ -12,8 +12,9 @@ using Block = CollisionPiece::Block;
 
 void append_finding(Block& block, const Finding& finding) {
     block.contacts.insert(block.contacts.end(), finding.contacts.begin(), finding.contacts.end());
-    block.findings.push_back({finding.collision_class, finding.more_contacts, std::uint32_t(finding.contacts.size()),
-                              finding.distance, finding.depth, finding.time, finding.nearest, finding.note});
+    block.findings.push_back({finding.collision_class, finding.depth_kind, finding.open, finding.more_contacts,
+                              std::uint32_t(finding.contacts.size()), finding.distance, finding.depth,
+                              finding.depth_at_most, finding.time, finding.nearest, finding.note});
 }
 
 /// Lengths of the arrays of a block.
@@ -65,6 +66,9 @@ std::vector<Finding> CollisionPiece::Block::full_findings() const {
                    .distance = flat.distance,
                    .nearest = flat.nearest,
                    .depth = flat.depth,
+                   .depth_kind = flat.depth_kind,
+                   .depth_at_most = flat.depth_at_most,
+                   .open = flat.open,
                    .time = flat.time,
                    .contacts = {contact, end},
                    .more_contacts = flat.more_contacts,
@@ -72,6 +76,14 @@ std::vector<Finding> CollisionPiece::Block::full_findings() const {
         contact = end;
     }
     return full;
+}
+
+std::array<std::uint64_t, collision_classes> CollisionPiece::of_class() const {
+    std::array<std::uint64_t, collision_classes> counts = {};
+    for (const Block& block : blocks_) {
+        for (const FlatFinding& finding : block.findings) ++counts[std::size_t(finding.collision_class)];
+    }
+    return counts;
 }
 
 void CollisionPiece::add(std::span<const Pair> pairs, std::span<const Finding> findings) {

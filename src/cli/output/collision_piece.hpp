@@ -19,9 +19,11 @@ public:
     /// A Finding without its list of contacts. `contacts` is their number; they are in Block::contacts.
     struct FlatFinding {
         CollisionClass collision_class;
+        DepthKind depth_kind;
+        std::array<bool, 2> open;
         bool more_contacts;
         std::uint32_t contacts;
-        double distance, depth, time;
+        double distance, depth, depth_at_most, time;
         std::array<Point3d, 2> nearest;
         std::uint64_t note;
     };
@@ -34,6 +36,8 @@ public:
     };
 
     std::uint64_t size() const { return size_; }
+    /// Returns the number of collisions of each class.
+    std::array<std::uint64_t, collision_classes> of_class() const;
     std::span<const Block> blocks() const { return blocks_; }
     /// Appends collisions. Requires: in all calls `findings` has one element per pair, or in all calls it is empty.
     void add(std::span<const Pair> pairs, std::span<const Finding> findings);

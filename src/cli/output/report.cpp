@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command/option_values.hpp"
+#include "io/results/collision_row.hpp"
 
 namespace octopair::cli {
 
@@ -81,6 +82,34 @@ std::string verified_text(const DetectReport& report) {
     return text + '\n';
 }
 
+/// Returns the lines about the exact stages: classes, tolerance, and objects without an inside.
+std::string exact_text(const DetectReport& report) {
+    std::string text, classes;
+    for (std::size_t i = 1; i < report.of_class.size(); ++i) {
+        if (report.of_class[i] == 0) continue;
+        classes += fmt::format("{}{} {}", classes.empty() ? "" : ", ", grouped(report.of_class[i]),
+                               io::word_of(CollisionClass(i)));
+    }
+    if (!classes.empty()) text += fmt::format("classes     {}\n", classes);
+    if (report.tolerance) {
+        text += fmt::format("tolerance   {:.3g}{}\n", *report.tolerance,
+                            report.tolerance_is_precision ? " (the precision of mesh files)" : "");
+    }
+    if (report.open_objects == 0) return text;
+    return text + fmt::format("not closed  {} of {} objects have no inside (--weld joins vertices): {}{}\n",
+                              grouped(report.open_objects), grouped(report.objects), fmt::join(report.first_open, ", "),
+                              report.open_objects > report.first_open.size() ? ", ..." : "");
+}
+
+/// Returns the counts of all classes that collisions have.
+nlohmann::ordered_json classes_json(const DetectReport& report) {
+    nlohmann::ordered_json classes = nlohmann::ordered_json::object();
+    for (std::size_t i = 1; i < report.of_class.size(); ++i) {
+        if (report.of_class[i] > 0) classes[std::string(io::word_of(CollisionClass(i)))] = report.of_class[i];
+    }
+    return classes;
+}
+
 /// Returns a line per filter: pairs out and in, and the seconds summed over all threads.
 std::string filters_text(const DetectReport& report) {
     if (report.filters.empty()) return {};
@@ -109,7 +138,7 @@ std::string summary_text(const DetectReport& report) {
         text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
-    text += filters_text(report) + verified_text(report) + time_text(report);
+    text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
     if (!report.events) {
         text += fmt::format("detect      encode {}, count {}, scatter {}, scan {}\n", duration(steps.encode),
                             duration(steps.count), duration(steps.scatter), duration(steps.scan));
@@ -136,6 +165,10 @@ std::string stats_json(const DetectReport& report) {
     if (report.engine.ranks > 0) stats["ranks"] = report.engine.ranks;
     if (!report.engine.server.empty()) stats["server"] = report.engine.server;
     if (!report.filters.empty()) stats.update({{"candidates", report.candidates}, {"filters", filters_json(report)}});
+    const nlohmann::ordered_json classes = classes_json(report);
+    if (!classes.empty()) stats["classes"] = classes;
+    if (report.tolerance) stats["tolerance"] = *report.tolerance;
+    if (report.open_objects > 0) stats["not_closed"] = report.open_objects;
     if (report.changes) {
         const io::ChangeCounts& changes = *report.changes;
         stats.update({{"new", changes.begun}, {"same", changes.same}, {"gone", changes.gone}});

@@ -40,7 +40,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     InputSet inputs = read_still_set(what.inputs, what, stop), against;
     if (!what.against.empty()) against = read_still_set({what.against}, what, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_shaped(inputs, against, 0, stop);
+    make_shaped(inputs, against, {}, stop);
 #endif
     const Paddings padding(what, {inputs.scene.objects, against.scene.objects}, stop);
     if (!what.padding.empty()) {

@@ -44,8 +44,15 @@ struct CollisionRows {
 
 /// Returns the word for a class in result files, for example "penetrating".
 constexpr std::string_view word_of(CollisionClass collision_class) {
-    constexpr std::string_view words[] = {"unknown", "clearance", "collision", "touching", "penetrating", "contained"};
+    constexpr std::string_view words[] = {"unknown",     "clearance", "collision", "touching",
+                                          "penetrating", "contained", "duplicate"};
+    static_assert(std::size(words) == collision_classes);
     return words[std::size_t(collision_class)];
+}
+/// Returns the word for a kind of depth, for example "at_least".
+constexpr std::string_view word_of(DepthKind kind) {
+    constexpr std::string_view words[] = {"unknown", "least", "at_least"};
+    return words[std::size_t(kind)];
 }
 constexpr std::string_view word_of(Change change) {
     constexpr std::string_view words[] = {"new", "same", "gone"};

@@ -69,9 +69,16 @@ private:
             append("distance", json_number(finding.distance));
             append("nearest", fmt::format("[{},{}]", point_json(finding.nearest[0]), point_json(finding.nearest[1])));
         } else if (form_.features) {
-            append("depth", json_number(finding.depth));
+            if (finding.depth_kind != DepthKind::unknown) {
+                append("depth", json_number(finding.depth));
+                append("depth_kind", fmt::format("\"{}\"", word_of(finding.depth_kind)));
+                if (finding.depth_kind == DepthKind::at_least)
+                    append("depth_at_most", json_number(finding.depth_at_most));
+            }
             append_contacts(finding);
         }
+        if (finding.open[0]) append("a_open", "true");
+        if (finding.open[1]) append("b_open", "true");
     }
 
     void append_contacts(const Finding& finding) {
@@ -93,7 +100,7 @@ class CollisionCsvWriter final : public CollisionWriter {
 public:
     CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form)
         : out_(std::move(out)), form_(form) {
-        out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts");
+        out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open");
         out_->write(form_.changes ? std::string_view(",change\n") : std::string_view("\n"));
     }
 
@@ -121,6 +128,8 @@ public:
             append(listed ? std::to_string(contacts->size()) : std::string());
             append(old_points(row));
             append(old_field(row, "more_contacts"));
+            append(old_field(row, "depth_kind"));
+            append(std::string(row.contains("a_open") ? "a" : "") + (row.contains("b_open") ? "b" : ""));
             append(word_of(Change::gone));
             line_ += '\n';
             out_->write(std::string_view(line_).substr(1));
@@ -178,13 +187,16 @@ private:
     void append_finding(const Finding& finding) {
         const CollisionClass what = finding.collision_class;
         const bool known = what != CollisionClass::unknown, features = form_.features && meet(what);
+        const bool deep = features && finding.depth_kind != DepthKind::unknown;
         append(known ? word_of(what) : std::string_view());
         append(known && !meet(what) ? json_number(finding.distance) : std::string());
-        append(features ? json_number(finding.depth) : std::string());
+        append(deep ? json_number(finding.depth) : std::string());
         append(known && form_.times ? json_number(finding.time) : std::string());
         append(features ? std::to_string(finding.contacts.size()) : std::string());
         append(points(finding));
         append(features && finding.more_contacts ? "true" : "");
+        append(deep ? word_of(finding.depth_kind) : std::string_view());
+        append(std::string(finding.open[0] ? "a" : "") + (finding.open[1] ? "b" : ""));
     }
 
     std::unique_ptr<OutputStream> out_;

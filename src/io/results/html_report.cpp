@@ -99,14 +99,15 @@ void HtmlReport::write(const CollisionRows& rows) {
 void HtmlReport::write_row(Pair pair, const Finding& finding, const Change* change) {
     const CollisionClass what = finding.collision_class;
     const bool known = what != CollisionClass::unknown, features = scene_.form.features && meet(what);
+    const bool deep = features && finding.depth_kind != DepthKind::unknown;
     const auto if_known = [](bool is, auto value) { return is ? json_number(double(value)) : std::string("null"); };
     separate();
-    out_->write(fmt::format("[{},{},{},{},{},{},{},{},{},{}]", pair.a, pair.b, int(what),
-                            change == nullptr ? "null" : std::to_string(int(*change)),
-                            if_known(known && !meet(what), finding.distance), if_known(features, finding.depth),
-                            if_known(known && scene_.form.times, finding.time),
-                            if_known(features, finding.contacts.size()), int(features && finding.more_contacts),
-                            json_place(finding, scene_.form.features)));
+    out_->write(fmt::format(
+        "[{},{},{},{},{},{},{},{},{},{},{}]", pair.a, pair.b, int(what),
+        change == nullptr ? "null" : std::to_string(int(*change)), if_known(known && !meet(what), finding.distance),
+        if_known(deep, finding.depth), if_known(known && scene_.form.times, finding.time),
+        if_known(features, finding.contacts.size()), int(features && finding.more_contacts),
+        json_place(finding, scene_.form.features), int(deep && finding.depth_kind == DepthKind::at_least)));
 }
 
 void HtmlReport::write_gone(std::span<const std::string_view> lines) {
