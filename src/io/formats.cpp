@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/meshes/mesh_reader.hpp"
+#include "io/meshes/plain/plain_scene.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
@@ -26,6 +27,14 @@ SceneFormat scene_format(const std::string& path) {
     if (is_mesh_ending(ending)) return SceneFormat::mesh;
 #endif
     return SceneFormat::unknown;
+}
+
+bool is_imported_file(const std::string& path) {
+#ifdef OCTOPAIR_WITH_MESHES
+    return is_mesh_file(path) && !is_plain_ending(ending_of(path));
+#else
+    return is_mesh_file(path);
+#endif
 }
 
 bool may_name_files(const std::string& path) {

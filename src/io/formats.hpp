@@ -23,6 +23,8 @@ SceneFormat scene_format(const std::string& path);
 inline bool is_npy_file(const std::string& path) { return scene_format(path) == SceneFormat::npy; }
 inline bool is_json_file(const std::string& path) { return scene_format(path) == SceneFormat::json; }
 inline bool is_mesh_file(const std::string& path) { return scene_format(path) == SceneFormat::mesh; }
+/// Returns whether Assimp reads a file: all mesh files but those of simple formats (meshes/plain/).
+bool is_imported_file(const std::string& path);
 
 /// Returns whether a scene file may name other files that must be read too (glTF, JSON).
 bool may_name_files(const std::string& path);

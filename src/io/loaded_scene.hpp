@@ -20,7 +20,8 @@ struct LoadedScene {
     std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
     std::uint64_t objects = 0;  ///< number of objects in each frame
     std::uint64_t frames = 1;
-    bool moving = false;                 ///< true for a file with a frame axis, even with one frame
+    bool moving = false;   ///< true for a file with a frame axis, even with one frame
+    bool rounded = false;  ///< true if coordinates of meshes were rounded to float32, in the file or by its reader
     std::vector<std::string> names;      ///< empty, or one name per object; an object without a name has an empty one
     std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects

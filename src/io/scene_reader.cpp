@@ -11,6 +11,7 @@
 #include "io/formats.hpp"
 #include "io/json/json_scene.hpp"
 #include "io/meshes/mesh_reader.hpp"
+#include "io/meshes/plain/plain_scene.hpp"
 
 namespace octopair::io {
 
@@ -110,6 +111,7 @@ LoadedScene read_scene(const std::string& path, const SceneContent& content, con
             return read_shapes(path, content, stop);
         case SceneFormat::mesh:
 #ifdef OCTOPAIR_WITH_MESHES
+            if (is_plain_ending(ending_of(path))) return read_plain_scene(path, content, stop);
             return read_mesh_scene(path, content);
 #endif
         case SceneFormat::unknown:
@@ -140,6 +142,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     check_same_content(scenes, paths);
     LoadedScene joined;
     joined.moving = scenes.front().moving;
+    joined.rounded = std::any_of(scenes.begin(), scenes.end(), [](const LoadedScene& scene) { return scene.rounded; });
     joined.frames = scenes.front().frames;
     bool named = false;
     std::vector<FrameCount> counts;

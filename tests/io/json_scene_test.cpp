@@ -174,7 +174,7 @@ TEST(JsonScene, MeshesAreInFilesBesideIt) {
     EXPECT_FALSE(io::is_mesh_file(directory.file("s.json")));
     const LoadedScene scene = io::read_scene(directory.file("s.json"), {});
     const auto& mesh = std::get<shape::Mesh>(scene.shapes->shapes[0]);
-    EXPECT_EQ(mesh.vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, double(0.1f), 0}}));
+    EXPECT_EQ(mesh.vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}}));
     EXPECT_NE(error_of(ErrorCode::bad_input,
                        [&] { (void)io::read_scene(directory.file("s.json"), {io::MeshObjects::triangle}); }),
               "");

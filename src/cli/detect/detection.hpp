@@ -63,7 +63,7 @@ struct DetectReport {
     std::vector<FilterCounts> filters;                           ///< of all frames
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
     std::optional<double> tolerance;                             ///< of the exact stages
-    bool tolerance_is_precision = false;                         ///< the tolerance is the precision of mesh files
+    bool tolerance_is_precision = false;                         ///< the tolerance is that of float32
     std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
     std::vector<std::string> first_open;                         ///< names of the first of them
     std::optional<io::ChangeCounts> changes;                     ///< where there is a baseline

@@ -7,7 +7,6 @@
 
 #include "cli/detect/exclusions.hpp"
 #include "cli/input/shaped_set.hpp"
-#include "io/formats.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::cli {
@@ -77,10 +76,9 @@ private:
     Pipeline pipeline_;
 };
 
-/// Returns the largest coordinate of the boxes of a set that has mesh files; otherwise 0.
-double largest_in_mesh_files(const InputSet& set) {
-    const auto is_mesh = [](const Part& part) { return io::is_mesh_file(part.path); };
-    if (std::none_of(set.parts.begin(), set.parts.end(), is_mesh)) return 0;
+/// Returns the largest coordinate of the boxes of a set with coordinates that were rounded to float32; otherwise 0.
+double largest_rounded(const InputSet& set) {
+    if (!set.scene.rounded) return 0;
     double largest = 0;
     std::visit(
         [&](const auto& boxes) {
@@ -99,7 +97,7 @@ double largest_in_mesh_files(const InputSet& set) {
 double tolerance_of(const DetectRequest& request, const SetPair& sets) {
     if (request.pipeline.tolerance) return *request.pipeline.tolerance;
     const double largest =
-        std::max(largest_in_mesh_files(sets.first), sets.second != nullptr ? largest_in_mesh_files(*sets.second) : 0);
+        std::max(largest_rounded(sets.first), sets.second != nullptr ? largest_rounded(*sets.second) : 0);
     constexpr double float32_step = 0x1p-23;
     return 2 * largest * float32_step;
 }

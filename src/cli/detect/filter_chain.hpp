@@ -18,8 +18,8 @@ struct SetPair {
     const InputSet* second = nullptr;
 };
 
-/// Returns the tolerance of --tolerance. Without it: two steps of float32 at the largest coordinate of mesh files, whose
-/// coordinates have that precision; 0 if there are no mesh files.
+/// Returns the tolerance of --tolerance. Without it: two steps of float32 at the largest coordinate, if coordinates of meshes were
+/// rounded to float32; otherwise 0.
 double tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 class FilterChain {

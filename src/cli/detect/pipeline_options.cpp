@@ -90,7 +90,7 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
     add_length(
         "--tolerance", request.tolerance,
         "with --stage features: the class is touching, not penetrating, if a translation of at most this length is "
-        "found to separate the objects (default: the precision of the coordinates in mesh files; otherwise 0)");
+        "found to separate the objects (default: the precision of coordinates that are float32; otherwise 0)");
     add_length(
         "--duplicate-tolerance", request.duplicate_tolerance,
         "with --stage features: objects of the same geometry are duplicates if no corner is further than this from "

@@ -46,8 +46,8 @@ std::optional<std::uint64_t> InputSet::fault_position() const {
 namespace {
 
 io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
-    // Mesh files need an importer, which may crash. JSON scenes may name mesh files.
-    const bool isolated = io::is_mesh_file(path) || io::is_json_file(path);
+    // Most mesh files need an importer, which may crash. JSON scenes may name mesh files.
+    const bool isolated = io::is_imported_file(path) || io::is_json_file(path);
     return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
 

@@ -93,7 +93,7 @@ std::string exact_text(const DetectReport& report) {
     if (!classes.empty()) text += fmt::format("classes     {}\n", classes);
     if (report.tolerance) {
         text += fmt::format("tolerance   {:.3g}{}\n", *report.tolerance,
-                            report.tolerance_is_precision ? " (the precision of mesh files)" : "");
+                            report.tolerance_is_precision ? " (the precision of float32)" : "");
     }
     if (report.open_objects == 0) return text;
     return text + fmt::format("not closed  {} of {} objects have no inside (--weld joins vertices): {}{}\n",

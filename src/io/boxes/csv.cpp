@@ -49,14 +49,6 @@ std::array<std::string_view, columns> split(std::string_view line, std::string_v
     return fields;
 }
 
-/// Returns the first 40 characters of a field in printable ASCII, for messages.
-std::string shown(std::string_view field) {
-    std::string text(field.substr(0, 40));
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
-}
-
 using Numbers = std::array<double, columns>;
 
 /// Fast path: parses lines of the form "1,2,3,4,5,6" with finite numbers. Returns false for all other lines.

@@ -13,6 +13,8 @@ namespace octopair::io {
 /// Returns the shortest text that reads back as exactly `number`; "nan" without a sign.
 std::string number_text(float number);
 std::string number_text(double number);
+/// Returns the first 40 characters of a part of a file in printable ASCII, for messages.
+std::string shown(std::string_view part);
 /// Throws: Error{cancelled}.
 [[noreturn]] void cancel();
 

@@ -10,10 +10,12 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #ifdef OCTOPAIR_WITH_MESHES
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
+#include "io/meshes/plain/plain_scene.hpp"
 #endif
 
 namespace octopair::io {
@@ -161,6 +163,7 @@ private:
 
 shape::Mesh load_mesh(const std::string& path) {
 #ifdef OCTOPAIR_WITH_MESHES
+    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, {});
     return whole_mesh_of(MeshFile(path, true));
 #else
     refuse(path, "this build of octopair reads no mesh files");

@@ -91,9 +91,14 @@ bool is_mesh_ending(std::string_view ending) {
 LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content) {
     const bool by_triangle = content.objects == MeshObjects::triangle;
     const MeshFile file(path, by_triangle || content.shapes);
-    if (by_triangle) return content.shapes ? exact_triangle_scene(file) : triangle_scene(file);
-    LoadedScene scene = node_scene(file);
-    if (content.shapes) scene.shapes = shapes_of(file);
+    LoadedScene scene;
+    if (by_triangle) {
+        scene = content.shapes ? exact_triangle_scene(file) : triangle_scene(file);
+    } else {
+        scene = node_scene(file);
+        if (content.shapes) scene.shapes = shapes_of(file);
+    }
+    scene.rounded = true;  // by Assimp
     return scene;
 }
 

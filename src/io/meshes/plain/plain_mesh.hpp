@@ -1,0 +1,51 @@
+// Readers of simple mesh formats, with the precision of the file: text is read as float64, to the nearest number.
+//
+//   off   OFF, COFF, NOFF, CNOFF and STOFF with three coordinates, as text
+//   obj   polygons of objects and groups
+//   stl   as text or binary
+//   ply   as text or binary, of either byte order; float or double
+//
+// The readers need memory in proportion to the file, whatever the file says.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octopair/shapes.hpp"
+
+namespace octopair::io {
+
+/// A mesh of polygons. Face i has the corners [ends[i - 1], ends[i]) of `corners`, indices of vertices.
+struct PlainMesh {
+    std::string name;      ///< empty if the file gives none
+    bool rounded = false;  ///< true if the file has coordinates of float32
+    std::vector<Point3d> vertices;
+    std::vector<std::uint32_t> corners;
+    std::vector<std::uint64_t> ends;
+
+    void end_face() { ends.push_back(corners.size()); }
+    /// Returns the number of triangles that the faces are cut into: a face of n corners into n - 2.
+    std::uint64_t triangles() const;
+};
+
+/// Cuts the faces into triangles, in order. Convex faces are cut from their first corner; other faces are cut into ears. Faces with
+/// fewer than three corners are left out.
+shape::Mesh cut_into_triangles(PlainMesh mesh);
+
+/// Text or bytes of a file, and its name for messages.
+struct FileContent {
+    std::string_view bytes;
+    std::string_view path;
+    const std::stop_token& stop;
+};
+
+// Parse the content of a file. Throw: Error{bad_input} "PATH: line N: ..." or "PATH: ..."; Error{cancelled}.
+std::vector<PlainMesh> parse_obj(const FileContent& file);
+PlainMesh parse_off(const FileContent& file);
+std::vector<PlainMesh> parse_stl(const FileContent& file);
+PlainMesh parse_ply(const FileContent& file);
+
+}  // namespace octopair::io

@@ -1,0 +1,174 @@
+#include "io/meshes/plain/plain_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+#include "io/formats.hpp"
+#include "io/meshes/plain/plain_mesh.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+std::vector<PlainMesh> parse(const FileContent& file, std::string_view ending) {
+    if (ending == ".obj") return parse_obj(file);
+    if (ending == ".stl") return parse_stl(file);
+    std::vector<PlainMesh> meshes;
+    meshes.push_back(ending == ".ply" ? parse_ply(file) : parse_off(file));
+    return meshes;
+}
+
+std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_token& stop) {
+    const InputFile input(path);
+    if (input.size() == 0) refuse(path, "is empty");
+    Buffer<char> bytes{std::size_t(input.size())};
+    input.read(0, std::as_writable_bytes(bytes.span()), stop);
+    return parse({{bytes.data(), bytes.size()}, path, stop}, ending_of(path));
+}
+
+/// Keeps the vertices that faces use, in the order of the file; all of them if there are no faces.
+void keep_used_vertices(PlainMesh& mesh) {
+    if (mesh.corners.empty()) return;
+    constexpr std::uint32_t unused = ~std::uint32_t(0);
+    std::vector<std::uint32_t> numbers(mesh.vertices.size(), unused);
+    for (const std::uint32_t corner : mesh.corners) numbers[corner] = 0;
+    std::uint32_t used = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i] == unused) continue;
+        mesh.vertices[used] = mesh.vertices[i];
+        numbers[i] = used++;
+    }
+    mesh.vertices.resize(used);
+    for (std::uint32_t& corner : mesh.corners) corner = numbers[corner];
+}
+
+std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const std::string& path) {
+    const std::string file = std::filesystem::path(path).filename().string();
+    // The only solid of an STL file often has the name of the program that wrote it.
+    const bool by_file = meshes.size() == 1 && (meshes[0].name.empty() || ending_of(path) == ".stl");
+    if (by_file) return {file};
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        names.push_back(fmt::format("{}/{}", file, meshes[i].name.empty() ? fmt::format("#{}", i) : meshes[i].name));
+    }
+    return names;
+}
+
+Box3d box_of(const std::vector<Point3d>& places) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (const Point3d& place : places) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            box.min[axis] = std::min(box.min[axis], place[axis]);
+            box.max[axis] = std::max(box.max[axis], place[axis]);
+        }
+    }
+    return box;
+}
+
+LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, bool shapes) {
+    for (PlainMesh& mesh : meshes) keep_used_vertices(mesh);
+    std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
+    LoadedScene scene;
+    scene.objects = meshes.size();
+    scene.names = names_of(meshes, path);
+    if (meshes.empty()) scene.names.clear();
+    Buffer<Box3d> boxes{meshes.size()};
+    std::transform(meshes.begin(), meshes.end(), boxes.data(),
+                   [](const PlainMesh& mesh) { return box_of(mesh.vertices); });
+    scene.boxes = std::move(boxes);
+    if (!shapes) return scene;
+    LoadedShapes& loaded = scene.shapes.emplace();
+    for (PlainMesh& mesh : meshes) {
+        loaded.geometry.push_back(std::uint32_t(loaded.shapes.size()));
+        loaded.shapes.emplace_back(cut_into_triangles(std::move(mesh)));
+    }
+    loaded.poses.resize(meshes.size());
+    loaded.parents.resize(meshes.size(), 0);
+    return scene;
+}
+
+/// Throws: Error{bad_input} if a coordinate is beyond the range of float32.
+float rounded(double at, const std::string& path) {
+    const auto value = float(at);
+    if (!std::isfinite(value))
+        refuse(path, fmt::format("the coordinate {} is beyond the range of float32", number_text(at)));
+    return value;
+}
+
+LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& path) {
+    LoadedTriangles loaded;
+    loaded.owner_names = names_of(meshes, path);
+    for (std::size_t owner = 0; owner < meshes.size(); ++owner) {
+        const shape::Mesh mesh = cut_into_triangles(std::move(meshes[owner]));
+        for (const auto& [a, b, c] : mesh.triangles) {
+            loaded.triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+            loaded.owners.push_back(std::uint32_t(owner));
+            for (const Point3d& corner : loaded.triangles.back()) {
+                for (const double at : corner) (void)rounded(at, path);
+            }
+        }
+    }
+    return loaded;
+}
+
+Buffer<Box3f> boxes_of_triangles(const LoadedTriangles& loaded, const std::string& path) {
+    Buffer<Box3f> boxes{loaded.triangles.size()};
+    for (std::size_t i = 0; i < loaded.triangles.size(); ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::array<float, 3> at;
+            for (std::size_t k = 0; k < 3; ++k) at[k] = rounded(loaded.triangles[i][k][axis], path);
+            boxes.data()[i].min[axis] = std::min({at[0], at[1], at[2]});
+            boxes.data()[i].max[axis] = std::max({at[0], at[1], at[2]});
+        }
+    }
+    return boxes;
+}
+
+}  // namespace
+
+bool is_plain_ending(std::string_view ending) {
+    return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";
+}
+
+LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
+    std::vector<PlainMesh> meshes = read_meshes(path, stop);
+    const bool is_rounded =
+        std::any_of(meshes.begin(), meshes.end(), [](const PlainMesh& mesh) { return mesh.rounded; });
+    LoadedScene scene;
+    if (content.objects == MeshObjects::node) {
+        scene = node_scene(std::move(meshes), path, content.shapes);
+        scene.rounded = is_rounded;
+        return scene;
+    }
+    scene.rounded = is_rounded;
+    LoadedTriangles loaded = triangles_of(std::move(meshes), path);
+    scene.objects = loaded.triangles.size();
+    if (content.shapes) {
+        scene.triangles = std::move(loaded);
+    } else {
+        scene.boxes = boxes_of_triangles(loaded, path);
+    }
+    return scene;
+}
+
+shape::Mesh read_plain_mesh(const std::string& path, const std::stop_token& stop) {
+    shape::Mesh whole;
+    for (PlainMesh& mesh : read_meshes(path, stop)) {
+        const auto first = std::uint32_t(whole.vertices.size());
+        const shape::Mesh part = cut_into_triangles(std::move(mesh));
+        whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const auto& [a, b, c] : part.triangles) whole.triangles.push_back({a + first, b + first, c + first});
+    }
+    return whole;
+}
+
+}  // namespace octopair::io
