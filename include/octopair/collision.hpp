@@ -27,10 +27,10 @@ enum class CollisionClass : std::uint8_t {
 /// Number of classes, for arrays that a class indexes.
 inline constexpr std::size_t collision_classes = 7;
 
-/// What a depth says about the shortest translation that separates two objects.
+/// Says how a depth relates to the length of the shortest translation that separates two objects.
 enum class DepthKind : std::uint8_t {
     unknown,   ///< no filter computed a depth
-    least,     ///< its length, to about 1e-7 of the smaller object's size; of two polyhedra, to rounding
+    least,     ///< equal, to about a millionth of the smaller object's size; between polyhedra, to rounding
     at_least,  ///< a lower bound: no shorter translation separates the objects
 };
 

@@ -95,8 +95,8 @@ struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
     double margin = 0;      ///< largest distance at which triangles that are not adjacent are kept; finite, >= 0
     bool features = false;  ///< true: computes contact and depth, and distinguishes penetrating from touching
-    double tolerance =
-        0;  ///< with `features`: triangles that a translation of at most this length separates only touch
+    /// With `features`: length, finite, >= 0. Triangles that a translation of at most this length separates only touch.
+    double tolerance = 0;
     unsigned threads = 0;  ///< threads that check the triangles when the filter is made; 0: one per core
 };
 

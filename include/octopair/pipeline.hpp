@@ -116,7 +116,7 @@ struct FilterCounts {
 
 struct PipelineSummary {
     std::uint64_t collisions = 0;                                ///< number of pairs that passed all filters
-    std::array<std::uint64_t, collision_classes> of_class = {};  ///< the same, by CollisionClass
+    std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions with a finding, by class
     bool truncated = false;  ///< true if `limit` was reached and at least one more collision exists
     double seconds = 0;      ///< wall-clock time
     /// Summary of the all-pairs stage. Its seconds exclude the calling thread's work for filters and the sink. If the limit

@@ -180,7 +180,7 @@ TEST_F(Applications, MayThrowFromTheirSinks) {
 
 TEST_F(Applications, SeeProgressWhilePairsAreSorted) {
     using Clock = std::chrono::steady_clock;
-    // So many pairs that workers sort them for 0.3 to 0.5 of the time, during several checks of the client.
+    // The workers sort pairs for 0.3 to 0.5 of the time. Meanwhile the client checks them several times.
     const Scene scene("world10", test::scaled(1'000'000, 20), 1);
     const auto engine = make_process_engine(2);
     PairList list;

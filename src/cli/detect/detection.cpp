@@ -6,10 +6,12 @@
 #include <memory>
 
 #include "base/timed.hpp"
-#include "cli/detect/filter_chain.hpp"
 #include "cli/detect/frame_search.hpp"
-#include "cli/input/shaped_set.hpp"
 #include "octopair/error.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/detect/filter_chain.hpp"
+#include "cli/input/shaped_set.hpp"
+#endif
 #ifdef OCTOPAIR_WITH_MPI
 #include "cli/ranks/cluster.hpp"
 #endif

@@ -32,8 +32,8 @@ struct PipelineRequest {
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
-/// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent, --baseline and
-/// --report.
+/// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent,
+/// --baseline and --report.
 void add_pipeline_options(Command& command, PipelineRequest& request);
 
 /// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the

@@ -20,7 +20,7 @@ ShapedSet::ShapedSet(io::LoadedShapes loaded, const HowToPrepare& how, const std
 }
 
 void ShapedSet::prepare(std::vector<shape::Any> shapes, const HowToPrepare& how, const std::stop_token& stop) {
-    const std::vector<double> scale_of = how.weld > 0 ? scales() : std::vector<double>();
+    const std::vector<double> scale_of = how.weld > 0 ? scales(shapes.size()) : std::vector<double>();
     std::vector<std::optional<Geometry>> ready(shapes.size());
     Team(how.threads).for_each(shapes.size(), [&](std::size_t i, unsigned) {
         if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
@@ -33,11 +33,10 @@ void ShapedSet::prepare(std::vector<shape::Any> shapes, const HowToPrepare& how,
 }
 
 /// Returns the largest scale of the poses of each shape: the largest factor by which a pose lengthens an axis of the shape.
-std::vector<double> ShapedSet::scales() const {
-    std::vector<double> largest;
+std::vector<double> ShapedSet::scales(std::size_t shapes) const {
+    std::vector<double> largest(shapes, 0);
     for (std::size_t i = 0; i < loaded_.geometry.size(); ++i) {
         const std::uint32_t shape = loaded_.geometry[i];
-        if (shape >= largest.size()) largest.resize(shape + 1, 0);
         const auto& rows = loaded_.poses[i].rows;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             largest[shape] = std::max(largest[shape], std::hypot(rows[0][axis], rows[1][axis], rows[2][axis]));

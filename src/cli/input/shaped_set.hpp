@@ -11,8 +11,8 @@ namespace octopair::cli {
 
 struct HowToPrepare {
     unsigned threads = 0;
-    double weld =
-        0;  ///< in the world: vertices of a mesh that are at most this far apart are joined; 0: no mesh is changed
+    /// Length in the world: gaps of meshes are closed up to it (octopair::weld); 0 leaves meshes as they are.
+    double weld = 0;
 };
 
 class ShapedSet {
@@ -38,7 +38,7 @@ public:
 
 private:
     void prepare(std::vector<shape::Any> shapes, const HowToPrepare& how, const std::stop_token& stop);
-    std::vector<double> scales() const;
+    std::vector<double> scales(std::size_t shapes) const;
 
     io::LoadedShapes loaded_;
     std::vector<Geometry> geometries_;

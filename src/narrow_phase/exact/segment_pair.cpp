@@ -5,9 +5,7 @@
 #include "narrow_phase/exact/orientation.hpp"
 
 namespace octopair {
-namespace {
 
-/// Returns true if the closed boxes of the segments overlap. If all ends lie on one line, then the segments meet.
 bool boxes_meet(const Segment3d& s, const Segment3d& t) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto [s_low, s_high] = std::minmax(s[0][axis], s[1][axis]);
@@ -16,6 +14,8 @@ bool boxes_meet(const Segment3d& s, const Segment3d& t) {
     }
     return true;
 }
+
+namespace {
 
 /// Returns true if the segments meet, projected along `axis`: each segment has its ends on both sides of the other's line.
 /// Requires: the segments lie in one plane, but not all ends on one line; so the four sides are not all 0.

@@ -27,6 +27,9 @@ Segment3d hull_of_degenerate(const Triangle3d& triangle);
 /// Requires: the segments lie in one plane.
 unsigned projection_axis(const Segment3d& s, const Segment3d& t);
 
+/// Returns true if the closed boxes of the segments overlap. If all ends lie on one line, then the segments meet.
+bool boxes_meet(const Segment3d& s, const Segment3d& t);
+
 bool segments_meet(const Segment3d& s, const Segment3d& t);
 bool segment_meets_triangle(const Segment3d& segment, const Triangle3d& triangle);
 

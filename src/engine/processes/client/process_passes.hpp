@@ -27,11 +27,11 @@ public:
     void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
 
 private:
-    /// What the progress of the call already includes. `done`: scanned entries; after `ordering` begins, sorted pairs.
+    /// The work of a pass that has been reported as progress of the call.
     struct PassProgress {
-        double end = 1;  // of the pass
-        bool ordering = false;
-        std::uint64_t done = 0;
+        double end = 1;          // progress of the call at the end of the pass
+        bool ordering = false;   // the workers sort pairs; before, they scan entries
+        std::uint64_t done = 0;  // scanned entries or sorted pairs
     };
 
     void run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch);
