@@ -158,9 +158,11 @@ Geometry::Geometry(shape::Any shape) {
     auto made = std::make_shared<detail::PreparedShape>();
     made->shape = std::move(shape);
     made->convex = make_convex_solid(made->shape);
-    const std::vector<Point3d> vertices = vertices_of(made->shape);
-    made->vertices = VertexBlocks(vertices);
-    made->bounds = bounds_of(*made, vertices);
+    {
+        const std::vector<Point3d> vertices = vertices_of(made->shape);
+        made->vertices = VertexBlocks(vertices);
+        made->bounds = bounds_of(*made, vertices);
+    }
     if (const auto* mesh = std::get_if<shape::Mesh>(&made->shape)) {
         made->tree = make_mesh_tree(*mesh);
     } else if (made->convex.exists()) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct TriangleBounds {
+struct Bounds {
     Point3d min = {infinity, infinity, infinity};
     Point3d max = {-infinity, -infinity, -infinity};
 
@@ -25,7 +25,7 @@ struct TriangleBounds {
             max[axis] = std::max(max[axis], point[axis]);
         }
     }
-    void add(const TriangleBounds& other) {
+    void add(const Bounds& other) {
         for (int axis = 0; axis < 3; ++axis) {
             min[axis] = std::min(min[axis], other.min[axis]);
             max[axis] = std::max(max[axis], other.max[axis]);
@@ -36,14 +36,9 @@ struct TriangleBounds {
         for (int axis = 0; axis < 3; ++axis) c[axis] = min[axis] / 2 + max[axis] / 2;
         return c;
     }
-    /// Half the surface area, to which the surface area heuristic takes the probability of a hit to be proportional.
-    double area() const {
-        const double x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
-        return x < 0 ? 0 : x * y + y * z + z * x;
-    }
 };
 
-void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& origin) {
+void set_node_box(MeshNode& node, const Bounds& bounds, const Point3d& origin) {
     for (int axis = 0; axis < 3; ++axis) {
         const double low = bounds.min[axis] - origin[axis], high = bounds.max[axis] - origin[axis];
         node.centre[axis] = float(low / 2 + high / 2);
@@ -56,11 +51,52 @@ void set_node_box(MeshNode& node, const TriangleBounds& bounds, const Point3d& o
     }
 }
 
-/// A triangle during the construction of the tree.
-struct Item {
-    TriangleBounds bounds;
-    Point3d centre;
-    std::uint32_t number;
+/// A box in float32 for the division of triangles. Lanes 0 to 2 are its minima, lanes 4 to 6 its negated maxima: compilers turn
+/// the loops over 4 and 8 lanes into SIMD instructions. Lanes 3 and 7 have no meaning.
+struct alignas(32) LaneBox {
+    static constexpr float none = std::numeric_limits<float>::infinity();
+    std::array<float, 8> lanes = {none, none, none, none, none, none, none, none};
+
+    void add(const LaneBox& other) {
+        for (int k = 0; k < 8; ++k) lanes[k] = other.lanes[k] < lanes[k] ? other.lanes[k] : lanes[k];
+    }
+    /// Returns the box of one point: the sum of minima and maxima, which is twice the centre.
+    LaneBox doubled_centre() const {
+        LaneBox point;
+        for (int k = 0; k < 4; ++k) {
+            point.lanes[k] = lanes[k] - lanes[k + 4];
+            point.lanes[k + 4] = lanes[k + 4] - lanes[k];
+        }
+        return point;
+    }
+    float low(int axis) const { return lanes[axis]; }
+    float extent(int axis) const { return -lanes[axis + 4] - lanes[axis]; }
+    /// Half the surface area, to which the surface area heuristic takes the probability of a hit to be proportional.
+    float area() const {
+        const float x = extent(0), y = extent(1), z = extent(2);
+        return x < 0 ? 0 : x * y + y * z + z * x;
+    }
+};
+
+/// A triangle during the construction of the tree. Its box only steers the division, so float32 is enough. The box is relative to
+/// the mesh's bounds: the largest extent has length 1.
+class Item {
+public:
+    Item(const std::array<std::array<float, 3>, 3>& corners, std::uint32_t number) {
+        for (const auto& [x, y, z] : corners) box_.add({{x, y, z, 0, -x, -y, -z, 0}});
+        const std::uint32_t low = number % halves, high = number / halves;  // both exact in float32
+        box_.lanes[3] = float(low);
+        box_.lanes[7] = float(high);
+    }
+
+    const LaneBox& box() const { return box_; }
+    float doubled_centre(int axis) const { return box_.lanes[axis] - box_.lanes[axis + 4]; }
+    std::uint32_t number() const { return std::uint32_t(box_.lanes[3]) + std::uint32_t(box_.lanes[7]) * halves; }
+
+private:
+    static constexpr std::uint32_t halves = 65536;
+
+    LaneBox box_;
 };
 
 class Builder {
@@ -70,29 +106,52 @@ public:
     void build() {
         tree_.vertices = mesh_.vertices;
         if (mesh_.triangles.empty()) return;
-        TriangleBounds all;
-        items_.reserve(mesh_.triangles.size());
-        for (const auto& corners : mesh_.triangles) {
-            Item item{{}, {}, std::uint32_t(items_.size())};
-            for (const std::uint32_t corner : corners) item.bounds.add(mesh_.vertices[corner]);
-            item.centre = item.bounds.centre();
-            all.add(item.bounds);
-            items_.push_back(item);
-        }
-        tree_.origin = all.centre();
+        make_items();
         tree_.nodes.reserve(items_.size());
         tree_.nodes.emplace_back();
-        divide({0, 0, std::uint32_t(items_.size()), 0});
+        divide({0, 0, std::uint32_t(items_.size()), 0, centres_of(items_)});
+        tree_.triangles.reserve(items_.size());
+        tree_.numbers.reserve(items_.size());
         for (const Item& item : items_) {
-            tree_.triangles.push_back(mesh_.triangles[item.number]);
-            tree_.numbers.push_back(item.number);
+            tree_.triangles.push_back(mesh_.triangles[item.number()]);
+            tree_.numbers.push_back(item.number());
         }
+        items_ = {};
+        set_boxes();
     }
 
 private:
     struct Task {
         std::uint32_t node, begin, end, depth;
+        LaneBox centres;  // box of the doubled centres of the items [begin, end)
     };
+
+    void make_items() {
+        Bounds all;
+        for (const auto& corners : mesh_.triangles) {
+            for (const std::uint32_t corner : corners) all.add(mesh_.vertices[corner]);
+        }
+        tree_.origin = all.centre();
+        double extent = 0;
+        for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, all.max[axis] - all.min[axis]);
+        const double inverse = 1 / extent, scale = std::isfinite(inverse) ? inverse : 0;
+        items_.reserve(mesh_.triangles.size());
+        for (const auto& triangle : mesh_.triangles) {
+            std::array<std::array<float, 3>, 3> corners;
+            for (int k = 0; k < 3; ++k) {
+                const Point3d& vertex = mesh_.vertices[triangle[k]];
+                for (int axis = 0; axis < 3; ++axis)
+                    corners[k][axis] = float((vertex[axis] - tree_.origin[axis]) * scale);
+            }
+            items_.emplace_back(corners, std::uint32_t(items_.size()));
+        }
+    }
+
+    static LaneBox centres_of(std::span<const Item> items) {
+        LaneBox centres;
+        for (const Item& item : items) centres.add(item.box().doubled_centre());
+        return centres;
+    }
 
     /// Uses an explicit stack instead of recursion, because the mesh determines the depth of its tree.
     void divide(const Task& root) {
@@ -100,56 +159,56 @@ private:
         while (!tasks.empty()) {
             const Task task = tasks.back();
             tasks.pop_back();
-            set_box(task);
             if (task.end - task.begin <= MeshTree::leaf_size) {
                 tree_.nodes[task.node].first = task.begin;
                 tree_.nodes[task.node].count = task.end - task.begin;
                 continue;
             }
-            const std::uint32_t middle = split(task);
-            const auto child = std::uint32_t(tree_.nodes.size());
-            tree_.nodes.resize(child + 2);
-            tree_.nodes[task.node].first = child;
+            Task left{0, task.begin, 0, task.depth + 1, {}}, right{0, 0, task.end, task.depth + 1, {}};
+            split(task, left, right);
+            left.node = std::uint32_t(tree_.nodes.size());
+            right.node = left.node + 1;
+            tree_.nodes.resize(left.node + 2);
+            tree_.nodes[task.node].first = left.node;
             tree_.nodes[task.node].count = 0;
-            tasks.push_back({child + 1, middle, task.end, task.depth + 1});
-            tasks.push_back({child, task.begin, middle, task.depth + 1});
+            tasks.push_back(right);
+            tasks.push_back(left);
         }
     }
 
-    void set_box(const Task& task) {
-        TriangleBounds bounds;
-        for (std::uint32_t i = task.begin; i < task.end; ++i) bounds.add(items_[i].bounds);
-        set_node_box(tree_.nodes[task.node], bounds, tree_.origin);
-    }
-
-    /// Partitions the items of a node and returns the begin of the second part. Neither part is empty.
-    std::uint32_t split(const Task& task) {
+    /// Partitions the items of a node. Sets the end of the left part, the begin of the right part, and the bounds of the centres of
+    /// both. Neither part is empty.
+    void split(const Task& task, Task& left, Task& right) {
         const std::span items(items_.data() + task.begin, task.end - task.begin);
-        TriangleBounds centres;
-        for (const Item& item : items) centres.add(item.centre);
         int axis = 0;
         for (int other = 1; other < 3; ++other) {
-            if (centres.max[other] - centres.min[other] > centres.max[axis] - centres.min[axis]) axis = other;
+            if (task.centres.extent(other) > task.centres.extent(axis)) axis = other;
         }
-        const double low = centres.min[axis], width = centres.max[axis] - low;
-        // Beyond this depth, halving keeps the tree within max_depth. Equal centres, and extents that overflow, are halved too.
-        if (task.depth + std::bit_width(items.size()) < MeshTree::max_depth && width > 0 && std::isfinite(width)) {
-            const double scale = bins / width;
+        const float low = task.centres.low(axis), scale = bins / task.centres.extent(axis);
+        std::size_t middle = 0;
+        // Beyond this depth, halving keeps the tree within max_depth. Equal centres are halved too.
+        if (task.depth + std::bit_width(items.size()) < MeshTree::max_depth && std::isfinite(scale)) {
             const auto bin_of = [&](const Item& item) {
-                return std::min(int((item.centre[axis] - low) * scale), bins - 1);
+                return std::min(int((item.doubled_centre(axis) - low) * scale), bins - 1);
             };
             const int cut = best_cut(items, bin_of);
-            const auto middle =
-                std::partition(items.begin(), items.end(), [&](const Item& item) { return bin_of(item) < cut; });
-            if (middle != items.begin() && middle != items.end()) {
-                return task.begin + std::uint32_t(middle - items.begin());
-            }
+            const auto is_left = [&](const Item& item) { return bin_of(item) < cut; };
+            middle = std::size_t(std::partition(items.begin(), items.end(), is_left) - items.begin());
         }
-        const auto half = items.begin() + std::ptrdiff_t(items.size() / 2);
-        std::nth_element(items.begin(), half, items.end(), [axis](const Item& a, const Item& b) {
-            return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.number < b.number;
-        });
-        return task.begin + std::uint32_t(items.size() / 2);
+        if (middle == 0 || middle == items.size()) middle = halve(items, axis);
+        left.centres = centres_of(items.first(middle));
+        right.centres = centres_of(items.subspan(middle));
+        left.end = right.begin = task.begin + std::uint32_t(middle);
+    }
+
+    static std::size_t halve(std::span<Item> items, int axis) {
+        const std::size_t half = items.size() / 2;
+        std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(half), items.end(),
+                         [axis](const Item& a, const Item& b) {
+                             const float at_a = a.doubled_centre(axis), at_b = b.doubled_centre(axis);
+                             return at_a != at_b ? at_a < at_b : a.number() < b.number();
+                         });
+        return half;
     }
 
     static constexpr int bins = 16;
@@ -157,33 +216,49 @@ private:
     /// Returns the first bin of the right side, for the smallest sum of area times count of both sides.
     template <typename BinOf>
     static int best_cut(std::span<const Item> items, const BinOf& bin_of) {
-        std::array<TriangleBounds, bins> bounds;
+        std::array<LaneBox, bins> boxes;
         std::array<std::size_t, bins> counts = {};
         for (const Item& item : items) {
-            bounds[bin_of(item)].add(item.bounds);
-            ++counts[bin_of(item)];
+            const int bin = bin_of(item);
+            boxes[bin].add(item.box());
+            ++counts[bin];
         }
-        std::array<double, bins> cost_right = {};
-        TriangleBounds right;
+        std::array<float, bins> cost_right = {};
+        LaneBox right;
         std::size_t count = 0;
         for (int cut = bins - 1; cut > 0; --cut) {
-            right.add(bounds[cut]);
+            right.add(boxes[cut]);
             count += counts[cut];
-            cost_right[cut] = right.area() * double(count);
+            cost_right[cut] = right.area() * float(count);
         }
-        TriangleBounds left;
+        LaneBox left;
         count = 0;
         int best = bins / 2;
-        double least = infinity;
+        float least = LaneBox::none;
         for (int cut = 1; cut < bins; ++cut) {
-            left.add(bounds[cut - 1]);
+            left.add(boxes[cut - 1]);
             count += counts[cut - 1];
-            const double cost = left.area() * double(count) + cost_right[cut];
+            const float cost = left.area() * float(count) + cost_right[cut];
             if (count == 0 || count == items.size() || !(cost < least)) continue;
             least = cost;
             best = cut;
         }
         return best;
+    }
+
+    /// Sets the boxes of all nodes in float64, from the corners up. Children have greater numbers than their parents.
+    void set_boxes() {
+        std::vector<Bounds> bounds(tree_.nodes.size());
+        for (std::size_t i = tree_.nodes.size(); i-- > 0;) {
+            MeshNode& node = tree_.nodes[i];
+            for (std::uint32_t k = 0; k < node.count; ++k) {
+                for (const std::uint32_t corner : tree_.triangles[node.first + k])
+                    bounds[i].add(tree_.vertices[corner]);
+            }
+            for (std::uint32_t child = node.first; !node.is_leaf() && child < node.first + 2; ++child)
+                bounds[i].add(bounds[child]);
+            set_node_box(node, bounds[i], tree_.origin);
+        }
     }
 
     const shape::Mesh& mesh_;
@@ -202,7 +277,7 @@ std::shared_ptr<const MeshTree> make_mesh_tree(const shape::Mesh& mesh) {
 }
 
 MeshTree make_box_tree(const Box3d& box) {
-    TriangleBounds bounds;
+    Bounds bounds;
     bounds.add(Point3d{box.min[0], box.min[1], box.min[2]});
     bounds.add(Point3d{box.max[0], box.max[1], box.max[2]});
     MeshTree tree;
