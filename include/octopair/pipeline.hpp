@@ -78,6 +78,9 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
+    /// Counts a pair that the filter drops although its objects do not decide whether it counts (FilterCounts::undecided).
+    void count_undecided() { ++undecided_; }
+
     /// Returns the stop token of the call. A filter that spends long on one pair should check it.
     const std::stop_token& stop() const { return stop_; }
 
@@ -87,6 +90,7 @@ private:
 
     std::vector<Pair> pairs_;
     std::vector<Finding> findings_;
+    std::uint64_t undecided_ = 0;
     std::stop_token stop_;
 };
 
@@ -112,6 +116,9 @@ struct FilterCounts {
     std::string name;
     std::uint64_t in = 0, out = 0;  ///< number of pairs before and after the filter
     double seconds = 0;             ///< sum over all threads
+    /// Dropped pairs that may count. For "exact object": an object lies in the bounds of a mesh that is not closed and so has no
+    /// inside. The surfaces do not meet.
+    std::uint64_t undecided = 0;
 };
 
 struct PipelineSummary {

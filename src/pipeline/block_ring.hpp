@@ -28,6 +28,7 @@ namespace octopair {
 struct FilterWork {
     std::uint64_t in = 0, out = 0;  ///< numbers of pairs before and after the filter
     double seconds = 0;
+    std::uint64_t undecided = 0;  ///< dropped pairs that may count
 };
 
 struct Block {

@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "base/floating_point_scope.hpp"
+#include "geometry/vector.hpp"
+#include "narrow_phase/mesh/mesh_tree.hpp"
 #include "narrow_phase/motion/object_impact.hpp"
 #include "narrow_phase/object_pair.hpp"
+#include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 
@@ -126,6 +129,33 @@ void find_impact(const Moment& moment, const ContactRequest& request, Finding& f
     finding.contacts = {contact};
 }
 
+/// Returns whether a point is in the bounding box of an object, in the coordinates of its shape.
+bool is_in_bounds(const Point3d& point, const PosedObject& object) {
+    const ShapeBounds& bounds = object.geometry.bounds;
+    if (!bounds.bounded) return false;
+    const Point3d offset = vector::minus(point, vector::posed(object.pose, bounds.centre));
+    for (std::size_t k = 0; k < 3; ++k) {
+        // Cramer's rule: the coordinate along axis k is the first product, divided by the second.
+        const auto axis = [&](std::size_t i) { return vector::column(object.pose, i % 3); };
+        const Point3d normal = vector::cross(axis(k + 1), axis(k + 2));
+        const double half = bounds.box.max[k] - bounds.centre[k];
+        if (!(std::fabs(vector::dot(offset, normal)) <= half * std::fabs(vector::dot(axis(k), normal)))) return false;
+    }
+    return true;
+}
+
+/// Returns a point of an object: a corner of a mesh, or the middle of another shape. Requires: the shape is bounded.
+Point3d point_of(const PosedObject& object) {
+    const MeshTree& tree = *object.geometry.tree;
+    const bool is_mesh = !tree.triangles.empty();
+    return vector::posed(object.pose, is_mesh ? tree.vertices[tree.triangles[0][0]] : object.geometry.bounds.centre);
+}
+
+/// Returns whether one of two objects may be inside the other, which is not closed.
+bool may_be_inside(const PosedObject& inner, const PosedObject& open) {
+    return inner.geometry.bounds.bounded && is_in_bounds(point_of(inner), open);
+}
+
 /// Returns whether pair `i` counts. If so, replaces its finding, except the note.
 bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i) {
     const Pair pair = batch.pairs()[i];
@@ -134,10 +164,15 @@ bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i
     const bool counts = objects.moving()
                             ? judge_moving({objects.moving_a(pair), objects.moving_b(pair)}, reach, found, batch.stop())
                             : judge_objects(objects.a(pair), objects.b(pair), reach, found);
-    if (!counts) return false;
+    const auto [a_open, b_open] = objects.open(pair);
+    if (!counts) {
+        const PosedObject a = objects.a(pair), b = objects.b(pair);
+        if ((a_open && may_be_inside(b, a)) || (b_open && may_be_inside(a, b))) batch.count_undecided();
+        return false;
+    }
     Finding& finding = batch.finding(i);
     found.note = finding.note;
-    found.open = objects.open(pair);
+    found.open = {a_open, b_open};
     finding = std::move(found);
     return true;
 }

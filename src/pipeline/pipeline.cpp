@@ -132,6 +132,7 @@ private:
             const Timed timed(work.seconds);
             filters_[i]->apply(block.batch);
             work.out = block.batch.pairs().size();
+            work.undecided = detail::BatchAccess::take_undecided(block.batch);
             // A filter may return wrong results after a stop request.
             if (block.batch.stop().stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
         }
@@ -159,6 +160,7 @@ private:
             counts.in += block.work[i].in;
             counts.out += block.work[i].out;
             counts.seconds += block.work[i].seconds;
+            counts.undecided += block.work[i].undecided;
             seconds += block.work[i].seconds;
         }
         if (!block.work.empty()) size_.learn(block.work[0].in, seconds);

@@ -113,6 +113,39 @@ TEST(ExactFilters, MeshInMesh) {
     EXPECT_TRUE(inside.contacts.empty());
 }
 
+/// A box with a hole has no inside. What may be in it is left out, but not silently.
+TEST(ExactFilters, WhatMayBeInAnOpenMeshIsUndecided) {
+    const auto undecided = [](shape::Any outer, shape::Any inner, const Pose& pose) {
+        Scene scene;
+        scene.add(std::move(outer), pose);
+        scene.add(std::move(inner), pose);
+        const ShapedObjects objects = scene.objects();
+        const std::vector<Box3d> boxes = boxes_of(objects);
+        Pipeline pipeline(1);
+        pipeline.add(make_exact_object_filter(objects));
+        const PipelineSummary summary = pipeline.run(*make_local_engine(1), {std::span(boxes)}, {});
+        return std::pair(summary.collisions, summary.filters[0].undecided);
+    };
+    using Counts = std::pair<std::uint64_t, std::uint64_t>;  // collisions, undecided pairs
+    const shape::Mesh closed = box_mesh({0, 0, 0}, {4, 4, 8}), small = box_mesh({1, 1, 1}, {2, 2, 2});
+    shape::Mesh open = closed;
+    open.triangles.pop_back();
+    RandomStream random(5, 0);
+    for (int round = 0; round < 20; ++round) {
+        Pose pose = random_pose(random, 6);
+        for (auto& row : pose.rows) row[1] *= 3;  // not rigid
+        EXPECT_EQ(undecided(closed, small, pose), Counts(1, 0));
+        EXPECT_EQ(undecided(open, small, pose), Counts(0, 1));
+        EXPECT_EQ(undecided(small, open, pose), Counts(0, 1));
+        EXPECT_EQ(undecided(small, box_mesh({2.5, 1, 1}, {3, 2, 2}), pose), Counts(0, 0));
+        const shape::Mesh beside = box_mesh({4.5, 1, 1}, {5, 2, 2});  // in the world, the boxes of both may overlap
+        EXPECT_EQ(undecided(open, beside, pose), Counts(0, 0));
+    }
+    EXPECT_EQ(undecided(open, shape::Sphere{0.5}, make_pose({0, 0, 0})), Counts(1, 0));
+    Pose elsewhere;
+    EXPECT_EQ(undecided(open, shape::Mesh{}, elsewhere), Counts(0, 0));
+}
+
 TEST(ExactFilters, MeshesOnTopOfEachOther) {
     const Finding same = collision_of(two_boxes({1, 2, 3}, {1, 2, 3}, {0, 0, 0}));
     EXPECT_EQ(same.collision_class, CollisionClass::duplicate);

@@ -16,7 +16,7 @@ struct RankResult {
     bool truncated = false;
 };
 struct Work {
-    std::uint64_t in = 0, out = 0;
+    std::uint64_t in = 0, out = 0, undecided = 0;
     double seconds = 0;
 };
 
@@ -73,13 +73,14 @@ std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options
 
     std::vector<Work> own;
     own.reserve(summary.filters.size());
-    for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.seconds});
+    for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.undecided, filter.seconds});
     const std::vector<Work> works = cluster_.all_gather(std::span<const Work>(own));
     for (std::size_t i = 0; i < works.size(); ++i) {
         if (i / own.size() == cluster_.rank()) continue;
         FilterCounts& counts = summary.filters[i % own.size()];
         counts.in += works[i].in;
         counts.out += works[i].out;
+        counts.undecided += works[i].undecided;
         counts.seconds += works[i].seconds;
     }
     return limit - std::min(limit, before);
