@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "octopair/pipeline.hpp"
@@ -39,6 +41,23 @@ struct NameRule {
 /// Returns the filter "name rules", which drops each pair that at least one rule drops.
 std::unique_ptr<Filter> make_name_filter(std::span<const std::string> names, std::vector<NameRule> rules,
                                          std::optional<std::span<const std::string>> second = {});
+
+/// Texts of one set of objects in columns, for example a column of names and a column of types. Borrowed.
+struct TextColumns {
+    std::size_t objects = 0;
+    /// Returns the text of an object in a column; empty: the object has none.
+    std::function<std::string_view(std::uint32_t object, std::size_t column)> text;
+};
+/// A pattern per column. An object matches if each of its texts matches the pattern of its column. Columns without a pattern do not
+/// matter; one may be at the end of the list without an element.
+using ColumnPatterns = std::vector<std::optional<std::string>>;
+/// The rule drops a pair if one object matches `a` and the other object matches `b`. Patterns are those of NameRule.
+struct ColumnRule {
+    ColumnPatterns a, b;
+};
+/// Returns the filter "name rules" for several columns. `text` is called only by this function.
+std::unique_ptr<Filter> make_column_filter(const TextColumns& first, const std::vector<ColumnRule>& rules,
+                                           const TextColumns* second = nullptr);
 
 /// Returns the filter "same parent", which keeps pairs of objects with different parent numbers. A parent is any number that
 /// the caller assigns, such as a body or a layer.

@@ -1,7 +1,7 @@
-// Filter "name rules": removes pairs whose names match an exclusion rule.
+// Filter "name rules": removes pairs whose names, or texts in several columns, match an exclusion rule.
 //
-// Each name is matched against each pattern once. Names that match the same patterns are of one kind. A kind has two ascending
-// lists: rules whose first pattern its names match, and rules whose second pattern they match. A pair is removed if the
+// Each object is matched against each list of patterns once. Objects that match the same lists are of one kind. A kind has two
+// ascending lists: rules whose first patterns its objects match, and rules whose second patterns they match. A pair is removed if the
 // first list of one kind and the second list of the other have a rule in common. Most kinds have empty lists.
 #include <algorithm>
 #include <map>
@@ -55,37 +55,46 @@ namespace {
 
 using RuleList = std::vector<std::uint32_t>;
 
-/// The rules whose first pattern (`as_a`) and whose second pattern (`as_b`) a name matches.
+/// The rules whose first patterns (`as_a`) and whose second patterns (`as_b`) an object matches.
 struct Kind {
     RuleList as_a, as_b;
     auto operator<=>(const Kind&) const = default;
 };
 
-/// All kinds of names of a filter, shared by both sets.
+/// All kinds of objects of a filter, shared by both sets.
 class Kinds {
 public:
-    explicit Kinds(std::span<const NameRule> rules) {
+    explicit Kinds(std::span<const ColumnRule> rules) {
         for (std::uint32_t i = 0; i < rules.size(); ++i) {
             patterns_[rules[i].a].as_a.push_back(i);
             patterns_[rules[i].b].as_b.push_back(i);
         }
     }
 
-    /// Returns the number of the kind of each name.
-    std::vector<std::uint32_t> of(std::span<const std::string> names) {
+    /// Returns the number of the kind of each object.
+    std::vector<std::uint32_t> of(const TextColumns& set) {
         std::vector<std::uint32_t> kinds;
-        kinds.reserve(names.size());
-        for (const std::string& name : names) kinds.push_back(of(name));
+        kinds.reserve(set.objects);
+        for (std::size_t i = 0; i < set.objects; ++i) kinds.push_back(of(set, std::uint32_t(i)));
         return kinds;
     }
 
     const Kind& operator[](std::uint32_t kind) const { return *kinds_[kind]; }
 
 private:
-    std::uint32_t of(const std::string& name) {
+    static bool matches(const TextColumns& set, std::uint32_t object, const ColumnPatterns& patterns) {
+        for (std::size_t column = 0; column < patterns.size(); ++column) {
+            if (!patterns[column]) continue;
+            const std::string_view text = set.text(object, column);
+            if (text.empty() || !matches_pattern(text, *patterns[column])) return false;
+        }
+        return true;
+    }
+
+    std::uint32_t of(const TextColumns& set, std::uint32_t object) {
         Kind kind;
-        for (const auto& [pattern, rules] : patterns_) {
-            if (name.empty() || !matches_pattern(name, pattern)) continue;
+        for (const auto& [patterns, rules] : patterns_) {
+            if (!matches(set, object, patterns)) continue;
             kind.as_a.insert(kind.as_a.end(), rules.as_a.begin(), rules.as_a.end());
             kind.as_b.insert(kind.as_b.end(), rules.as_b.begin(), rules.as_b.end());
         }
@@ -96,7 +105,7 @@ private:
         return place->second;
     }
 
-    std::map<std::string, Kind> patterns_;  // by pattern: the rules that have it
+    std::map<ColumnPatterns, Kind> patterns_;  // by patterns: the rules that have them
     std::map<Kind, std::uint32_t> numbers_;
     std::vector<const Kind*> kinds_;  // by number: keys of numbers_
 };
@@ -111,14 +120,13 @@ bool have_common(const RuleList& first, const RuleList& second) {
     return false;
 }
 
-class NameFilter final : public Filter {
+class ColumnFilter final : public Filter {
 public:
-    NameFilter(std::span<const std::string> names, std::span<const NameRule> rules,
-               const std::optional<std::span<const std::string>>& second)
-        : kinds_(rules), first_(kinds_.of(names)) {
-        if (second) second_ = kinds_.of(*second);
+    ColumnFilter(const TextColumns& first, std::span<const ColumnRule> rules, const TextColumns* second)
+        : kinds_(rules), first_(kinds_.of(first)) {
+        if (second != nullptr) second_ = kinds_.of(*second);
         const std::span<const std::uint32_t> of_second = second_;
-        of_objects_.emplace("name", first_, second ? std::optional(of_second) : std::nullopt);
+        of_objects_.emplace("name", first_, second != nullptr ? std::optional(of_second) : std::nullopt);
     }
 
     std::string_view name() const override { return "name rules"; }
@@ -136,12 +144,27 @@ private:
     std::optional<PerObject<std::uint32_t>> of_objects_;
 };
 
+/// Returns names as the only column.
+TextColumns column_of(std::span<const std::string> names) {
+    return {names.size(), [names](std::uint32_t object, std::size_t) { return std::string_view(names[object]); }};
+}
+
 }  // namespace
+
+std::unique_ptr<Filter> make_column_filter(const TextColumns& first, const std::vector<ColumnRule>& rules,
+                                           const TextColumns* second) {
+    return std::make_unique<ColumnFilter>(first, rules, second);
+}
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): the public function takes the rules by value.
 std::unique_ptr<Filter> make_name_filter(std::span<const std::string> names, std::vector<NameRule> rules,
                                          std::optional<std::span<const std::string>> second) {
-    return std::make_unique<NameFilter>(names, rules, second);
+    std::vector<ColumnRule> column_rules;
+    column_rules.reserve(rules.size());
+    for (const NameRule& rule : rules) column_rules.push_back({{rule.a}, {rule.b}});
+    if (!second) return make_column_filter(column_of(names), column_rules);
+    const TextColumns others = column_of(*second);
+    return make_column_filter(column_of(names), column_rules, &others);
 }
 
 }  // namespace octopair

@@ -134,6 +134,42 @@ TEST_P(SimpleFilters, NameRulesLeaveOutEitherWayRound) {
     }
 }
 
+TEST_P(SimpleFilters, ColumnRulesNeedAllTheirColumns) {
+    const auto columns = [](const Names& first, const Names& second) {
+        return TextColumns{first.size(), [&](std::uint32_t object, std::size_t column) {
+                               return std::string_view(column == 0 ? first[object] : second[object]);
+                           }};
+    };
+    const auto fits = [](const ColumnPatterns& patterns, const TextColumns& set, std::uint32_t object) {
+        for (std::size_t i = 0; i < patterns.size(); ++i) {
+            const std::string_view text = set.text(object, i);
+            if (patterns[i] && (text.empty() || !fits_plainly(text, *patterns[i]))) return false;
+        }
+        return true;
+    };
+    const auto patterns = [&] {
+        ColumnPatterns all(draw(3));
+        for (auto& pattern : all) {
+            if (draw(2) == 0) pattern = text("ab/*?*");
+        }
+        return all;
+    };
+    for (int round = 0; round < rounds; ++round) {
+        const Names names_a = names(), types_a = names(), names_b = names(), types_b = names();
+        const TextColumns first = columns(names_a, types_a);
+        const TextColumns second = join() ? columns(names_b, types_b) : first;
+        std::vector<ColumnRule> rules;
+        for (std::uint32_t i = draw(4); i > 0; --i) rules.push_back({patterns(), patterns()});
+        const auto filter = make_column_filter(first, rules, join() ? &second : nullptr);
+        EXPECT_EQ(through(*filter, join()), kept(join(), [&](Pair pair) {
+                      return std::ranges::none_of(rules, [&](const ColumnRule& rule) {
+                          return (fits(rule.a, first, pair.a) && fits(rule.b, second, pair.b)) ||
+                                 (fits(rule.b, first, pair.a) && fits(rule.a, second, pair.b));
+                      });
+                  }));
+    }
+}
+
 TEST_P(SimpleFilters, PatternsMeanWhatTheySay) {
     for (int i = 0; i < 20'000; ++i) {
         const std::string name = text("ab"), pattern = text("ab*?*");
