@@ -28,6 +28,8 @@ _octopair() {
     case $previous in
         --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects features" -- "$current"); return ;;
         --adjacent) mapfile -t COMPREPLY < <(compgen -W "beyond-shared exclude include" -- "$current"); return ;;
+        --up) mapfile -t COMPREPLY < <(compgen -W "y z" -- "$current"); return ;;
+        --unit) mapfile -t COMPREPLY < <(compgen -W "mm cm dm m km in ft" -- "$current"); return ;;
         --same-parent) mapfile -t COMPREPLY < <(compgen -W "include exclude" -- "$current"); return ;;
         --objects)
             if [[ $subcommand == detect || $subcommand == submit ]]; then
@@ -48,7 +50,7 @@ _octopair() {
     case $subcommand in
         detect)
             if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --tolerance --duplicate-tolerance --min-depth --weld --exclude --same-parent --baseline --report --objects --margin --padding --output --order
+                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --tolerance --duplicate-tolerance --min-depth --weld --exclude --same-parent --baseline --report --up --unit --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --verify --fail-on-collision --engine --threads --workers --stats --quiet --help
                     --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else

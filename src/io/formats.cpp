@@ -1,6 +1,8 @@
 #include "io/formats.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -35,6 +37,22 @@ bool is_imported_file(const std::string& path) {
 #else
     return is_mesh_file(path);
 #endif
+}
+
+bool is_ifc_file(const std::string& path) {
+    const std::string ending = ending_of(path);
+    return ending == ".ifc" || ending == ".ifczip";
+}
+
+SceneSpace format_space(const std::string& path) {
+    const std::string ending = ending_of(path);
+    const auto is_any_of = [&](std::initializer_list<std::string_view> endings) {
+        return std::find(endings.begin(), endings.end(), ending) != endings.end();
+    };
+    if (is_ifc_file(path)) return {UpAxis::z, "m"};  // Assimp scales to metres
+    // Assimp turns and scales COLLADA to the axes and the unit that glTF and X3D prescribe.
+    if (is_any_of({".gltf", ".glb", ".dae", ".zae", ".x3d", ".x3db", ".wrl"})) return {UpAxis::y, "m"};
+    return {};
 }
 
 bool may_name_files(const std::string& path) {

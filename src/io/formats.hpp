@@ -26,6 +26,23 @@ inline bool is_mesh_file(const std::string& path) { return scene_format(path) ==
 /// Returns whether Assimp reads a file: all mesh files but those of simple formats (meshes/plain/).
 bool is_imported_file(const std::string& path);
 
+/// The axis of a scene that points up.
+enum class UpAxis : std::uint8_t { unknown, y, z };
+
+/// Meaning of the coordinates of a scene, as far as it is known.
+struct SceneSpace {
+    UpAxis up = UpAxis::unknown;
+    std::string unit;  ///< unit of length, for example "m"; empty if unknown
+
+    bool operator==(const SceneSpace&) const = default;
+};
+
+/// Returns the axes and the unit that the format of a scene file prescribes, after its reader.
+SceneSpace format_space(const std::string& path);
+
+/// Returns whether a file is a building model in IFC.
+bool is_ifc_file(const std::string& path);
+
 /// Returns whether a scene file may name other files that must be read too (glTF, JSON).
 bool may_name_files(const std::string& path);
 

@@ -1,4 +1,4 @@
-// LoadedScene: a scene in memory. Boxes of all frames, and the names and shapes that the files have.
+// LoadedScene: a scene in memory. Boxes of all frames, and the names, details and shapes that the files have.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,15 @@
 
 #include "base/memory.hpp"
 #include "io/files/file_mapping.hpp"
+#include "io/formats.hpp"
 #include "io/loaded_shapes.hpp"
+#include "io/object_details.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::io {
 
-/// Box i of frame f is boxes[f * objects + i]. Boxes of a large .npy file are mapped from the file. A scene with shapes or triangles may have no boxes yet; the caller then
-/// computes the boxes from the shapes.
+/// Box i of frame f is boxes[f * objects + i]. Boxes of a large .npy file are mapped from the file. A scene with shapes or
+/// triangles may have no boxes yet; the caller then computes the boxes from the shapes.
 struct LoadedScene {
     std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
     std::uint64_t objects = 0;  ///< number of objects in each frame
@@ -23,6 +25,8 @@ struct LoadedScene {
     bool moving = false;   ///< true for a file with a frame axis, even with one frame
     bool rounded = false;  ///< true if coordinates of meshes were rounded to float32, in the file or by its reader
     std::vector<std::string> names;      ///< empty, or one name per object; an object without a name has an empty one
+    ObjectDetails details;               ///< empty, or a row per object
+    SceneSpace space;                    ///< axes and unit of the coordinates
     std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
 

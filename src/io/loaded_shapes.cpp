@@ -58,6 +58,7 @@ void LoadedShapes::append(LoadedShapes&& others) {
 
 void LoadedTriangles::append(LoadedTriangles&& others) {
     append_renumbered(owners, others.owners, owner_names.size());
+    append_details(owner_details, others.owner_details, {owner_names.size(), others.owner_names.size()});
     append_moved(owner_names, std::move(others.owner_names));
     append_moved(triangles, std::move(others.triangles));
 }

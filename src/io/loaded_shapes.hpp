@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/object_details.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/shapes.hpp"
 
@@ -35,6 +36,7 @@ struct LoadedTriangles {
     std::vector<Triangle3d> triangles;
     std::vector<std::uint32_t> owners;  ///< for each triangle, the node that it belongs to (an index into owner_names)
     std::vector<std::string> owner_names;  ///< names of all nodes, including nodes without triangles
+    ObjectDetails owner_details;           ///< empty, or a row per node
 
     /// Appends the triangles of `others`. Their triangles and owners get the numbers after those of this scene.
     void append(LoadedTriangles&& others);

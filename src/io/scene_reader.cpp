@@ -72,6 +72,16 @@ void join_part(std::span<LoadedScene> scenes, std::optional<Part> LoadedScene::*
     }
 }
 
+/// Returns the axis and the unit that all scenes have. Unknown if they differ.
+SceneSpace joint_space(std::span<const LoadedScene> scenes) {
+    SceneSpace space = scenes.front().space;
+    for (const LoadedScene& scene : scenes) {
+        if (scene.space.up != space.up) space.up = UpAxis::unknown;
+        if (scene.space.unit != space.unit) space.unit.clear();
+    }
+    return space;
+}
+
 template <typename Real>
 std::optional<std::string> fault_of(const Box<Real>& box) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -143,6 +153,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     LoadedScene joined;
     joined.moving = scenes.front().moving;
     joined.rounded = std::any_of(scenes.begin(), scenes.end(), [](const LoadedScene& scene) { return scene.rounded; });
+    joined.space = joint_space(scenes);
     joined.frames = scenes.front().frames;
     bool named = false;
     std::vector<FrameCount> counts;
@@ -153,6 +164,11 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
         named |= !scene.names.empty();
     }
     check_frame_counts(counts, paths);
+    std::size_t before = 0;
+    for (const LoadedScene& scene : scenes) {
+        append_details(joined.details, scene.details, {before, std::size_t(scene.objects)});
+        before += std::size_t(scene.objects);
+    }
     if (named) {
         for (LoadedScene& scene : scenes) {
             scene.names.resize(std::size_t(scene.objects));

@@ -1,6 +1,7 @@
 // Reads scene files of any format. The ending of the name gives the format: .npy, .csv, .json, or a mesh file of Assimp.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -18,6 +19,8 @@ enum class MeshObjects : std::uint8_t { node, triangle };
 struct SceneContent {
     MeshObjects objects = MeshObjects::node;
     bool shapes = false;  ///< also read shapes or triangles, for the narrow phase
+    /// Called with the part of a file that is read, from 0 to 1, or empty. Only readers of plain meshes call it.
+    std::function<void(double)> progress = {};
 };
 
 /// Reads a scene file. Throws: Error{bad_input, io_failed, resource_limit, cancelled} that begins with the file.

@@ -51,7 +51,10 @@ LoadedScene full_scene() {
     scene.shapes->poses[1].rows[2][3] = 4.5;
     scene.shapes->parents = {0, 0};
     scene.shapes->padding = {0.5, 0.25};
-    scene.triangles = io::LoadedTriangles{{Triangle3d{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}, {1}, {"none", "wheel"}};
+    scene.triangles = io::LoadedTriangles{{Triangle3d{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}}}, {1}, {"none", "wheel"}, {}};
+    io::DetailsBuilder(scene.details).add({"w", "wheel", "7", "car", "", "steel"});
+    io::DetailsBuilder(scene.triangles->owner_details).add({"o", "", "", "", "", ""});
+    scene.space = {io::UpAxis::y, "mm"};
     return scene;
 }
 
@@ -62,6 +65,9 @@ TEST(SceneTransfer, AllThatASceneHoldsArrives) {
     EXPECT_EQ(std::get<Buffer<Box3d>>(scene.boxes)[1].max[1], 1e300);
     EXPECT_EQ(scene.objects, 2u);
     EXPECT_EQ(scene.names, sent.names);
+    EXPECT_EQ(scene.details.of(0, io::Detail::material), "steel");
+    EXPECT_EQ(scene.details.rows, sent.details.rows);
+    EXPECT_EQ(scene.space, sent.space);
     ASSERT_TRUE(scene.shapes && scene.triangles);
     EXPECT_EQ(std::get<shape::Cone>(scene.shapes->shapes[0]).length, 2);
     EXPECT_EQ(std::get<shape::Mesh>(scene.shapes->shapes[1]).triangles, (decltype(shape::Mesh::triangles){{0, 1, 1}}));
@@ -71,6 +77,7 @@ TEST(SceneTransfer, AllThatASceneHoldsArrives) {
     EXPECT_EQ(scene.shapes->padding, sent.shapes->padding);
     EXPECT_EQ(scene.triangles->triangles, sent.triangles->triangles);
     EXPECT_EQ(scene.triangles->owner_names, sent.triangles->owner_names);
+    EXPECT_EQ(scene.triangles->owner_details.of(0, io::Detail::label), "o");
 }
 
 TEST(SceneTransfer, BytesOfNoSceneAreAnError) {

@@ -68,6 +68,9 @@ TEST_F(Stages, RulesLeavePairsOut) {
     EXPECT_EQ(rows(with), "a,b\n0,3\n1,4\n2,5\n");
     EXPECT_EQ(rows("t.obj --stage pairs --exclude r.json"), "a,b\n0,1\n");
     EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n0,0\n1,1\n2,2\n");
+    rules(R"({"exclude": [{"a": {"label": "flat", "parent": "t.*"}, "b": {"name": "t.obj/through"}}]})");
+    EXPECT_EQ(rows(with), "a,b\n0,3\n1,4\n2,5\n");
+    EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n0,0\n1,1\n2,2\n");
     rules(R"({"ignored_pairs": [["t.obj/flat", "t.obj/flat"], ["t.obj/through", "t.obj/flat"]]})");
     EXPECT_EQ(rows(with), "a,b\n1,4\n2,5\n");
     EXPECT_EQ(rows("t.obj --against t.obj --exclude r.json"), "a,b\n1,1\n2,2\n");
@@ -88,6 +91,8 @@ TEST_F(Stages, WrongRulesAreRefused) {
     EXPECT_EQ(refused(R"({"ignored_pairs": [["t.obj/flat", "t.obj/none"]]})"),
               "octopair: r.json: ignored_pairs[0]: no object has the name 't.obj/none'\n");
     EXPECT_EQ(refused(R"({"exclude": 7})"), "octopair: r.json: exclude: a number, not an array\n");
+    EXPECT_EQ(refused(R"({"exclude": [{"a": "*", "b": {"level": "*"}}]})"),
+              "octopair: r.json: exclude[0]: b: no object of the inputs has the detail 'level'\n");
     EXPECT_EQ(run("detect t.obj --exclude none.json").status, 4);
     save_boxes("a.npy", {0, 0.5});
     rules(R"({"exclude": [{"a": "*", "b": "*"}]})");
@@ -161,10 +166,10 @@ TEST_F(Stages, StatsListTheFilters) {
     EXPECT_EQ(told["filters"][3]["in"], told["filters"][2]["out"]);
     EXPECT_EQ(told["filters"][3]["out"], 0);
     const std::string summary = run("detect t.obj --output p.npy").err;
-    EXPECT_NE(summary.find(
-                  "pairs       1\nclasses     1 collision\nnot closed  3 of 3 objects have no inside (--weld joins "
-                  "vertices): t.obj/flat, t.obj/beside, t.obj/through\ncandidates  2\nfilter      bounding spheres: "),
-              std::string::npos)
+    EXPECT_NE(
+        summary.find("pairs       1\nclasses     1 collision\nnot closed  3 of 3 objects have no inside (--weld joins "
+                     "vertices): flat, beside, through\ncandidates  2\nfilter      bounding spheres: "),
+        std::string::npos)
         << summary;
     EXPECT_NE(summary.find("\nfilter      exact object: 1 of "), std::string::npos) << summary;
     EXPECT_FALSE(stats("t.obj --stage pairs").contains("filters"));
@@ -176,7 +181,9 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     ASSERT_EQ(fewer.status, 0);
     EXPECT_NE(fewer.err.find("\nchanges     0 new, 1 same, 2 gone\n"), std::string::npos) << fewer.err;
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
-    EXPECT_NE(content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,same\n0,1,"), std::string::npos);
+    EXPECT_NE(
+        content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,flat,through,t.obj,t.obj,same\n0,1,"),
+        std::string::npos);
     // The result is the next baseline. Rows that are marked as gone are not part of that baseline.
     ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
     ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);
@@ -201,6 +208,35 @@ TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
     EXPECT_EQ(run("detect t.obj --report none/r.html").status, 4);
     EXPECT_NE(refusal("t.obj --report r.txt").find("--report: r.txt: "), std::string::npos);
     EXPECT_NE(refusal("t.obj --report r.html --count-only").find("--report: "), std::string::npos);
+    EXPECT_NE(page.find("\"unit\":\"\",\"up\":2"), std::string::npos) << "an OBJ file says neither";
+    ASSERT_EQ(run("detect t.obj --report r.html --up y --unit mm --output p.csv").status, 0);
+    EXPECT_NE(content("r.html").find("\"unit\":\"mm\",\"up\":1"), std::string::npos);
+}
+
+TEST_F(Stages, CoarseCoordinatesAreAWarning) {
+    const auto save = [&](const std::string& name, const std::string& type, auto x) {
+        const decltype(x) corners[] = {x, 0, 0, x, 1, 0, x, 0, 1};
+        const auto bytes = std::as_bytes(std::span(corners));
+        write_file(file(name), "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty " + type +
+                                   " x\nproperty " + type + " y\nproperty " + type +
+                                   " z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n" +
+                                   std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()) +
+                                   std::string("\3\0\1\2", 4));
+    };
+    save("far.ply", "float", 5410000.5f);
+    save("exact.ply", "double", 5410000.5);
+    save("near.ply", "float", 1.0f);
+    const nlohmann::json far = stats("far.ply --stage pairs");
+    ASSERT_EQ(far["warnings"].size(), 1u);
+    EXPECT_EQ(
+        far["warnings"][0].get<std::string>().find(
+            "far.ply: coordinates up to 5.41e+06 were rounded to float32, in steps of 0.5; the scene measures 1."),
+        0u);
+    EXPECT_NE(run("detect far.ply --report r.html").err.find("warning     far.ply: "), std::string::npos);
+    EXPECT_NE(content("r.html").find("were rounded to float32"), std::string::npos);
+    EXPECT_FALSE(stats("exact.ply --stage features").contains("warnings"));
+    EXPECT_FALSE(stats("near.ply --stage features --tolerance 1e-6").contains("warnings"));
+    EXPECT_EQ(stats("near.ply --stage features --tolerance 1e-7")["warnings"].size(), 1u) << "a step is 1.2e-7";
 }
 
 TEST_F(Stages, ExitStatusIsOfWhatCameOut) {
@@ -220,7 +256,8 @@ TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
          {"t.obj --adjacent include", "t.obj --objects triangle --stage pairs --adjacent include",
           "t.obj --max-contacts 3", "t.obj --objects triangle --stage features --max-contacts 3",
           "t.obj --stage features --max-contacts 4294967296", "t.obj --objects triangle --exclude r.json",
-          "t.obj --objects triangle --same-parent exclude", "t.obj --objects triangle --padding p.npy"}) {
+          "t.obj --objects triangle --same-parent exclude", "t.obj --objects triangle --padding p.npy", "t.obj --up y",
+          "t.obj --unit m", "t.obj --report r.html --up x", "t.obj --report r.html --unit mile"}) {
         EXPECT_TRUE(refusal(wrong).starts_with("octopair: --")) << wrong;
     }
     EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not a valid value"),

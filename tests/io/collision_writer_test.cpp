@@ -89,6 +89,25 @@ TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
               "\n");
 }
 
+TEST(CollisionWriter, DetailsThatAnObjectHasAreColumns) {
+    io::ObjectDetails details;
+    io::DetailsBuilder builder(details);
+    builder.add({"", "wall, thick", "1", "", "", ""});
+    builder.add({"", "", "", "", "", "stone"});
+    const std::vector<std::string> named = {"x", "y"};
+    const io::ObjectNames names{named, {}, &details};
+    const std::vector<Pair> pair = {{0, 1}};
+    EXPECT_EQ(written(".jsonl", {{names, names}}, {pair, {}}),
+              R"({"a":0,"b":1,"a_name":"x","a_type":"wall, thick","a_id":"1","b_name":"y","b_material":"stone"})"
+              "\n");
+    EXPECT_EQ(
+        written(".csv", {{names, names}, false, false, true}, {pair, {}}, {R"({"a":0,"b":1,"a_type":"t","b_id":7})"}),
+        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,a_type,b_type,"
+        "a_id,b_id,a_material,b_material,change\n"
+        "0,1,x,y,,,,,,,,,,\"wall, thick\",,1,,,stone,\n"
+        "0,1,,,,,,,,,,,,t,,,7,,,gone\n");
+}
+
 TEST(CollisionWriter, NpyHoldsPairsAlone) {
     EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)io::make_collision_file_writer("c.npy", {}); }),
               "c.npy: .npy can hold only pairs; write collisions to .csv or .jsonl");

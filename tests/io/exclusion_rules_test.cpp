@@ -18,14 +18,26 @@ TEST(ExclusionRules, AreRead) {
             "ignored_pairs": [["door", "hinge \u00e4"]], "same_parent": true})",
         "r.json");
     ASSERT_EQ(rules.exclude.size(), 2u);
-    EXPECT_EQ(rules.exclude[0].a, "*/bolt*");
-    EXPECT_EQ(rules.exclude[0].b, "*/nut?");
-    EXPECT_EQ(rules.exclude[1].a, "*");
-    EXPECT_EQ(rules.exclude[1].b, "");
+    EXPECT_EQ(rules.exclude[0].a, ColumnPatterns{"*/bolt*"});
+    EXPECT_EQ(rules.exclude[0].b, ColumnPatterns{"*/nut?"});
+    EXPECT_EQ(rules.exclude[1].a, ColumnPatterns{"*"});
+    EXPECT_EQ(rules.exclude[1].b, ColumnPatterns{""});
     ASSERT_EQ(rules.ignored_pairs.size(), 1u);
     EXPECT_EQ(rules.ignored_pairs[0][0], "door");
     EXPECT_EQ(rules.ignored_pairs[0][1], "hinge \xc3\xa4");
     EXPECT_TRUE(rules.same_parent);
+}
+
+TEST(ExclusionRules, MayBeAboutDetails) {
+    const auto rules = io::parse_exclusion_rules(
+        R"({"exclude": [{"a": {"type": "IfcBeam", "name": "x*"}, "b": {"material": "steel"}}]})", "r.json");
+    ASSERT_EQ(rules.exclude.size(), 1u);
+    ColumnPatterns a(7), b(7);
+    a[0] = "x*";
+    a[io::column_of(io::Detail::type)] = "IfcBeam";
+    b[io::column_of(io::Detail::material)] = "steel";
+    EXPECT_EQ(rules.exclude[0].a, a);
+    EXPECT_EQ(rules.exclude[0].b, b);
 }
 
 TEST(ExclusionRules, MayBeLeftOut) {
@@ -44,9 +56,18 @@ TEST(ExclusionRules, NameThePlace) {
     EXPECT_EQ(rules_refusal(R"({"exclude": ["*"]})"), "r.json: exclude[0]: a string, not an object");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*"}, {"a": "*"}]})"),
               "r.json: exclude[1]: the key 'b' is missing");
-    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"), "r.json: exclude[0]: a: a number, not a string");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"),
+              "r.json: exclude[0]: a: a number, not a string or an object");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
               "r.json: exclude[0]: unknown key 'c'; known keys: a, b");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": {"kind": "x"}, "b": "*"}]})"),
+              "r.json: exclude[0]: a: unknown key 'kind'; known keys: name, label, type, id, parent, level, material");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": {}, "b": "*"}]})"),
+              "r.json: exclude[0]: a: needs at least one of the keys name, label, type, id, parent, level, material");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": {"type": 1}}]})"),
+              "r.json: exclude[0]: b: type: a number, not a string");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": null, "b": "*"}]})"),
+              "r.json: exclude[0]: a: null, not a string or an object");
     EXPECT_EQ(rules_refusal(R"({"ignored_pairs": [["a"]]})"),
               "r.json: ignored_pairs[0]: an array of 1, not of two names");
     EXPECT_EQ(rules_refusal(R"({"ignored_pairs": ["a"]})"), "r.json: ignored_pairs[0]: a string, not an array");

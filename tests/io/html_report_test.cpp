@@ -24,6 +24,8 @@ std::vector<Finding> reported_findings() {
     findings[0].collision_class = CollisionClass::penetrating;
     findings[0].depth = 0.5;
     findings[0].depth_kind = DepthKind::at_least;
+    findings[0].depth_at_most = 0.75;
+    findings[0].open = {false, true};
     findings[0].contacts = {{{0.75, 0.5, 0.5}, {1, 0, 0}, 0.5}};
     findings[1].collision_class = CollisionClass::clearance;
     findings[1].distance = 0.25;
@@ -52,6 +54,7 @@ protected:
         report.write(rows);
         if (!gone.empty()) report.write_gone(gone);
         report.add_fact("time", "3 s");
+        report.add_note("n");
         report.finish();
         return read_file(directory_.file("r.html"));
     }
@@ -62,10 +65,10 @@ protected:
 TEST_F(HtmlReport, HoldsWhatWasWritten) {
     const auto found = reported_findings();
     io::ReportScene scene{"car.glb", {{{reported_names}, {reported_names}}, true}, std::span(boxes), {}};
+    scene.space = {io::UpAxis::y, "m"};
     const std::string text = page(scene, {reported_pairs, found, {}});
-    EXPECT_EQ(
-        data_of(text, "rows"),
-        json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5],1],[1,2,1,null,0.25,null,null,null,0,[0,0,0],0]]"));
+    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5],1,0.75,2],"
+                                                 "[1,2,1,null,0.25,null,null,null,0,[0,0,0],0,null,0]]"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 1u);
     EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1]"));
@@ -73,7 +76,8 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
     EXPECT_EQ(objects[0][2][1], "r\xEF\xBF\xBDight");
     EXPECT_EQ(data_of(text, "others"), json::parse("[[9,9,9,9,9,9]]"));
     EXPECT_EQ(data_of(text, "gone"), json::array());
-    EXPECT_EQ(data_of(text, "summary"), json::parse(R"({"title":"car.glb","join":false,"notes":[],
+    EXPECT_EQ(data_of(text, "words"), json::parse(R"([""])"));
+    EXPECT_EQ(data_of(text, "summary"), json::parse(R"({"title":"car.glb","join":false,"notes":["n"],"unit":"m","up":1,
         "facts":[["collisions","2"],["clearance","1"],["penetrating","1"],["time","3 s"]]})"));
     EXPECT_TRUE(text.starts_with("<!DOCTYPE html>"));
     EXPECT_TRUE(text.ends_with("</html>\n"));
@@ -82,8 +86,8 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
 TEST_F(HtmlReport, NamesAreTextAndNothingIsFetched) {
     const io::ReportScene scene{"<b>car</b>", {{{reported_names}, {reported_names}}}, std::span(boxes), {}};
     const std::string text = page(scene, {reported_pairs, {}, {}});
-    EXPECT_EQ(count(text, "<script"), 6u);  // five scripts with data, one with the page's code
-    EXPECT_EQ(count(text, "</script"), 6u);
+    EXPECT_EQ(count(text, "<script"), 7u);  // six scripts with data, one with the page's code
+    EXPECT_EQ(count(text, "</script"), 7u);
     EXPECT_EQ(count(text, "<b>"), 0u);
     EXPECT_EQ(count(text, "http:") + count(text, "https:") + count(text, "src="), 0u);
     EXPECT_EQ(data_of(text, "summary")["title"], "<b>car</b>");
@@ -97,7 +101,7 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
         "t", {{{reported_names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
     const std::string text =
         page(scene, {pair, {}, changes}, {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"contacts":[{}]})"});
-    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null,0]]"));
+    EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null,0,null,0]]"));
     EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1]])"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 2u);
@@ -115,8 +119,44 @@ TEST_F(HtmlReport, SaysWhatItLeavesOut) {
     EXPECT_EQ(data_of(text, "others").size(), 16'666u);
     const json summary = data_of(text, "summary");
     EXPECT_EQ(summary["facts"][0][1], "200001");
-    EXPECT_EQ(summary["notes"], json::parse(R"(["The table has the first 200000 rows of 200001.",
+    EXPECT_EQ(summary["notes"], json::parse(R"(["n", "The table has the worst 200000 of 200001 rows.",
         "The picture shows 16666 of the 49998 objects that are not in the table."])"));
+}
+
+TEST_F(HtmlReport, DetailsAreNumbersOfWords) {
+    io::ObjectDetails details;
+    io::DetailsBuilder builder(details);
+    builder.add({"L", "T", "", "", "", ""});
+    builder.add({"T", "", "i", "", "", "<m>"});
+    const io::ObjectNames names{reported_names, {}, &details};
+    const std::string text = page({"t", {{names, names}}, std::span(boxes), {}}, {reported_pairs, {}, {}});
+    EXPECT_EQ(data_of(text, "words"), json::parse(R"(["","L","T","i","<m>"])"));
+    const json objects = data_of(text, "objects");
+    EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1,1,2,0,0,0,0]"));
+    EXPECT_EQ(json(objects[0][1].begin() + 8, objects[0][1].end()), json::parse("[2,0,3,0,0,4]"));
+    EXPECT_EQ(json(objects[0][2].begin() + 8, objects[0][2].end()), json::parse("[0,0,0,0,0,0]"));
+}
+
+/// Rows that are not among the worst are left out, wherever they are in the result.
+TEST_F(HtmlReport, KeepsTheWorstRowsInTheirOrder) {
+    const std::size_t count = 2 * io::HtmlReport::max_rows + 3;
+    std::vector<Pair> all_pairs(count);
+    std::vector<Finding> all_findings(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        all_pairs[i] = {std::uint32_t(i), std::uint32_t(i) + 1};
+        all_findings[i].collision_class = CollisionClass::penetrating;
+        all_findings[i].depth_kind = DepthKind::least;
+        all_findings[i].depth = i % 2 == 0 ? 1.0 : 2.0;
+    }
+    all_findings[4].collision_class = CollisionClass::duplicate;
+    const std::vector<Box3f> many(count + 1);
+    const json rows = data_of(page({"t", {{}, true}, std::span(many), {}}, {all_pairs, all_findings, {}}), "rows");
+    ASSERT_EQ(rows.size(), io::HtmlReport::max_rows);
+    EXPECT_EQ(rows[0][0], 1);
+    EXPECT_EQ(rows[1][0], 3);
+    EXPECT_EQ(rows[2][0], 4) << "duplicates come before all depths";
+    EXPECT_EQ(rows[3][0], 5);
+    EXPECT_EQ(rows.back()[0], count - 6) << "of the equal rows, the last two are left out";
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ TEST(SceneReader, JoinsTriangles) {
     std::vector<LoadedScene> scenes(2);
     for (LoadedScene& scene : scenes) {
         scene.objects = 2;
-        scene.triangles = io::LoadedTriangles{std::vector<Triangle3d>(2), {0, 1}, {"first", "second", "empty"}};
+        scene.triangles = io::LoadedTriangles{std::vector<Triangle3d>(2), {0, 1}, {"first", "second", "empty"}, {}};
     }
     const LoadedScene joined = io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
     EXPECT_EQ(joined.triangles->owners, (std::vector<std::uint32_t>{0, 1, 3, 4}));

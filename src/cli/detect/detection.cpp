@@ -7,9 +7,9 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
+#include "cli/detect/precision.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/detect/filter_chain.hpp"
 #include "cli/input/shaped_set.hpp"
 #endif
 #ifdef OCTOPAIR_WITH_MPI
@@ -19,6 +19,16 @@
 namespace octopair::cli {
 
 namespace {
+
+/// Returns a name for people: label and type, or else the name, or else the number.
+[[maybe_unused]] std::string short_name(const io::LoadedScene& scene, std::uint32_t object) {
+    const std::string_view label = scene.details.of(object, io::Detail::label);
+    const std::string_view type = scene.details.of(object, io::Detail::type);
+    if (!label.empty() && type != label && !type.empty()) return fmt::format("{} ({})", label, type);
+    if (!label.empty()) return std::string(label);
+    const bool has_name = object < scene.names.size() && !scene.names[object].empty();
+    return has_name ? scene.names[object] : fmt::format("object {}", object);
+}
 
 class Detection {
 public:
@@ -51,6 +61,9 @@ private:
         report_.moving = inputs_.frames.moving;
         report_.objects = inputs_.first.total + inputs_.second.total;
         report_.engine = describe_engine(request_.engine);
+        const bool whole =
+            inputs_.first.total == inputs_.first.scene.objects && inputs_.second.total == inputs_.second.scene.objects;
+        if (whole) report_.warnings = coordinate_warnings(request_, sets());
 #ifdef OCTOPAIR_WITH_PIPELINE
         describe_shapes();
 #endif
@@ -62,10 +75,12 @@ private:
 #endif
     }
 
+    SetPair sets() const { return {inputs_.first, run_.join() ? &inputs_.second : nullptr}; }
+
 #ifdef OCTOPAIR_WITH_PIPELINE
     void describe_shapes() {
         if (stage_of(request_) == Stage::features) {
-            report_.tolerance = tolerance_of(request_, {inputs_.first, run_.join() ? &inputs_.second : nullptr});
+            report_.tolerance = tolerance_of(request_, sets());
             report_.tolerance_is_precision = !request_.pipeline.tolerance && *report_.tolerance > 0;
         }
         if (stage_of(request_) == Stage::pairs) return;
@@ -75,9 +90,7 @@ private:
             const std::vector<std::uint32_t> open = set->shaped->open_objects();
             report_.open_objects += open.size();
             for (std::size_t i = 0; i < open.size() && report_.first_open.size() < named; ++i) {
-                const std::vector<std::string>& names = set->scene.names;
-                const bool has_name = open[i] < names.size() && !names[open[i]].empty();
-                report_.first_open.push_back(has_name ? names[open[i]] : fmt::format("object {}", open[i]));
+                report_.first_open.push_back(short_name(set->scene, open[i]));
             }
         }
     }
@@ -85,7 +98,8 @@ private:
 
 #ifdef OCTOPAIR_WITH_MPI
     void read_inputs() {
-        if (!request_.engine.has_ranks() || needs_whole_inputs(request_)) return inputs_.read(request_, run_.stop);
+        if (!request_.engine.has_ranks() || needs_whole_inputs(request_))
+            return inputs_.read(request_, run_.progress, run_.stop);
         read_slices(run_, cluster());
     }
     void make_search() {
@@ -93,7 +107,7 @@ private:
     }
     Cluster& cluster() { return dynamic_cast<Cluster&>(group_); }
 #else
-    void read_inputs() { inputs_.read(request_, run_.stop); }
+    void read_inputs() { inputs_.read(request_, run_.progress, run_.stop); }
     void make_search() { search_ = make_stream_search(run_); }
 #endif
 
@@ -161,6 +175,7 @@ void DetectReport::add(const PipelineSummary& summary, double written) {
         filters[i].name = counts.name;
         filters[i].in += counts.in;
         filters[i].out += counts.out;
+        filters[i].undecided += counts.undecided;
         filters[i].seconds += counts.seconds;
     }
 }

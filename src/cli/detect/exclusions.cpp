@@ -49,16 +49,12 @@ public:
         if (stage_of(request_) != Stage::pairs) add_groups();
         if (request_.pipeline.same_parent.value_or(rules.same_parent)) add_parents();
         if (!rules.ignored_pairs.empty()) add_ignored(rules);
-        if (!rules.exclude.empty()) {
-            check_names();
-            pipeline_.add(make_name_filter(names(sets_.first), std::move(rules.exclude), second_names()));
-        }
+        if (!rules.exclude.empty()) add_rules(rules.exclude);
     }
 
 private:
     bool join() const { return sets_.second != nullptr; }
     static Names names(const InputSet& set) { return set.scene.names; }
-    std::optional<Names> second_names() const { return join() ? std::optional(names(*sets_.second)) : std::nullopt; }
 
     // Requires a stage beyond Stage::pairs: then all objects have shapes.
     void add_groups() const {
@@ -97,6 +93,38 @@ private:
             if (join()) ignore(first.of(y), second.of(x));
         }
         pipeline_.add(make_ignored_pairs_filter(std::move(ignored), join()));
+    }
+
+    void add_rules(const std::vector<ColumnRule>& rules) const {
+        for (std::size_t i = 0; i < rules.size(); ++i) {
+            check_columns(rules[i].a, fmt::format("exclude[{}]: a", i));
+            check_columns(rules[i].b, fmt::format("exclude[{}]: b", i));
+        }
+        const TextColumns first = columns_of(sets_.first);
+        const std::optional<TextColumns> second = join() ? std::optional(columns_of(*sets_.second)) : std::nullopt;
+        pipeline_.add(make_column_filter(first, rules, second ? &*second : nullptr));
+    }
+
+    static TextColumns columns_of(const InputSet& set) {
+        return {std::size_t(set.scene.objects), [&scene = set.scene](std::uint32_t object, std::size_t column) {
+                    if (column == 0) return object < scene.names.size() ? std::string_view(scene.names[object]) : "";
+                    return scene.details.of(object, io::all_details[column - 1]);
+                }};
+    }
+
+    /// Throws: Error{usage, bad_input} if no object has one of the details that the patterns need.
+    void check_columns(const ColumnPatterns& patterns, const std::string& place) const {
+        for (std::size_t column = 0; column < patterns.size(); ++column) {
+            if (!patterns[column]) continue;
+            if (column == 0) {
+                check_names();
+                continue;
+            }
+            const io::Detail detail = io::all_details[column - 1];
+            if (sets_.first.scene.details.has(detail) || (join() && sets_.second->scene.details.has(detail))) continue;
+            io::refuse(request_.pipeline.exclude,
+                       fmt::format("{}: no object of the inputs has the detail '{}'", place, io::word_of(detail)));
+        }
     }
 
     // A set whose files have no names has an empty list of names.

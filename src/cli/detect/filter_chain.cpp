@@ -1,11 +1,9 @@
 #include "cli/detect/filter_chain.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
-#include <variant>
 
 #include "cli/detect/exclusions.hpp"
+#include "cli/detect/precision.hpp"
 #include "cli/input/shaped_set.hpp"
 #include "octopair/filters.hpp"
 
@@ -76,31 +74,7 @@ private:
     Pipeline pipeline_;
 };
 
-/// Returns the largest coordinate of the boxes of a set with coordinates that were rounded to float32; otherwise 0.
-double largest_rounded(const InputSet& set) {
-    if (!set.scene.rounded) return 0;
-    double largest = 0;
-    std::visit(
-        [&](const auto& boxes) {
-            for (const auto& box : boxes.span()) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    largest = std::max({largest, std::fabs(double(box.min[axis])), std::fabs(double(box.max[axis]))});
-                }
-            }
-        },
-        set.scene.boxes);
-    return largest;
-}
-
 }  // namespace
-
-double tolerance_of(const DetectRequest& request, const SetPair& sets) {
-    if (request.pipeline.tolerance) return *request.pipeline.tolerance;
-    const double largest =
-        std::max(largest_rounded(sets.first), sets.second != nullptr ? largest_rounded(*sets.second) : 0);
-    constexpr double float32_step = 0x1p-23;
-    return 2 * largest * float32_step;
-}
 
 std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
                                                const std::stop_token& stop) {

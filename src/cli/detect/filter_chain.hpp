@@ -18,10 +18,6 @@ struct SetPair {
     const InputSet* second = nullptr;
 };
 
-/// Returns the tolerance of --tolerance. Without it: two steps of float32 at the largest coordinate, if coordinates of meshes were
-/// rounded to float32; otherwise 0.
-double tolerance_of(const DetectRequest& request, const SetPair& sets);
-
 class FilterChain {
 public:
     virtual ~FilterChain() = default;

@@ -43,6 +43,28 @@ std::uint32_t parse_max_contacts(const std::string& text) {
     return std::uint32_t(number);
 }
 
+void add_report_options(Command& command, PipelineRequest& request) {
+    command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
+    command
+        .add_option(
+            "--up",
+            [&request](const std::string& word) {
+                check_value("--up", {"y", "z"}, word);
+                request.space.up = word == "y" ? io::UpAxis::y : io::UpAxis::z;
+            },
+            "axis that points up in the report: y or z (default: that of the file format, or else z)")
+        .type_name("AXIS");
+    command
+        .add_option(
+            "--unit",
+            [&request](const std::string& word) {
+                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
+                request.space.unit = word;
+            },
+            "unit of the coordinates, for the report: mm, cm, dm, m, km, in or ft (default: that of the file format)")
+        .type_name("UNIT");
+}
+
 std::vector<std::string> all_inputs(const DetectRequest& request) {
     std::vector<std::string> inputs = request.inputs;
     if (!request.against.empty()) inputs.push_back(request.against);
@@ -114,7 +136,7 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
         .add_option("--baseline", request.baseline,
                     "compare with an older result: mark collisions as new, same or gone")
         .type_name("OLD.jsonl");
-    command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
+    add_report_options(command, request);
 }
 
 Stage stage_of(const DetectRequest& request) {
@@ -170,7 +192,7 @@ void check_exact_options(const DetectRequest& request) {
     if (!request.padding.empty()) refuse("--padding: with --objects triangle only at --stage pairs");
 }
 
-/// Checks --baseline and --report.
+/// Checks --baseline, --report, --up and --unit.
 void check_outcome_options(const DetectRequest& request) {
     const PipelineRequest& asked = request.pipeline;
     for (const auto& [option, value] :
@@ -186,6 +208,8 @@ void check_outcome_options(const DetectRequest& request) {
     if (older == ".csv" || older == ".npy") {
         refuse(fmt::format("--baseline: {}: the older result must be a .jsonl file", asked.baseline));
     }
+    if (asked.report.empty() && asked.space.up != io::UpAxis::unknown) refuse("--up: only with --report");
+    if (asked.report.empty() && !asked.space.unit.empty()) refuse("--unit: only with --report");
     if (!asked.baseline.empty() && request.limit)
         refuse("--baseline: not with --limit, which may leave out new collisions");
 }

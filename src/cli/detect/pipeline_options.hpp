@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/formats.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::cli {
@@ -27,13 +28,14 @@ struct PipelineRequest {
     std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
     std::string baseline;  ///< path of an older result, or empty
     std::string report;    ///< path of the HTML report to write, or empty
+    io::SceneSpace space;  ///< axis up and unit for the report; unknown: those of the formats of the inputs
 };
 
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
 /// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent,
-/// --baseline and --report.
+/// --baseline, --report, --up and --unit.
 void add_pipeline_options(Command& command, PipelineRequest& request);
 
 /// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/input/isolated_read.hpp"
 #include "io/boxes/npy.hpp"
@@ -69,6 +71,7 @@ public:
     io::LoadedScene read(const io::ObjectRows& rows, const std::stop_token& stop) {
         if (npy_) return npy_->read(rows, stop);
         io::LoadedScene part = std::move(whole_);
+        part.details = {};  // only whole sets have names and details of all objects
         const std::uint64_t objects = std::exchange(part.objects, rows.end - rows.begin);
         std::visit(
             [&](auto& boxes) {
@@ -88,6 +91,17 @@ private:
     io::LoadedScene whole_;
 };
 
+/// Returns for each file, and for the end, the bytes of the files before it, and 1. Files without a known size have none.
+std::vector<double> bytes_before(const std::vector<std::string>& paths) {
+    std::vector<double> before = {1};
+    for (const std::string& path : paths) {
+        std::error_code error;
+        const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+        before.push_back(before.back() + (error ? 0.0 : double(bytes)));
+    }
+    return before;
+}
+
 }  // namespace
 
 InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneContent& content,
@@ -96,7 +110,14 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
     std::vector<io::LoadedScene> scenes;
     io::SceneContent wanted = content;
     wanted.shapes |= std::any_of(paths.begin(), paths.end(), io::is_json_file);
-    for (const std::string& path : paths) {
+    const std::vector<double> before = bytes_before(paths);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        const std::string& path = paths[i];
+        if (content.progress) {
+            wanted.progress = [&, i](double done) {
+                content.progress((before[i] + done * (before[i + 1] - before[i])) / before.back());
+            };
+        }
         scenes.push_back(read_part(path, wanted, stop));
         set.parts.push_back({path, scenes.back().objects});
     }

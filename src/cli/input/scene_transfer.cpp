@@ -17,16 +17,18 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 // The members of each class that is sent member by member. Sender and receiver use the same list.
 
 auto members(Some<io::LoadedScene> auto& scene) {
-    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.rounded, scene.names, scene.shapes,
-                    scene.triangles);
+    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.rounded, scene.names, scene.details,
+                    scene.space, scene.shapes, scene.triangles);
 }
 auto members(Some<io::LoadedShapes> auto& loaded) {
     return std::tie(loaded.shapes, loaded.geometry, loaded.poses, loaded.parents, loaded.end_poses, loaded.padding,
                     loaded.groups, loaded.masks);
 }
 auto members(Some<io::LoadedTriangles> auto& loaded) {
-    return std::tie(loaded.triangles, loaded.owners, loaded.owner_names);
+    return std::tie(loaded.triangles, loaded.owners, loaded.owner_names, loaded.owner_details);
 }
+auto members(Some<io::ObjectDetails> auto& details) { return std::tie(details.words, details.rows); }
+auto members(Some<io::SceneSpace> auto& space) { return std::tie(space.up, space.unit); }
 auto members(Some<shape::ConvexHull> auto& hull) { return std::tie(hull.points); }
 auto members(Some<shape::Mesh> auto& mesh) { return std::tie(mesh.vertices, mesh.triangles); }
 

@@ -7,11 +7,13 @@
 
 namespace octopair::cli {
 
-void WholeInputs::read(const DetectRequest& request, const std::stop_token& stop) {
-    const io::SceneContent content{request.mesh_objects, has_filters(request)};
+void WholeInputs::read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop) {
+    const io::SceneContent content{request.mesh_objects, has_filters(request),
+                                   [&progress](double done) { progress.show("reading", done); }};
     first = read_input_set(request.inputs, content, stop);
     if (!request.against.empty()) second = read_input_set({request.against}, content, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
+    progress.show("preparing shapes", 0);
     make_shaped(first, second, {local_threads(request.engine), request.pipeline.weld.value_or(0)}, stop);
 #endif
     const io::LoadedScene &a = first.scene, &b = second.scene;

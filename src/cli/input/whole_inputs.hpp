@@ -4,6 +4,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
 #include "cli/input/input_set.hpp"
 #include "cli/input/join.hpp"
@@ -21,9 +22,9 @@ struct WholeInputs {
     io::FrameCount frames;
     std::optional<Paddings> padding;  ///< paddings of --padding
 
-    /// Reads the inputs, with shapes if filters need shapes.
+    /// Reads the inputs, with shapes if filters need shapes. Shows progress.
     /// Throws: what read_input_set(), make_shaped(), joint_frames() and Paddings throw.
-    void read(const DetectRequest& request, const std::stop_token& stop);
+    void read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop);
 };
 
 }  // namespace octopair::cli

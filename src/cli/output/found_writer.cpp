@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/detect/precision.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats.hpp"
 #include "io/results/collision_writer.hpp"
@@ -70,8 +71,9 @@ private:
 };
 
 io::ObjectNames names_of(const InputSet& set) {
-    if (set.scene.triangles) return {set.scene.triangles->owner_names, set.scene.triangles->owners};
-    return {set.scene.names};
+    if (const auto& triangles = set.scene.triangles)
+        return {triangles->owner_names, triangles->owners, &triangles->owner_details};
+    return {set.scene.names, {}, &set.scene.details};
 }
 
 std::unique_ptr<io::PairWriter> make_pairs(const DetectRequest& request, const FoundIn& sets,
@@ -93,6 +95,15 @@ std::string joined(const std::vector<std::string>& words) {
     return all;
 }
 
+/// Returns the axis up and the unit of the options, or else of the inputs' formats. Unknown where the formats differ.
+io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
+    io::SceneSpace space = request.pipeline.space;
+    const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
+    if (space.up == io::UpAxis::unknown && first.up == second.up) space.up = first.up;
+    if (space.unit.empty() && first.unit == second.unit) space.unit = first.unit;
+    return space;
+}
+
 /// No times: the same result has the same page.
 std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
                                                  const io::CollisionForm& form) {
@@ -102,10 +113,14 @@ std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, c
     scene.a = sets.first.frame(0).boxes;
     scene.b = sets.second.frame(0).boxes;
     scene.join = !request.against.empty();
+    scene.space = report_space(request, sets);
     auto report = std::make_unique<io::HtmlReport>(std::make_unique<io::AtomicFile>(request.pipeline.report), scene);
     const std::uint64_t objects = sets.first.scene.objects + (scene.join ? sets.second.scene.objects : 0);
     report->add_fact("objects", fmt::format("{}", objects));
     if (request.margin > 0) report->add_fact("margin", fmt::format("{}", request.margin));
+    const SetPair pair{sets.first, scene.join ? &sets.second : nullptr};
+    if (form.features) report->add_fact("tolerance", fmt::format("{:.3g}", tolerance_of(request, pair)));
+    for (const std::string& warning : coordinate_warnings(request, pair)) report->add_note(warning);
     if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
     if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
     if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);

@@ -82,6 +82,13 @@ std::string verified_text(const DetectReport& report) {
     return text + '\n';
 }
 
+/// Returns the number of pairs that filters dropped although they may count.
+std::uint64_t undecided_pairs(const DetectReport& report) {
+    std::uint64_t pairs = 0;
+    for (const FilterCounts& filter : report.filters) pairs += filter.undecided;
+    return pairs;
+}
+
 /// Returns the lines about the exact stages: classes, tolerance, and objects without an inside.
 std::string exact_text(const DetectReport& report) {
     std::string text, classes;
@@ -96,6 +103,10 @@ std::string exact_text(const DetectReport& report) {
                             report.tolerance_is_precision ? " (the precision of float32)" : "");
     }
     if (report.open_objects == 0) return text;
+    if (const std::uint64_t undecided = undecided_pairs(report); undecided > 0) {
+        text += fmt::format("undecided   {} pairs left out: an object is in the bounds of one that is not closed\n",
+                            grouped(undecided));
+    }
     return text + fmt::format("not closed  {} of {} objects have no inside (--weld joins vertices): {}{}\n",
                               grouped(report.open_objects), grouped(report.objects), fmt::join(report.first_open, ", "),
                               report.open_objects > report.first_open.size() ? ", ..." : "");
@@ -138,6 +149,7 @@ std::string summary_text(const DetectReport& report) {
         text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
+    for (const std::string& warning : report.warnings) text += fmt::format("warning     {}\n", warning);
     text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
     if (!report.events) {
         text += fmt::format("detect      encode {}, count {}, scatter {}, scan {}\n", duration(steps.encode),
@@ -168,7 +180,11 @@ std::string stats_json(const DetectReport& report) {
     const nlohmann::ordered_json classes = classes_json(report);
     if (!classes.empty()) stats["classes"] = classes;
     if (report.tolerance) stats["tolerance"] = *report.tolerance;
-    if (report.open_objects > 0) stats["not_closed"] = report.open_objects;
+    if (report.open_objects > 0) {
+        stats["not_closed"] = report.open_objects;
+        stats["undecided"] = undecided_pairs(report);
+    }
+    if (!report.warnings.empty()) stats["warnings"] = report.warnings;
     if (report.changes) {
         const io::ChangeCounts& changes = *report.changes;
         stats.update({{"new", changes.begun}, {"same", changes.same}, {"gone", changes.gone}});

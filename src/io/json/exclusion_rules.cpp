@@ -3,6 +3,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "io/files/failure.hpp"
@@ -17,10 +18,30 @@ using nlohmann::json;
 
 std::string item(const std::string& place, std::size_t i) { return fmt::format("{}[{}]", place, i); }
 
-NameRule rule(const json& value, const std::string& place) {
+/// Reads the patterns for one object of a pair: a pattern for its name, or an object with a pattern for each detail that matters.
+ColumnPatterns patterns(const JsonFields& rule, std::string_view key) {
+    const json& value = rule.need(key);
+    if (value.is_string()) return {rule.text(key)};
+    if (!value.is_object()) refuse_json_type(rule.place_of(key), value, "a string or an object");
+    const JsonFields fields(value, rule.place_of(key));
+    ColumnPatterns found(1 + all_details.size());
+    std::vector<std::string_view> keys = {"name"};
+    for (const Detail detail : all_details) keys.push_back(word_of(detail));
+    fields.allow(keys);
+    bool any = false;
+    for (std::size_t column = 0; column < keys.size(); ++column) {
+        if (fields.find(keys[column]) == nullptr) continue;
+        found[column] = fields.text(keys[column]);
+        any = true;
+    }
+    if (!any) refuse(rule.place_of(key), fmt::format("needs at least one of the keys {}", fmt::join(keys, ", ")));
+    return found;
+}
+
+ColumnRule rule(const json& value, const std::string& place) {
     const JsonFields fields(value, place);
     fields.allow({"a", "b"});
-    return {fields.text("a"), fields.text("b")};
+    return {patterns(fields, "a"), patterns(fields, "b")};
 }
 
 std::array<std::string, 2> name_pair(const json& value, const std::string& place) {

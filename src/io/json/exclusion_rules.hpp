@@ -1,6 +1,6 @@
 // Exclusion rules: a JSON file that names pairs of objects to leave out of the result.
 //
-//     {"exclude": [{"a": "*/bolt*", "b": "*/nut*"}],
+//     {"exclude": [{"a": "*/bolt*", "b": "*/nut*"}, {"a": {"type": "IfcBeam"}, "b": {"type": "IfcSlab", "level": "0.*"}}],
 //      "ignored_pairs": [["frame/door", "frame/hinge"]],
 //      "same_parent": true}
 //
@@ -12,12 +12,16 @@
 #include <string_view>
 #include <vector>
 
+#include "io/object_details.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::io {
 
+/// Column of a rule: 0 is the name, and 1 + i is all_details[i] (object_details.hpp).
+constexpr std::size_t column_of(Detail detail) { return 1 + std::size_t(detail); }
+
 struct ExclusionRules {
-    std::vector<NameRule> exclude;
+    std::vector<ColumnRule> exclude;                        ///< patterns of the columns above
     std::vector<std::array<std::string, 2>> ignored_pairs;  ///< two exact names each
     bool same_parent = false;
 };

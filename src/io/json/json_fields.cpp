@@ -93,19 +93,19 @@ std::string message_of(const json::exception& error) {
     return text;
 }
 
-[[noreturn]] void refuse_type(const std::string& place, const json& value, std::string_view wanted) {
+double number_of(const json& value, const std::string& place, std::string_view wanted) {
+    if (!value.is_number()) refuse_json_type(place, value, wanted);
+    return value.get<double>();
+}
+
+}  // namespace
+
+void refuse_json_type(const std::string& place, const json& value, std::string_view wanted) {
     const std::string_view type = value.type_name();
     const bool vowel = type == "array" || type == "object";
     refuse(place, type == "null" ? fmt::format("null, not {}", wanted)
                                  : fmt::format("{} {}, not {}", vowel ? "an" : "a", type, wanted));
 }
-
-double number_of(const json& value, const std::string& place, std::string_view wanted) {
-    if (!value.is_number()) refuse_type(place, value, wanted);
-    return value.get<double>();
-}
-
-}  // namespace
 
 json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop) {
     ParseMonitor monitor(file, stop);
@@ -131,22 +131,22 @@ std::string shown_text(std::string_view text) {
 }
 
 const json::array_t& json_array(const json& value, const std::string& place) {
-    if (!value.is_array()) refuse_type(place, value, "an array");
+    if (!value.is_array()) refuse_json_type(place, value, "an array");
     return value.get_ref<const json::array_t&>();
 }
 
 const std::string& json_text(const json& value, const std::string& place) {
-    if (!value.is_string()) refuse_type(place, value, "a string");
+    if (!value.is_string()) refuse_json_type(place, value, "a string");
     return value.get_ref<const std::string&>();
 }
 
 Point3d json_point(const json& value, const std::string& place) {
     constexpr std::string_view wanted = "an array of 3 numbers";
-    if (!value.is_array()) refuse_type(place, value, wanted);
+    if (!value.is_array()) refuse_json_type(place, value, wanted);
     if (value.size() != 3) refuse(place, fmt::format("an array of {}, not {}", value.size(), wanted));
     Point3d point;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!value[axis].is_number()) refuse_type(place, value[axis], "a number in " + std::string(wanted));
+        if (!value[axis].is_number()) refuse_json_type(place, value[axis], "a number in " + std::string(wanted));
         point[axis] = value[axis].get<double>();
     }
     return point;
@@ -157,14 +157,14 @@ std::uint32_t json_index(const json& value, const std::string& place) {
     if (value.is_number_unsigned() && value.get<std::uint64_t>() <= most) return value.get<std::uint32_t>();
     const std::string wanted = fmt::format("a whole number from 0 to {}", most);
     if (value.is_number()) refuse(place, fmt::format("{} is not {}", dump_json(value), wanted));
-    refuse_type(place, value, wanted);
+    refuse_json_type(place, value, wanted);
 }
 
 JsonFields::JsonFields(const json& object, std::string place) : object_(object), place_(std::move(place)) {
-    if (!object_.is_object()) refuse_type(place_, object_, "an object");
+    if (!object_.is_object()) refuse_json_type(place_, object_, "an object");
 }
 
-void JsonFields::allow(std::initializer_list<std::string_view> known) const {
+void JsonFields::allow(std::span<const std::string_view> known) const {
     for (const auto& [key, value] : object_.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         refuse(place_, fmt::format("unknown key '{}'; known keys: {}", shown_text(key),
@@ -213,7 +213,7 @@ std::uint32_t JsonFields::whole_number(std::string_view key) const { return json
 
 bool JsonFields::boolean(std::string_view key) const {
     const json& value = need(key);
-    if (!value.is_boolean()) refuse_type(place_of(key), value, "true or false");
+    if (!value.is_boolean()) refuse_json_type(place_of(key), value, "true or false");
     return value.get<bool>();
 }
 

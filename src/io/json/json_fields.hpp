@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ nlohmann::json parse_json(std::string_view text, std::string_view file, const st
 /// Returns text of a file in a form for messages: at most 60 bytes, with '?' for control characters.
 std::string shown_text(std::string_view text);
 
+/// Throws: Error{bad_input} "PLACE: a number, not WANTED": `value` has another type than it must have.
+[[noreturn]] void refuse_json_type(const std::string& place, const nlohmann::json& value, std::string_view wanted);
+
 // Each function returns the content of `value`.
 // Throws: Error{bad_input} "PLACE: a string, not ..." if `value` has another type.
 Point3d json_point(const nlohmann::json& value, const std::string& place);
@@ -39,7 +43,8 @@ public:
     JsonFields(const nlohmann::json& object, std::string place);
 
     /// Throws: Error{bad_input} for a key of the object that is not in `known`.
-    void allow(std::initializer_list<std::string_view> known) const;
+    void allow(std::span<const std::string_view> known) const;
+    void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
 
     /// Returns the value of `key`, or null if the object does not have the key.
     const nlohmann::json* find(std::string_view key) const;

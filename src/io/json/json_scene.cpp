@@ -64,6 +64,7 @@ public:
         LoadedScene scene;
         scene.objects = objects.size();
         scene.names = std::move(names_);
+        if (!parents_.empty()) scene.details = std::move(details_);
         scene.shapes = std::move(loaded_);
         return scene;
     }
@@ -116,6 +117,9 @@ private:
     }
 
     void add_parent(const JsonFields& fields) {
+        DetailTexts texts;
+        if (fields.find("parent") != nullptr) texts[std::size_t(Detail::parent)] = fields.text("parent");
+        details_builder_.add(texts);
         const auto next = std::uint32_t(last_parent_);
         if (fields.find("parent") == nullptr) {
             loaded_.parents.push_back(next);
@@ -156,6 +160,8 @@ private:
     const std::stop_token& stop_;
     LoadedShapes loaded_;
     std::vector<std::string> names_;
+    ObjectDetails details_;  // parents
+    DetailsBuilder details_builder_{details_};
     std::map<std::string, std::uint32_t, std::less<>> shape_numbers_;
     std::unordered_map<std::string, std::uint32_t> parents_;
     std::uint64_t last_parent_ = 0;

@@ -9,8 +9,10 @@
 #include <assimp/postprocess.h>
 #include <fmt/format.h>
 
+#include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats.hpp"
 
 namespace octopair::io {
 
@@ -29,37 +31,87 @@ void rethrow_bad_alloc(const Assimp::Importer& importer) {
     }
 }
 
+/// Returns the float64 that is nearest to the shortest decimal number that rounds to `value`. For example 0.001f gives 0.001.
+double shortest_decimal(float value) { return std::stod(fmt::format("{}", value)); }
+
 BoundedPose pose_of(const aiNode& node) {
     const aiMatrix4x4& m = node.mTransformation;
     return BoundedPose({{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}});
 }
 
-std::string name_of(const aiNode& node, unsigned position) {
-    return node.mName.length == 0 ? fmt::format("#{}", position) : std::string(node.mName.C_Str());
+/// Returns the pose of the root node. Assimp turns IFC models from z up to y up; here they keep their z.
+BoundedPose root_pose(const aiNode& root, const std::string& path) {
+    if (!is_ifc_file(path)) return pose_of(root);
+    const aiMatrix4x4& m = root.mTransformation;
+    std::array<std::array<double, 4>, 3> rows = {
+        {{m.a1, m.a2, m.a3, m.a4}, {-m.c1, -m.c2, -m.c3, -m.c4}, {m.b1, m.b2, m.b3, m.b4}}};
+    // Assimp's quarter turn is in float32: it leaves 4e-8 where 0 belongs, and 0.001 is off by 5e-11.
+    double largest = 0;
+    for (const auto& row : rows) largest = std::max({largest, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
+    for (auto& row : rows) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            if (std::abs(row[column]) < 1e-7 * largest) row[column] = 0;
+            row[column] = shortest_decimal(float(row[column]));
+        }
+    }
+    return BoundedPose(rows);
 }
 
-/// Returns all nodes with meshes, in pre-order. The traversal has an explicit stack, because the file controls the depth.
-std::vector<MeshInstance> find_instances(const aiScene& scene) {
-    std::vector<MeshInstance> instances;
-    std::vector<MeshInstance> waiting;
-    waiting.push_back({scene.mRootNode, name_of(*scene.mRootNode, 0), pose_of(*scene.mRootNode)});
-    while (!waiting.empty()) {
-        const MeshInstance at = std::move(waiting.back());
-        waiting.pop_back();
-        for (unsigned i = at.node->mNumChildren; i-- > 0;) {
-            const aiNode& child = *at.node->mChildren[i];
-            waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child)});
-        }
-        if (at.node->mNumMeshes > 0) instances.push_back(at);
-    }
-    return instances;
+/// Returns the names of the elements of an IFC file that is not compressed; otherwise nothing.
+IfcNames read_ifc_names(const std::string& path) {
+    if (ending_of(path) != ".ifc") return {};
+    const InputFile file(path);
+    Buffer<char> text{std::size_t(file.size())};
+    file.read(0, std::as_writable_bytes(text.span()));
+    return find_ifc_names({text.data(), text.size()});
 }
+
+/// Lists the instances of a scene.
+class InstanceSearch {
+public:
+    InstanceSearch(const aiScene& scene, const std::string& path, const IfcNames& ifc_names)
+        : scene_(scene), path_(path), ifc_names_(ifc_names) {}
+
+    /// Returns all nodes with meshes, in pre-order. The traversal has an explicit stack, because the file controls the depth.
+    std::vector<MeshInstance> find() const {
+        std::vector<MeshInstance> instances;
+        std::vector<MeshInstance> waiting;
+        waiting.push_back({scene_.mRootNode, name_of(*scene_.mRootNode, 0), root_pose(*scene_.mRootNode, path_)});
+        while (!waiting.empty()) {
+            const MeshInstance at = std::move(waiting.back());
+            waiting.pop_back();
+            for (unsigned i = at.node->mNumChildren; i-- > 0;) {
+                const aiNode& child = *at.node->mChildren[i];
+                waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child)});
+            }
+            if (at.node->mNumMeshes > 0) instances.push_back(at);
+        }
+        return instances;
+    }
+
+private:
+    std::string name_of(const aiNode& node, unsigned position) const {
+        if (node.mName.length == 0) return fmt::format("#{}", position);
+        std::string name = node.mName.C_Str();
+        if (ifc_names_.empty()) return name;
+        const auto element = parse_ifc_element(name);
+        if (!element) return name;
+        const auto known = ifc_names_.find(std::string(element->id));
+        if (known == ifc_names_.end()) return name;
+        return fmt::format("{}_{}_{}", element->type, known->second, element->id);
+    }
+
+    const aiScene& scene_;
+    const std::string& path_;
+    const IfcNames& ifc_names_;
+};
 
 }  // namespace
 
-MeshFile::MeshFile(const std::string& path, bool triangles) : path_(path), scene_(&import(path, triangles)) {
+MeshFile::MeshFile(const std::string& path, bool triangles)
+    : path_(path), ifc_names_(read_ifc_names(path)), scene_(&import(path, triangles)) {
     used_vertices_.resize(scene_->mNumMeshes);
-    instances_ = find_instances(*scene_);
+    instances_ = InstanceSearch(*scene_, path, ifc_names_).find();
     std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
 }
 

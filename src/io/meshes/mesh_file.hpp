@@ -15,6 +15,7 @@
 #include <assimp/Importer.hpp>
 
 #include "io/meshes/bounded_pose.hpp"
+#include "io/meshes/ifc_elements.hpp"
 
 namespace octopair::io {
 
@@ -36,6 +37,10 @@ public:
 
     /// Returns all instances, in pre-order of their nodes.
     const std::vector<MeshInstance>& instances() const { return instances_; }
+    const aiScene& scene() const { return *scene_; }
+    const std::string& path() const { return path_; }
+    /// Returns the names of the elements of an IFC file; nothing for other files.
+    const IfcNames& ifc_names() const { return ifc_names_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
     /// Returns the used vertices of a mesh, each once, in the order of first use. Requires: an instance has the mesh.
     const std::vector<unsigned>& used_vertices(unsigned mesh) const { return *used_vertices_[mesh]; }
@@ -56,6 +61,7 @@ private:
     std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
 
     std::string path_;
+    IfcNames ifc_names_;
     Assimp::Importer importer_;
     const aiScene* scene_;
     std::vector<MeshInstance> instances_;

@@ -6,6 +6,7 @@
 
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
+#include "io/meshes/node_details.hpp"
 
 namespace octopair::io {
 
@@ -96,9 +97,11 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
         scene = content.shapes ? exact_triangle_scene(file) : triangle_scene(file);
     } else {
         scene = node_scene(file);
+        scene.details = details_of(file);
         if (content.shapes) scene.shapes = shapes_of(file);
     }
     scene.rounded = true;  // by Assimp
+    scene.space = format_space(path);
     return scene;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/meshes/node_details.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
@@ -67,6 +68,7 @@ LoadedShapes shapes_of(const MeshFile& file) {
 
 LoadedTriangles triangles_of(const MeshFile& file) {
     LoadedTriangles loaded;
+    loaded.owner_details = details_of(file);
     for (const MeshInstance& instance : file.instances()) {
         const auto owner = std::uint32_t(loaded.owner_names.size());
         loaded.owner_names.push_back(instance.name);

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/object_details.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pipeline.hpp"
 
@@ -16,12 +17,18 @@ namespace octopair::io {
 struct ObjectNames {
     std::span<const std::string> names = {};     ///< empty, or one name per object; for triangles, one per owner
     std::span<const std::uint32_t> owners = {};  ///< for triangles, the owner of each, ascending; otherwise empty
+    const ObjectDetails* details = nullptr;      ///< null, empty, or a row per name
 
     /// Returns the name of an object; empty if it has none.
     std::string_view of(std::uint32_t object) const {
         const std::size_t i = owners.empty() ? object : owners[object];
         return i < names.size() ? std::string_view(names[i]) : std::string_view();
     }
+    /// Returns a detail of an object, or of the owner of a triangle; empty if it is unknown.
+    std::string_view detail(std::uint32_t object, Detail what) const {
+        return details == nullptr ? std::string_view() : details->of(owners.empty() ? object : owners[object], what);
+    }
+    bool has(Detail what) const { return details != nullptr && details->has(what); }
     /// Returns the number of a triangle among those of its owner. Requires: `owners` is not empty.
     std::uint32_t triangle(std::uint32_t object) const {
         return object - std::uint32_t(std::lower_bound(owners.begin(), owners.end(), owners[object]) - owners.begin());

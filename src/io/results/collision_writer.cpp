@@ -1,5 +1,7 @@
 #include "io/results/collision_writer.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +59,10 @@ private:
     void append_object(std::string_view side, const ObjectNames& names, std::uint32_t object) {
         const std::string_view name = names.of(object);
         if (!name.empty()) append(fmt::format("{}_name", side), json_string(name));
+        for (const Detail detail : all_details) {
+            const std::string_view text = names.detail(object, detail);
+            if (!text.empty()) append(fmt::format("{}_{}", side, word_of(detail)), json_string(text));
+        }
         if (!names.owners.empty()) append(fmt::format("{}_triangle", side), std::to_string(names.triangle(object)));
     }
 
@@ -101,6 +107,11 @@ public:
     CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form)
         : out_(std::move(out)), form_(form) {
         out_->write("a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open");
+        for (const Detail detail : all_details) {
+            if (!form_.names.a.has(detail) && !form_.names.b.has(detail)) continue;
+            details_.push_back(detail);
+            out_->write(fmt::format(",a_{0},b_{0}", word_of(detail)));
+        }
         out_->write(form_.changes ? std::string_view(",change\n") : std::string_view("\n"));
     }
 
@@ -110,6 +121,10 @@ public:
             line_ = fmt::format("{},{},{},{}", pair.a, pair.b, csv_field(form_.names.a.of(pair.a)),
                                 csv_field(form_.names.b.of(pair.b)));
             append_finding(rows.findings.empty() ? Finding() : rows.findings[i]);
+            for (const Detail detail : details_) {
+                append(csv_field(form_.names.a.detail(pair.a, detail)));
+                append(csv_field(form_.names.b.detail(pair.b, detail)));
+            }
             if (form_.changes) append(rows.changes.empty() ? std::string_view() : word_of(rows.changes[i]));
             line_ += '\n';
             out_->write(line_);
@@ -130,6 +145,9 @@ public:
             append(old_field(row, "more_contacts"));
             append(old_field(row, "depth_kind"));
             append(std::string(row.contains("a_open") ? "a" : "") + (row.contains("b_open") ? "b" : ""));
+            for (const Detail detail : details_) {
+                for (const char* side : {"a", "b"}) append(old_field(row, fmt::format("{}_{}", side, word_of(detail))));
+            }
             append(word_of(Change::gone));
             line_ += '\n';
             out_->write(std::string_view(line_).substr(1));
@@ -144,7 +162,7 @@ private:
         line_ += field;
     }
 
-    static std::string old_field(const nlohmann::json& row, const char* key) {
+    static std::string old_field(const nlohmann::json& row, const std::string& key) {
         const auto value = row.find(key);
         if (value == row.end() || value->is_null()) return {};
         if (value->is_string()) return csv_field(value->get_ref<const std::string&>());
@@ -201,6 +219,7 @@ private:
 
     std::unique_ptr<OutputStream> out_;
     CollisionForm form_;
+    std::vector<Detail> details_;  // details that have columns
     std::string line_;
 };
 

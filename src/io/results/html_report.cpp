@@ -1,6 +1,8 @@
 #include "io/results/html_report.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,9 +39,17 @@ std::uint64_t size_of(const Boxes& boxes) {
     return std::visit([](auto span) { return std::uint64_t(span.size()); }, boxes);
 }
 
-std::string label_of(const ObjectNames& names, std::uint32_t object) {
+std::string name_of(const ObjectNames& names, std::uint32_t object) {
     const std::string name(names.of(object));
     return names.owners.empty() ? name : fmt::format("{}, triangle {}", name, names.triangle(object));
+}
+
+/// Returns how bad a collision is, for the order of the rows.
+double severity_of(const Finding& finding, bool deep) {
+    constexpr double worst = std::numeric_limits<double>::infinity();
+    if (finding.collision_class == CollisionClass::duplicate) return worst;
+    if (finding.collision_class == CollisionClass::clearance) return -finding.distance;
+    return deep ? finding.depth : 0;
 }
 
 /// Returns a point where the objects of a pair meet or are nearest, or "null" if none is known.
@@ -64,12 +74,27 @@ nlohmann::json old_number(const nlohmann::json& row, const char* key) {
 
 }  // namespace
 
+/// Numbers distinct texts from 1 on, in the order of their first use. The empty text is 0.
+class TextNumbers {
+public:
+    std::uint32_t of(std::string_view text) {
+        if (text.empty()) return 0;
+        const auto [place, is_new] = numbers_.try_emplace(text, std::uint32_t(texts_.size()));
+        if (is_new) texts_.push_back(text);
+        return place->second;
+    }
+    const std::vector<std::string_view>& texts() const { return texts_; }
+
+private:
+    std::vector<std::string_view> texts_ = {{}};
+    std::unordered_map<std::string_view, std::uint32_t> numbers_;
+};
+
 HtmlReport::HtmlReport(std::unique_ptr<OutputStream> out, ReportScene scene)
     : out_(std::move(out)), scene_(std::move(scene)) {
     named_[0].resize(std::size_t(size_of(scene_.a)));
     named_[1].resize(std::size_t(scene_.join ? size_of(scene_.b) : 0));
     out_->write(report_page.substr(0, report_page.find(data_mark)));
-    begin_list("rows");
 }
 
 void HtmlReport::begin_list(std::string_view id) {
@@ -89,31 +114,53 @@ void HtmlReport::write(const CollisionRows& rows) {
         const Finding finding = rows.findings.empty() ? Finding() : rows.findings[i];
         ++of_class_[std::size_t(finding.collision_class)];
         if (!rows.changes.empty()) ++of_change_[std::size_t(rows.changes[i])];
-        if (rows_++ >= max_rows) continue;
-        named_[0][rows.pairs[i].a] = true;
-        named_[scene_.join ? 1 : 0][rows.pairs[i].b] = true;
-        write_row(rows.pairs[i], finding, rows.changes.empty() ? nullptr : &rows.changes[i]);
+        kept_.push_back({severity_of(finding, has_depth(finding)), rows_++, rows.pairs[i],
+                         json_row(rows.pairs[i], finding, rows.changes.empty() ? nullptr : &rows.changes[i])});
+        if (kept_.size() == 2 * max_rows) keep_worst();
     }
 }
 
-void HtmlReport::write_row(Pair pair, const Finding& finding, const Change* change) {
+bool HtmlReport::has_depth(const Finding& finding) const {
+    return scene_.form.features && meet(finding.collision_class) && finding.depth_kind != DepthKind::unknown;
+}
+
+/// Drops all rows but the worst max_rows.
+void HtmlReport::keep_worst() {
+    if (kept_.size() <= max_rows) return;
+    const auto is_worse = [](const Row& x, const Row& y) {
+        return x.severity != y.severity ? x.severity > y.severity : x.number < y.number;
+    };
+    std::nth_element(kept_.begin(), kept_.begin() + max_rows, kept_.end(), is_worse);
+    kept_.resize(max_rows);
+}
+
+std::string HtmlReport::json_row(Pair pair, const Finding& finding, const Change* change) const {
     const CollisionClass what = finding.collision_class;
     const bool known = what != CollisionClass::unknown, features = scene_.form.features && meet(what);
-    const bool deep = features && finding.depth_kind != DepthKind::unknown;
+    const bool deep = has_depth(finding), bounded = deep && finding.depth_kind == DepthKind::at_least;
     const auto if_known = [](bool is, auto value) { return is ? json_number(double(value)) : std::string("null"); };
-    separate();
-    out_->write(fmt::format(
-        "[{},{},{},{},{},{},{},{},{},{},{}]", pair.a, pair.b, int(what),
-        change == nullptr ? "null" : std::to_string(int(*change)), if_known(known && !meet(what), finding.distance),
-        if_known(deep, finding.depth), if_known(known && scene_.form.times, finding.time),
-        if_known(features, finding.contacts.size()), int(features && finding.more_contacts),
-        json_place(finding, scene_.form.features), int(deep && finding.depth_kind == DepthKind::at_least)));
+    return fmt::format("[{},{},{},{},{},{},{},{},{},{},{},{},{}]", pair.a, pair.b, int(what),
+                       change == nullptr ? "null" : std::to_string(int(*change)),
+                       if_known(known && !meet(what), finding.distance), if_known(deep, finding.depth),
+                       if_known(known && scene_.form.times, finding.time), if_known(features, finding.contacts.size()),
+                       int(features && finding.more_contacts), json_place(finding, scene_.form.features), int(bounded),
+                       if_known(bounded, finding.depth_at_most), int(finding.open[0]) + 2 * int(finding.open[1]));
+}
+
+void HtmlReport::write_rows() {
+    keep_worst();
+    std::sort(kept_.begin(), kept_.end(), [](const Row& x, const Row& y) { return x.number < y.number; });
+    begin_list("rows");
+    for (const Row& row : kept_) {
+        named_[0][row.pair.a] = true;
+        named_[scene_.join ? 1 : 0][row.pair.b] = true;
+        separate();
+        out_->write(row.json);
+    }
+    end_list();
 }
 
 void HtmlReport::write_gone(std::span<const std::string_view> lines) {
-    end_list();
-    rows_ended_ = true;
-    begin_list("gone");
     of_change_[std::size_t(Change::gone)] = lines.size();
     for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), max_rows))) {
         const nlohmann::json old = parse_json(line, "older result");
@@ -125,30 +172,50 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
                                     old_number(old, "depth"),
                                     old_number(old, "time"),
                                     contacts == old.end() ? nlohmann::json() : nlohmann::json(contacts->size())};
+        gone_.push_back(script_json(dump_json(row)));
+    }
+}
+
+void HtmlReport::write_gone_rows() {
+    begin_list("gone");
+    for (const std::string& row : gone_) {
         separate();
-        out_->write(script_json(dump_json(row)));
+        out_->write(row);
     }
     end_list();
 }
 
 void HtmlReport::write_objects() {
+    TextNumbers words;
     begin_list("objects");
     for (std::size_t set = 0; set < (scene_.join ? 2 : 1); ++set) {
         separate();
-        write_object_list(set);
+        write_object_list(set, words);
+    }
+    end_list();
+    begin_list("words");
+    for (const std::string_view word : words.texts()) {
+        separate();
+        out_->write(script_json(json_string(word)));
     }
     end_list();
 }
 
-void HtmlReport::write_object_list(std::size_t set) {
+void HtmlReport::write_object_list(std::size_t set, TextNumbers& words) {
     const Boxes& boxes = set == 0 ? scene_.a : scene_.b;
     const ObjectNames& names = set == 0 ? scene_.form.names.a : scene_.form.names.b;
+    const bool detailed = names.details != nullptr && !names.details->empty();
     out_->write("[");
     bool begun = false;
     for (std::size_t i = 0; i < named_[set].size(); ++i) {
         if (!named_[set][i]) continue;
-        out_->write(fmt::format("{}[{},{},{}]", begun ? ",\n" : "", i,
-                                script_json(json_string(label_of(names, std::uint32_t(i)))), json_box(boxes, i)));
+        const auto object = std::uint32_t(i);
+        std::string text = fmt::format("{}[{},{},{}", begun ? ",\n" : "", i,
+                                       script_json(json_string(name_of(names, object))), json_box(boxes, i));
+        for (const Detail detail : all_details) {
+            if (detailed) text += fmt::format(",{}", words.of(names.detail(object, detail)));
+        }
+        out_->write(text + ']');
         begun = true;
     }
     out_->write("]");
@@ -182,20 +249,23 @@ void HtmlReport::write_summary() {
     }
     for (const auto& [label, value] : facts_) facts.push_back({clean_text(label), clean_text(value)});
     nlohmann::json notes = nlohmann::json::array();
+    for (const std::string& note : notes_) notes.push_back(clean_text(note));
     if (const std::uint64_t gone = of_change_[std::size_t(Change::gone)]; std::max(rows_, gone) > max_rows) {
-        notes.push_back(fmt::format("The table has the first {} rows of {}.", max_rows, std::max(rows_, gone)));
+        notes.push_back(fmt::format("The table has the worst {} of {} rows.", max_rows, std::max(rows_, gone)));
     }
     if (others_drawn_ < others_) {
         notes.push_back(
             fmt::format("The picture shows {} of the {} objects that are not in the table.", others_drawn_, others_));
     }
     const nlohmann::json summary = {
-        {"title", clean_text(scene_.title)}, {"join", scene_.join}, {"facts", facts}, {"notes", notes}};
+        {"title", clean_text(scene_.title)},          {"join", scene_.join},      {"facts", facts}, {"notes", notes},
+        {"up", scene_.space.up == UpAxis::y ? 1 : 2}, {"unit", scene_.space.unit}};
     out_->write("<script type=\"application/json\" id=\"summary\">" + script_json(dump_json(summary)) + "</script>\n");
 }
 
 void HtmlReport::finish() {
-    if (!rows_ended_) write_gone({});
+    write_rows();
+    write_gone_rows();
     write_objects();
     write_others();
     write_summary();

@@ -1,8 +1,10 @@
 // HtmlReport: a self-contained HTML page about the collisions of a result.
 //
-// - The page has a summary, a table that sorts and filters, and drawings of the boxes from three sides.
-// - The page is report_page.html. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
-// - Rows beyond `max_rows` are counted but not written. The page says so.
+// - The page has a summary, a table that groups, sorts and filters, and drawings of the boxes from three sides.
+// - The page is in the folder report_page. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
+// - The page has at most `max_rows` rows: the worst ones, and of equal ones the first. Others are counted. The page says so.
+//   A duplicate is worst, then depth counts, then distance.
+// - Rows are kept in memory until finish(): at most 2 * max_rows.
 // - At most `max_others` objects without a row are drawn. The page says so.
 #pragma once
 
@@ -14,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/formats.hpp"
 #include "io/results/collision_writer.hpp"
 #include "octopair/objects.hpp"
 
@@ -25,7 +28,10 @@ struct ReportScene {
     CollisionForm form;
     Boxes a, b;  ///< boxes of the first set; in a join, b has those of the second set
     bool join = false;
+    SceneSpace space = {};  ///< axes and unit of the coordinates; if the axis is unknown, z is up
 };
+
+class TextNumbers;
 
 class HtmlReport final : public CollisionWriter {
 public:
@@ -37,27 +43,42 @@ public:
     void write_gone(std::span<const std::string_view> lines) override;
     /// Adds an entry to the summary, after the number of collisions. Example: "time", "3.2 s".
     void add_fact(std::string label, std::string value) { facts_.emplace_back(std::move(label), std::move(value)); }
+    /// Adds a sentence to the notes at the head of the page.
+    void add_note(std::string note) { notes_.push_back(std::move(note)); }
     void finish() override;
 
 private:
-    void write_row(Pair pair, const Finding& finding, const Change* change);
+    struct Row {
+        double severity;
+        std::uint64_t number;  // position in the result
+        Pair pair;
+        std::string json;
+    };
+
+    bool has_depth(const Finding& finding) const;
+    std::string json_row(Pair pair, const Finding& finding, const Change* change) const;
+    void keep_worst();
+    void write_rows();
+    void write_gone_rows();
     void begin_list(std::string_view id);
     void end_list();
     void separate();
     void write_objects();
-    void write_object_list(std::size_t set);
+    void write_object_list(std::size_t set, TextNumbers& words);
     void write_others();
     void write_summary();
 
     std::unique_ptr<OutputStream> out_;
     ReportScene scene_;
     std::vector<std::pair<std::string, std::string>> facts_;
+    std::vector<std::string> notes_;
+    std::vector<Row> kept_;
+    std::vector<std::string> gone_;
     std::array<std::vector<bool>, 2> named_;  // for each set and object: true if a row names the object
     std::array<std::uint64_t, 6> of_class_ = {};
     std::array<std::uint64_t, 3> of_change_ = {};
     std::uint64_t rows_ = 0, others_ = 0, others_drawn_ = 0;
     bool first_ = true;  // true before the first element of the current list
-    bool rows_ended_ = false;
 };
 
 }  // namespace octopair::io

@@ -1,4 +1,4 @@
-// The text of report_page.html. HtmlReport replaces the mark "@DATA@" with the data of a report (html_report.hpp).
+// The page of the folder report_page, with its style and its scripts. HtmlReport replaces the mark "@DATA@" with the data of a report (html_report.hpp).
 #pragma once
 
 #include <string_view>

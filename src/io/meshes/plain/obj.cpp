@@ -1,10 +1,11 @@
 // parse_obj(): the object files of Wavefront. Each object and each group is a mesh. Points and lines are faces with fewer than three
-// corners. Everything else but places and names is ignored.
+// corners. Everything else but places, names and materials is ignored.
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,9 @@ public:
                 for (double& at : place) at = lines_.number("a coordinate");
             } else if (word == "f" || word == "l" || word == "p") {
                 read_face();
+            } else if (word == "usemtl") {
+                material_ = lines_.rest();
+                material_is_new_ = true;
             } else if (word == "o") {
                 begin_object(std::string(lines_.rest()));
             } else if (word == "g" && lines_.rest() != group_) {
@@ -60,6 +64,7 @@ public:
 private:
     void begin_mesh(std::string name) {
         current_ = meshes_.size();
+        material_is_new_ = true;
         meshes_.emplace_back().name = std::move(name);
     }
 
@@ -68,10 +73,12 @@ private:
         const auto [known, fresh] = objects_.try_emplace(name, meshes_.size());
         if (fresh) return begin_mesh(name);
         current_ = known->second;
+        material_is_new_ = true;
     }
 
     void read_face() {
         PlainMesh& mesh = meshes_[current_];
+        if (std::exchange(material_is_new_, false) && !material_.empty()) mesh.materials.insert(material_);
         for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word())
             mesh.corners.push_back(corner_of(word));
         mesh.end_face();
@@ -118,7 +125,8 @@ private:
     std::vector<Point3d> vertices_;
     std::vector<PlainMesh> meshes_;
     std::size_t current_ = 0;  // mesh that faces are added to
-    std::string group_;
+    std::string group_, material_;
+    bool material_is_new_ = false;                // true if the current mesh may lack the material
     std::map<std::string, std::size_t> objects_;  // meshes of objects, by name
 };
 
@@ -127,7 +135,7 @@ private:
 std::vector<PlainMesh> parse_obj(const FileContent& file) {
     if (file.bytes.find('\\') == std::string_view::npos) return ObjParser(file).parse();
     const std::string joined = with_joined_lines(file.bytes);
-    const FileContent without_breaks{joined, file.path, file.stop};
+    const FileContent without_breaks{joined, file.path, file.stop, file.progress};
     return ObjParser(without_breaks).parse();
 }
 

@@ -42,6 +42,7 @@ PlainMesh parse_off(const FileContent& file) {
         for (double& at : place) at = lines.number("a coordinate");
     }
     mesh.ends.reserve(faces);
+    mesh.corners.reserve(3 * faces);
     for (std::uint64_t i = 0; i < faces; ++i) {
         lines.need("a face");
         const std::uint64_t corners = lines.integer("the number of corners", file.bytes.size());

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -20,7 +22,8 @@ namespace octopair::io {
 
 /// A mesh of polygons. Face i has the corners [ends[i - 1], ends[i]) of `corners`, indices of vertices.
 struct PlainMesh {
-    std::string name;      ///< empty if the file gives none
+    std::string name;  ///< empty if the file gives none
+    std::set<std::string> materials;
     bool rounded = false;  ///< true if the file has coordinates of float32
     std::vector<Point3d> vertices;
     std::vector<std::uint32_t> corners;
@@ -40,6 +43,11 @@ struct FileContent {
     std::string_view bytes;
     std::string_view path;
     const std::stop_token& stop;
+    std::function<void(double)> progress =
+        {};  ///< called with the part of the file that is parsed, from 0 to 1; or empty
+
+    /// Parsers call this from time to time. `offset`: bytes parsed. Throws: Error{cancelled}.
+    void checkpoint(std::size_t offset) const;
 };
 
 // Parse the content of a file. Throw: Error{bad_input} "PATH: line N: ..." or "PATH: ..."; Error{cancelled}.

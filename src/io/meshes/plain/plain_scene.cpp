@@ -26,12 +26,13 @@ std::vector<PlainMesh> parse(const FileContent& file, std::string_view ending) {
     return meshes;
 }
 
-std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_token& stop) {
+std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_token& stop,
+                                   const std::function<void(double)>& progress) {
     const InputFile input(path);
     if (input.size() == 0) refuse(path, "is empty");
     Buffer<char> bytes{std::size_t(input.size())};
     input.read(0, std::as_writable_bytes(bytes.span()), stop);
-    return parse({{bytes.data(), bytes.size()}, path, stop}, ending_of(path));
+    return parse({{bytes.data(), bytes.size()}, path, stop, progress}, ending_of(path));
 }
 
 /// Keeps the vertices that faces use, in the order of the file; all of them if there are no faces.
@@ -62,6 +63,34 @@ std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const st
     return names;
 }
 
+/// Returns the first materials of a mesh, joined by ", ".
+std::string joined_materials(const PlainMesh& mesh) {
+    constexpr std::size_t most = 8;
+    std::string joined;
+    std::size_t count = 0;
+    for (const std::string& material : mesh.materials) {
+        if (++count > most) return joined + ", ...";
+        joined += (joined.empty() ? "" : ", ") + material;
+    }
+    return joined;
+}
+
+/// Returns the details of all meshes. `names`: their names, after names_of().
+ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector<std::string>& names) {
+    ObjectDetails details;
+    DetailsBuilder builder(details);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const std::size_t slash = names[i].find('/');
+        const bool is_part = slash != std::string::npos;
+        DetailTexts texts;
+        texts[std::size_t(Detail::label)] = is_part ? names[i].substr(slash + 1) : names[i];
+        if (is_part) texts[std::size_t(Detail::parent)] = names[i].substr(0, slash);
+        texts[std::size_t(Detail::material)] = joined_materials(meshes[i]);
+        builder.add(texts);
+    }
+    return details;
+}
+
 Box3d box_of(const std::vector<Point3d>& places) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Box3d box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
@@ -81,6 +110,7 @@ LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, b
     scene.objects = meshes.size();
     scene.names = names_of(meshes, path);
     if (meshes.empty()) scene.names.clear();
+    scene.details = details_of(meshes, scene.names);
     Buffer<Box3d> boxes{meshes.size()};
     std::transform(meshes.begin(), meshes.end(), boxes.data(),
                    [](const PlainMesh& mesh) { return box_of(mesh.vertices); });
@@ -107,6 +137,7 @@ float rounded(double at, const std::string& path) {
 LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& path) {
     LoadedTriangles loaded;
     loaded.owner_names = names_of(meshes, path);
+    loaded.owner_details = details_of(meshes, loaded.owner_names);
     for (std::size_t owner = 0; owner < meshes.size(); ++owner) {
         const shape::Mesh mesh = cut_into_triangles(std::move(meshes[owner]));
         for (const auto& [a, b, c] : mesh.triangles) {
@@ -135,12 +166,17 @@ Buffer<Box3f> boxes_of_triangles(const LoadedTriangles& loaded, const std::strin
 
 }  // namespace
 
+void FileContent::checkpoint(std::size_t offset) const {
+    if (stop.stop_requested()) cancel();
+    if (progress) progress(double(offset) / double(bytes.size()));
+}
+
 bool is_plain_ending(std::string_view ending) {
     return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";
 }
 
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
-    std::vector<PlainMesh> meshes = read_meshes(path, stop);
+    std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress);
     const bool is_rounded =
         std::any_of(meshes.begin(), meshes.end(), [](const PlainMesh& mesh) { return mesh.rounded; });
     LoadedScene scene;
@@ -162,7 +198,7 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
 
 shape::Mesh read_plain_mesh(const std::string& path, const std::stop_token& stop) {
     shape::Mesh whole;
-    for (PlainMesh& mesh : read_meshes(path, stop)) {
+    for (PlainMesh& mesh : read_meshes(path, stop, {})) {
         const auto first = std::uint32_t(whole.vertices.size());
         const shape::Mesh part = cut_into_triangles(std::move(mesh));
         whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());

@@ -130,7 +130,7 @@ public:
     static constexpr bool binary = true;
     BinaryValues(const FileContent& file, std::size_t begin, bool big) : file_(file), at_(begin), big_(big) {}
     void begin_element() {
-        if (++elements_ % 4096 == 0 && file_.stop.stop_requested()) cancel();
+        if (++elements_ % 4096 == 0) file_.checkpoint(at_);
     }
     static bool more() { return true; }
     double value(const Scalar& scalar) {

@@ -45,7 +45,7 @@ PlainMesh parse_binary(const FileContent& file) {
     mesh.rounded = true;
     mesh.vertices.reserve(3 * triangles);
     for (std::uint64_t i = 0; i < triangles; ++i) {
-        if (i % 4096 == 0 && file.stop.stop_requested()) cancel();
+        if (i % 4096 == 0) file.checkpoint(std::size_t(i * triangle_bytes));
         const char* const at = file.bytes.data() + header_bytes + i * triangle_bytes + 12;  // behind the normal
         for (unsigned corner = 0; corner < 3; ++corner) {
             Point3d place;

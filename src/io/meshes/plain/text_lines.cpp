@@ -25,7 +25,7 @@ std::string_view without_space_before(std::string_view text) {
 bool TextLines::next() {
     constexpr std::uint64_t lines_between_checks = 4096;
     while (next_ < file_.bytes.size()) {
-        if (++number_ % lines_between_checks == 0 && file_.stop.stop_requested()) cancel();
+        if (++number_ % lines_between_checks == 0) file_.checkpoint(next_);
         const std::size_t end = std::min(file_.bytes.find('\n', next_), file_.bytes.size());
         line_ = file_.bytes.substr(next_, end - next_);
         next_ = std::min(end + 1, file_.bytes.size());
@@ -55,10 +55,22 @@ std::string_view TextLines::rest() {
 }
 
 double TextLines::number(std::string_view what) {
-    std::string_view text = word();
-    if (text.empty()) refuse_line(fmt::format("the line ends where {} should follow", what));
-    const std::string_view given = text;
-    if (text.front() == '+') text.remove_prefix(1);
+    line_ = without_space_before(line_);
+    if (line_.empty()) refuse_line(fmt::format("the line ends where {} should follow", what));
+    const char* const end = line_.data() + line_.size();
+    const bool plus = line_.front() == '+';
+    double value = 0;
+    const auto [after, error] = std::from_chars(line_.data() + (plus ? 1 : 0), end, value);
+    const bool is_number = error == std::errc() && (after == end || is_space(*after)) && std::isfinite(value);
+    if (!is_number || (plus && line_.starts_with("+-"))) return unusual_number(what);
+    line_.remove_prefix(std::size_t(after - line_.data()));
+    return value;
+}
+
+double TextLines::unusual_number(std::string_view what) {
+    const std::string_view given = word();
+    std::string_view text = given;
+    if (text.front() == '+' && !text.starts_with("+-")) text.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = end == text.data() + text.size() && !text.empty();
@@ -72,17 +84,23 @@ double TextLines::number(std::string_view what) {
 }
 
 std::uint64_t TextLines::integer(std::string_view what, std::uint64_t most) {
-    const std::string_view text = word();
+    line_ = without_space_before(line_);
+    constexpr std::size_t safe_digits = 19;  // they fit into 64 bits
     std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || end != text.data() + text.size() ||
-        (error != std::errc() && error != std::errc::result_out_of_range)) {
-        refuse_line(fmt::format("{} is '{}', not a number without sign", what, shown(text)));
-    }
-    if (error != std::errc() || value > most) {
-        refuse_line(fmt::format("{} is {}; at most {} is possible", what, shown(text), most));
-    }
+    std::size_t digits = 0;
+    while (digits < std::min(line_.size(), safe_digits) && line_[digits] >= '0' && line_[digits] <= '9')
+        value = value * 10 + std::uint64_t(line_[digits++] - '0');
+    const bool is_integer = digits > 0 && (digits == line_.size() || is_space(line_[digits])) && value <= most;
+    if (!is_integer) refuse_integer(what, most);
+    line_.remove_prefix(digits);
     return value;
+}
+
+void TextLines::refuse_integer(std::string_view what, std::uint64_t most) {
+    const std::string_view text = word();
+    if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos)
+        refuse_line(fmt::format("{} is '{}', not a number without sign", what, shown(text)));
+    refuse_line(fmt::format("{} is {}; at most {} is possible", what, shown(text), most));
 }
 
 void TextLines::refuse_line(std::string_view why) const {

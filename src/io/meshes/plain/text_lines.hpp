@@ -34,6 +34,10 @@ public:
     std::size_t offset() const { return next_; }
 
 private:
+    /// Like number(), for words that need a closer look: wrong ones, and those beyond the range of float64.
+    double unusual_number(std::string_view what);
+    [[noreturn]] void refuse_integer(std::string_view what, std::uint64_t most);
+
     const FileContent& file_;
     char comment_;
     std::size_t next_ = 0;  // begin of the next line

@@ -1,0 +1,102 @@
+#include "io/meshes/node_details.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <assimp/material.h>
+
+#include "io/formats.hpp"
+#include "io/meshes/ifc_elements.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+std::string& text_of(DetailTexts& texts, Detail detail) { return texts[std::size_t(detail)]; }
+
+std::string_view name_of(const aiNode& node) { return {node.mName.C_Str(), node.mName.length}; }
+
+/// Returns whether a name was invented by Assimp, because the file gives none.
+bool is_invented(std::string_view material) {
+    return material.empty() || material == AI_DEFAULT_MATERIAL_NAME || material.starts_with("<IFCDefault");
+}
+
+/// Returns the materials of an instance, each once, joined by ", ".
+std::string materials_of(const MeshFile& file, const MeshInstance& instance) {
+    std::vector<std::string> names;
+    std::string joined;
+    for (const unsigned number : instance.meshes()) {
+        const unsigned material = file.mesh(number).mMaterialIndex;
+        if (material >= file.scene().mNumMaterials) continue;
+        const std::string name = file.scene().mMaterials[material]->GetName().C_Str();
+        if (is_invented(name) || std::find(names.begin(), names.end(), name) != names.end()) continue;
+        names.push_back(name);
+        joined += (joined.empty() ? "" : ", ") + name;
+    }
+    return joined;
+}
+
+/// An element of an IFC model, and its node.
+struct ElementNode {
+    IfcElement element;
+    const aiNode* node;
+};
+
+/// Returns the nearest element at or above `node` for which `accept` is true.
+template <typename Accept>
+std::optional<ElementNode> nearest_element(const aiNode* node, const Accept& accept) {
+    for (; node != nullptr; node = node->mParent) {
+        const auto element = parse_ifc_element(name_of(*node));
+        if (element && accept(*element)) return ElementNode{*element, node};
+    }
+    return std::nullopt;
+}
+
+/// Returns the name of an element, or its type if it has none.
+std::string label_of(const IfcElement& element, const IfcNames& names) {
+    const auto known = names.find(std::string(element.id));
+    if (known != names.end()) return known->second;
+    return std::string(element.name.empty() ? element.type : element.name);
+}
+
+void add_ifc_details(const aiNode& node, const IfcNames& names, DetailTexts& texts) {
+    const auto any = [](const IfcElement&) { return true; };
+    const auto own = nearest_element(&node, any);
+    if (!own) return;
+    text_of(texts, Detail::label) = label_of(own->element, names);
+    text_of(texts, Detail::type) = own->element.type;
+    text_of(texts, Detail::id) = own->element.id;
+    if (const auto parent = nearest_element(own->node->mParent, any))
+        text_of(texts, Detail::parent) = label_of(parent->element, names);
+    const auto is_storey = [](const IfcElement& element) { return element.type == "IfcBuildingStorey"; };
+    if (const auto storey = nearest_element(&node, is_storey))
+        text_of(texts, Detail::level) = label_of(storey->element, names);
+}
+
+void add_node_details(const aiNode& node, DetailTexts& texts) {
+    text_of(texts, Detail::label) = name_of(node);
+    const aiNode* parent = node.mParent;
+    while (parent != nullptr && parent->mName.length == 0) parent = parent->mParent;
+    if (parent != nullptr) text_of(texts, Detail::parent) = name_of(*parent);
+}
+
+}  // namespace
+
+ObjectDetails details_of(const MeshFile& file) {
+    ObjectDetails details;
+    DetailsBuilder builder(details);
+    for (const MeshInstance& instance : file.instances()) {
+        DetailTexts texts;
+        if (is_ifc_file(file.path())) {
+            add_ifc_details(*instance.node, file.ifc_names(), texts);
+        } else {
+            add_node_details(*instance.node, texts);
+        }
+        text_of(texts, Detail::material) = materials_of(file, instance);
+        builder.add(texts);
+    }
+    return details;
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,29 @@
+// Fuzzes the search for names in the text of IFC files.
+#include <cstdint>
+#include <cstdlib>
+
+#include "io/meshes/ifc_elements.hpp"
+
+namespace {
+
+void require(bool holds) {
+    if (!holds) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    using namespace octopair;
+    const std::string_view text(reinterpret_cast<const char*>(bytes), size);
+    std::size_t all = 0;
+    for (const auto& [id, name] : io::find_ifc_names(text)) {
+        require(id.size() == 22 && !name.empty());
+        all += name.size();
+    }
+    require(all <= 2 * size);
+    require(io::decode_step_text(text).size() <= 2 * size);
+    if (const auto element = io::parse_ifc_element(text)) {
+        require(element->type.size() + element->name.size() + element->id.size() <= size);
+    }
+    return 0;
+}

@@ -1,0 +1,140 @@
+// Tests IFC models: names, details, axes and unit. The model is a wall and a beam that share 100 mm.
+#include <gtest/gtest.h>
+
+#include "io/meshes/ifc_elements.hpp"
+#include "io/meshes/mesh_reader.hpp"
+#include "io/temporary.hpp"
+
+namespace octopair::test {
+namespace {
+
+using io::Detail;
+
+constexpr const char* model = R"(ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION((''),'2;1');
+FILE_NAME('','',(''),(''),'','','');
+FILE_SCHEMA(('IFC2X3'));
+ENDSEC;
+DATA;
+#25=IFCPERSON($,'n',$,$,$,$,$,$);
+#26=IFCORGANIZATION($,'o',$,$,$);
+#27=IFCPERSONANDORGANIZATION(#25,#26,$);
+#28=IFCAPPLICATION(#26,'1','a','a');
+#30=IFCOWNERHISTORY(#27,#28,$,.ADDED.,$,$,$,0);
+#1=IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.);
+#2=IFCUNITASSIGNMENT((#1));
+#3=IFCCARTESIANPOINT((0.,0.,0.));
+#4=IFCAXIS2PLACEMENT3D(#3,$,$);
+#5=IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#4,$);
+#6=IFCPROJECT('0000000000000000000001',#30,'Haus',$,$,$,$,(#5),#2);
+#7=IFCLOCALPLACEMENT($,#4);
+#8=IFCBUILDING('0000000000000000000002',#30,'B\X2\00FC\X0\ro',$,$,#7,$,$,.ELEMENT.,$,$,$);
+#9=IFCBUILDINGSTOREY('0000000000000000000003',#30,'EG',$,$,#7,$,$,.ELEMENT.,0.);
+#10=IFCRELAGGREGATES('0000000000000000000004',#30,$,$,#6,(#8));
+#11=IFCRELAGGREGATES('0000000000000000000005',#30,$,$,#8,(#9));
+#12=IFCCARTESIANPOINT((0.,0.));
+#13=IFCAXIS2PLACEMENT2D(#12,$);
+#14=IFCRECTANGLEPROFILEDEF(.AREA.,$,#13,4000.,200.);
+#15=IFCDIRECTION((0.,0.,1.));
+#16=IFCEXTRUDEDAREASOLID(#14,#4,#15,2500.);
+#17=IFCSHAPEREPRESENTATION(#5,'Body','SweptSolid',(#16));
+#18=IFCPRODUCTDEFINITIONSHAPE($,$,(#17));
+#19=IFCWALL('0000000000000000000006',#30,'T_\X2\00FC\X0\r',$,$,#7,#18,$);
+#20=IFCCARTESIANPOINT((2000.,0.,2400.));
+#21=IFCAXIS2PLACEMENT3D(#20,$,$);
+#22=IFCLOCALPLACEMENT(#7,#21);
+#23=IFCBEAM('0000000000000000000007',#30,$,$,$,#22,#18,$);
+#24=IFCRELCONTAINEDINSPATIALSTRUCTURE('0000000000000000000008',#30,$,$,(#19,#23),#9);
+ENDSEC;
+END-ISO-10303-21;
+)";
+
+io::LoadedScene read_model(io::MeshObjects objects) {
+    const TemporaryDirectory directory;
+    write_file(directory.file("model.ifc"), model);
+    return io::read_mesh_scene(directory.file("model.ifc"), {objects, true});
+}
+
+TEST(Ifc, ElementsHaveNamesAndDetails) {
+    const io::LoadedScene scene = read_model(io::MeshObjects::node);
+    ASSERT_EQ(scene.objects, 2u);
+    EXPECT_EQ(scene.names[0],
+              "IfcBuilding_Büro_0000000000000000000002/$RelAggregates/IfcBuildingStorey_EG_0000000000000000000003/"
+              "IfcWall_T_ür_0000000000000000000006");
+    EXPECT_EQ(scene.details.of(0, Detail::label), "T_ür");
+    EXPECT_EQ(scene.details.of(0, Detail::type), "IfcWall");
+    EXPECT_EQ(scene.details.of(0, Detail::id), "0000000000000000000006");
+    EXPECT_EQ(scene.details.of(0, Detail::parent), "EG");
+    EXPECT_EQ(scene.details.of(0, Detail::level), "EG");
+    EXPECT_EQ(scene.details.of(0, Detail::material), "");
+    EXPECT_EQ(scene.details.of(1, Detail::label), "IfcBeam") << "an element without a name has its type as label";
+    EXPECT_EQ(scene.details.of(1, Detail::type), "IfcBeam");
+}
+
+TEST(Ifc, CoordinatesAreMetresWithZUp) {
+    const io::LoadedScene scene = read_model(io::MeshObjects::node);
+    EXPECT_EQ(scene.space, (io::SceneSpace{io::UpAxis::z, "m"}));
+    const auto& boxes = std::get<Buffer<Box3d>>(scene.boxes);
+    const double expected[2][6] = {{-2, -0.1, 0, 2, 0.1, 2.5}, {0, -0.1, 2.4, 4, 0.1, 4.9}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(boxes[i].min[axis], expected[i][axis], 1e-14);
+            EXPECT_NEAR(boxes[i].max[axis], expected[i][3 + axis], 1e-14);
+            EXPECT_LE(boxes[i].min[axis], expected[i][axis]);
+            EXPECT_GE(boxes[i].max[axis], expected[i][3 + axis]);
+        }
+    }
+}
+
+TEST(Ifc, OwnersOfTrianglesHaveDetails) {
+    const io::LoadedScene scene = read_model(io::MeshObjects::triangle);
+    ASSERT_TRUE(scene.triangles);
+    EXPECT_EQ(scene.triangles->owner_details.of(1, Detail::id), "0000000000000000000007");
+}
+
+TEST(Ifc, NodeNamesAreParsed) {
+    const auto parsed = io::parse_ifc_element("IfcDoor_a_b_3rPX_Juz59peXXY6wDJl18");
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->type, "IfcDoor");
+    EXPECT_EQ(parsed->name, "a_b");
+    EXPECT_EQ(parsed->id, "3rPX_Juz59peXXY6wDJl18");
+    EXPECT_EQ(io::parse_ifc_element("IfcDoor_Unnamed_3rPX_Juz59peXXY6wDJl18")->name, "");
+    EXPECT_EQ(io::parse_ifc_element("IfcDoor_3rPX_Juz59peXXY6wDJl18")->name, "");
+    for (const char* other : {"", "IfcMappedItem", "$RelAggregates", "Door_x_3rPX_Juz59peXXY6wDJl18",
+                              "IfcDoor_3rPX_Juz59peXXY6wDJl1", "IfcDoor3rPX_Juz59peXXY6wDJl18x"}) {
+        EXPECT_FALSE(io::parse_ifc_element(other)) << other;
+    }
+}
+
+TEST(Ifc, TextIsDecoded) {
+    EXPECT_EQ(io::decode_step_text("it''s"), "it's");
+    EXPECT_EQ(io::decode_step_text(R"(a\\b)"), R"(a\b)");
+    EXPECT_EQ(io::decode_step_text(R"(Gel\S\dnde \X\DF)"), "Gelände ß");
+    EXPECT_EQ(io::decode_step_text(R"(\X2\00FC4E2D\X0\.)"), "ü中.");
+    EXPECT_EQ(io::decode_step_text(R"(\X2\D83DDE00\X0\)"), "\xF0\x9F\x98\x80");
+    EXPECT_EQ(io::decode_step_text(R"(\X4\0001F600\X0\)"), "\xF0\x9F\x98\x80");
+    for (const char* invalid : {R"(\)", R"(\X2\)", R"(\X2\00F)", R"(\X2\00FC)", R"(\X2\D83D\X0\)", R"(\X2\DE00\X0\)",
+                                R"(\X\G1)", R"(\S\)", R"(\X4\00110000\X0\)", R"(\Q\)"}) {
+        EXPECT_EQ(io::decode_step_text(invalid), invalid);
+    }
+}
+
+TEST(Ifc, NamesAreFoundInTheText) {
+    const std::string id = "'3rPX_Juz59peXXY6wDJl18'";
+    const auto found = [&](const std::string& text) {
+        const io::IfcNames names = io::find_ifc_names(text);
+        return names.size() == 1 ? names.begin()->second : std::to_string(names.size());
+    };
+    EXPECT_EQ(found("#1= IFCWALL(" + id + ",#13,'n',$);"), "n");
+    EXPECT_EQ(found("DATA;\r\n#1 =\tIFCWALL ( " + id + " , $ , 'a;''b' , $);#2=X($);"), "a;'b");
+    EXPECT_EQ(found("#9=X('#1=IFCWALL(" + id.substr(1, 5) + "');/* it's; */#1=IFCWALL(" + id + ",$,'n');"), "n");
+    for (const std::string& none :
+         {std::string(), std::string("'"), std::string("/*"), "#1=IFCWALL(" + id + ",$,$);",
+          "#1=IFCWALL(" + id + ",$,'');", "#1=IFCWALL(" + id + ",$,'n", std::string("#1=IFCWALL('short',$,'n');")}) {
+        EXPECT_EQ(found(none), "0") << none;
+    }
+}
+
+}  // namespace
+}  // namespace octopair::test
