@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 
 #include <fmt/format.h>
 
+#include "io/files/input_file.hpp"
+#include "io/files/stream_input.hpp"
 #include "io/meshes/mesh_reader.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
 #include "octopair/error.hpp"
@@ -20,6 +23,28 @@ std::string ending_of(const std::string& path) {
     return ending;
 }
 
+namespace {
+
+/// Returns whether a path says nothing about the format: standard input or output ("-"), a stream, or a descriptor under /dev or
+/// /proc.
+bool lacks_name(const std::string& path) {
+    return is_stream(path) || path == "/dev/stdin" || path.starts_with("/dev/fd/") ||
+           path.starts_with("/proc/self/fd/");
+}
+
+/// Returns the format by the first bytes: .npy begins with a mark, JSON with a brace or bracket; everything else is CSV.
+SceneFormat format_of_content(const std::string& path) {
+    const InputFile file(path);
+    std::string begin(std::size_t(std::min<std::uint64_t>(file.size(), 64)), '\0');
+    file.read(0, std::as_writable_bytes(std::span(begin)));
+    if (begin.starts_with("\x93NUMPY")) return SceneFormat::npy;
+    const std::size_t first = begin.find_first_not_of(" \t\r\n");
+    const bool json = first != std::string::npos && (begin[first] == '{' || begin[first] == '[');
+    return json ? SceneFormat::json : SceneFormat::csv;
+}
+
+}  // namespace
+
 SceneFormat scene_format(const std::string& path) {
     const std::string ending = ending_of(path);
     if (ending == ".npy") return SceneFormat::npy;
@@ -28,7 +53,7 @@ SceneFormat scene_format(const std::string& path) {
 #ifdef OCTOPAIR_WITH_MESHES
     if (is_mesh_ending(ending)) return SceneFormat::mesh;
 #endif
-    return SceneFormat::unknown;
+    return lacks_name(path) ? format_of_content(path) : SceneFormat::unknown;
 }
 
 bool is_imported_file(const std::string& path) {
@@ -65,6 +90,7 @@ ResultFormat result_format(const std::string& path) {
     if (ending == ".npy") return ResultFormat::npy;
     if (ending == ".csv") return ResultFormat::csv;
     if (ending == ".jsonl") return ResultFormat::jsonl;
+    if (path == "-" || path.starts_with("/dev/")) return ResultFormat::csv;
     throw Error(ErrorCode::usage,
                 fmt::format("{}: unknown file type; the name of a pairs file must end in .npy, .csv or .jsonl", path));
 }

@@ -1,4 +1,5 @@
-// File formats by the ending of the file's name. Case is ignored. No other file maps endings to formats.
+// File formats by the ending of the file's name. Case is ignored. No other file maps endings to formats. Streams without an ending,
+// such as "-" and /dev/fd/63, have the format that their first bytes show: .npy, JSON or CSV. Results go there as CSV.
 //
 // Scenes    scene_reader.cpp calls the reader of a format.
 // Results   results/pair_writer.cpp, collision_writer.cpp and event_writer.cpp write the formats.
@@ -18,7 +19,8 @@ enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 /// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
 enum class ResultFormat : std::uint8_t { npy, csv, jsonl };
 
-/// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files.
+/// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files. Reads streams without an ending.
+/// Throws: Error{io_failed} for such a stream.
 SceneFormat scene_format(const std::string& path);
 inline bool is_npy_file(const std::string& path) { return scene_format(path) == SceneFormat::npy; }
 inline bool is_json_file(const std::string& path) { return scene_format(path) == SceneFormat::json; }

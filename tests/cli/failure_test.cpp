@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "cli/program.hpp"
+
+#include <tuple>
 #include "support/compare.hpp"
 
 namespace octopair::test {
@@ -129,15 +131,48 @@ TEST_F(Failure, AClosedPipe) {
 TEST_F(Failure, AnInterruptLeavesTheOldFile) {
     generate("coincident", 60000);  // 1,799,970,000 pairs: seconds of work
     write_file(file("p.npy"), "old");
-    for (const std::string signal : {"INT", "TERM"}) {
+    for (const auto& [signal, status, words] :
+         {std::tuple<std::string, int, std::string>("INT", 130, "interrupted"), {"TERM", 143, "terminated"}}) {
         const Outcome outcome =
             shell("\"$P\" detect big.npy --output p.npy & child=$!; hears $child; sleep 0.2; kill -" + signal +
                   " $child; wait $child");
-        EXPECT_EQ(outcome.status, 130);
-        EXPECT_EQ(outcome.err, "octopair: interrupted\n");
+        EXPECT_EQ(outcome.status, status);
+        EXPECT_EQ(outcome.err, "octopair: " + words + "\n");
         EXPECT_EQ(content("p.npy"), "old");
         EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));
     }
+}
+
+TEST_F(Failure, AFullDiskUnderShortTexts) {
+    for (const char* words : {"--help", "--version", "info", "detect --help"}) {
+        const Outcome outcome = shell("\"$P\" " + std::string(words) + " >/dev/full");
+        EXPECT_EQ(outcome.status, 4) << words;
+        EXPECT_EQ(outcome.err, "octopair: standard output: cannot write: No space left on device\n") << words;
+    }
+}
+
+TEST_F(Failure, NoOutputReplacesAnInput) {
+    save_boxes("a.npy", {0, 0.5f});
+    save_boxes("b.npy", {0, 0.5f});
+    const std::string before = content("a.npy");
+    ASSERT_EQ(shell("ln -s a.npy link.npy && ln a.npy hard.npy && mkdir d && ln -s ../a.npy d/up.npy").status, 0);
+    for (const std::string wrong :
+         {"a.npy --output a.npy", "a.npy --output ./a.npy", "a.npy --output link.npy", "link.npy --output hard.npy",
+          "a.npy --output d/up.npy", "a.npy --stats a.npy", "b.npy a.npy --output a.npy",
+          "b.npy --against a.npy --output a.npy", "b.npy --padding a.npy --output a.npy"}) {
+        const Outcome outcome = run("detect " + wrong);
+        EXPECT_EQ(outcome.status, 2) << wrong;
+        EXPECT_NE(outcome.err.find("which would be replaced"), std::string::npos) << outcome.err;
+        EXPECT_EQ(content("a.npy"), before) << wrong;
+    }
+}
+
+TEST_F(Failure, AReplacedFileKeepsItsMode) {
+    save_boxes("a.npy", {0, 0.5f});
+    write_file(file("p.csv"), "old");
+    ASSERT_EQ(shell("chmod 640 p.csv && \"$P\" detect a.npy --output p.csv --quiet && stat -c %a p.csv").out, "640\n");
+    EXPECT_EQ(content("p.csv"), "a,b\n0,1\n");
+    EXPECT_EQ(shell("umask 027; \"$P\" detect a.npy --output new.csv --quiet && stat -c %a new.csv").out, "640\n");
 }
 
 TEST_F(Failure, AnInterruptWhileAPipeIsFull) {

@@ -1,9 +1,11 @@
 #include "cli/command/config_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "base/io_failure.hpp"
@@ -17,12 +19,26 @@ namespace {
     throw Error(ErrorCode::usage, file + ": " + key + ": " + why);
 }
 
-std::vector<ConfigEntry> entries_of(const std::string& file) {
-    std::ifstream in(file);
+/// Returns the text of a file. Refuses other data: messages about them would show them, which may be secret or garble the terminal.
+std::string text_of(const std::string& file) {
+    constexpr std::size_t max_bytes = 1 << 20;
+    std::ifstream in(file, std::ios::binary);
     if (!in) fail_io(file, "cannot open", errno);
-    std::vector<ConfigEntry> entries = parse_config(in);
+    std::string text(max_bytes + 1, '\0');
+    in.read(text.data(), std::streamsize(text.size()));
     if (in.bad()) fail_io(file, "cannot read", errno);
-    return entries;
+    text.resize(std::size_t(in.gcount()));
+    const auto is_control = [](char c) {
+        return (c >= 0 && c < ' ' && c != '\n' && c != '\r' && c != '\t') || c == 0x7F;
+    };
+    if (text.size() > max_bytes || std::any_of(text.begin(), text.end(), is_control))
+        throw Error(ErrorCode::bad_input, file + ": not a text file of at most 1 MiB");
+    return text;
+}
+
+std::vector<ConfigEntry> entries_of(const std::string& file) {
+    std::istringstream text(text_of(file));
+    return parse_config(text);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <pthread.h>
 
+#include "cli/command/failure.hpp"
+
 namespace octopair::cli {
 
 Interrupt::Interrupt() {
@@ -29,6 +31,7 @@ void Interrupt::wait() {
     while (sigwait(&signals_, &signal) != 0) {
     }
     if (finished_) return;
+    stop_signal = signal;
     stop_.request_stop();
     while (sigwait(&signals_, &signal) != 0) {
     }

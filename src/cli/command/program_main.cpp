@@ -1,10 +1,13 @@
 #include "cli/command/program_main.hpp"
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <new>
 #include <system_error>
 
+#include "base/io_failure.hpp"
 #include "cli/command/failure.hpp"
 #include "octopair/error.hpp"
 
@@ -16,7 +19,10 @@ int program_main(const char* program, const Action& run) {
     program_name = program;
     // Reporting that memory ran out must not need memory.
     try {
-        return run();
+        const int status = run();
+        // Help, versions and other short texts are only buffered until here.
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail_io("standard output", "cannot write", errno);
+        return status;
     } catch (const Error& error) {
         return fail(error);
     } catch (const std::bad_alloc&) {

@@ -106,7 +106,7 @@ int run_on_ranks(const DetectRequest& request) {
         if (cluster.first()) (void)fail(error);
         // Without this barrier, mpirun may kill the first rank in the middle of its message when another rank exits.
         cluster.together([] {});
-        return exit_status(error.code());
+        return status_of(error.code());
     }
 }
 #endif

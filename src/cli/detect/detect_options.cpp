@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cli/command/command.hpp"
+#include "cli/command/file_options.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/event_detection.hpp"
 #include "cli/engine_choice.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/stream_input.hpp"
 #include "io/formats.hpp"
 #include "octopair/error.hpp"
 
@@ -106,21 +108,24 @@ void check_verify_options(const DetectRequest& request) {
     if (request.wide_indices) refuse("not with --index-type uint64");
 }
 
-/// Throws: Error{usage} if two outputs go to the same regular file, because one would overwrite the other.
-void check_outputs(const DetectRequest& request) {
-    namespace fs = std::filesystem;
-    const std::pair<std::string_view, fs::path> outputs[] = {
-        {"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}};
-    std::error_code no_path;  // ignored: the writer reports an invalid path
-    const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, no_path), no_path); };
-    for (const auto& [option, path] : outputs) {
-        for (const auto& [earlier_option, earlier] : outputs) {
-            if (option == earlier_option) break;
-            if (path.empty() || earlier.empty() || place(path) != place(earlier)) continue;
-            if (fs::exists(path, no_path) && !fs::is_regular_file(path, no_path)) continue;
-            throw Error(ErrorCode::usage,
-                        fmt::format("{}: {} is also the file of {}", option, path.native(), earlier_option));
-        }
+std::vector<FileOption> input_files(const DetectRequest& request) {
+    std::vector<FileOption> files;
+    for (const std::string& input : request.inputs) files.push_back({"", input});
+    for (const auto& [option, path] :
+         {std::pair("--against", request.against), std::pair("--padding", request.padding),
+          std::pair("--exclude", request.pipeline.exclude), std::pair("--baseline", request.pipeline.baseline)}) {
+        files.push_back({option, path});
+    }
+    return files;
+}
+
+/// Ranks cannot share a stream. Other streams are read here, before signals are blocked.
+void check_streams(const DetectRequest& request) {
+    for (const auto& [option, path] : input_files(request)) {
+        if (path.empty() || !io::is_stream(path)) continue;
+        if (request.engine.has_ranks())
+            throw Error(ErrorCode::usage, fmt::format("{}: --engine mpi cannot read from a stream", path));
+        (void)io::InputFile(path);
     }
 }
 
@@ -135,14 +140,17 @@ void add_detect_options(Command& command, DetectRequest& request) {
 #endif
 }
 
-void check_detect_options(const DetectRequest& request) {
+void check_detect_options(DetectRequest& request) {
     check_engine_choice(request.engine);
+    check_streams(request);
+    if (request.output == "-") request.output.clear();  // CSV on standard output, which is not collected first
     if (!request.output.empty()) (void)io::result_format(request.output);
     if (request.events) check_event_options(request);
     check_index_type(request);
     if (request.verify) check_verify_options(request);
+    check_outputs(input_files(request),
+                  {{"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}});
     check_pipeline_options(request);
-    check_outputs(request);
 }
 
 }  // namespace octopair::cli

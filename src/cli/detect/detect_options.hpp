@@ -18,6 +18,6 @@ void add_order_options(Command& command, DetectRequest& request, const std::stri
 void add_detect_options(Command& command, DetectRequest& request);
 
 /// Throws: Error{usage} for options that cannot be used together.
-void check_detect_options(const DetectRequest& request);
+void check_detect_options(DetectRequest& request);
 
 }  // namespace octopair::cli

@@ -73,7 +73,8 @@ std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options
 
     std::vector<Work> own;
     own.reserve(summary.filters.size());
-    for (const FilterCounts& filter : summary.filters) own.push_back({filter.in, filter.out, filter.undecided, filter.seconds});
+    for (const FilterCounts& filter : summary.filters)
+        own.push_back({filter.in, filter.out, filter.undecided, filter.seconds});
     const std::vector<Work> works = cluster_.all_gather(std::span<const Work>(own));
     for (std::size_t i = 0; i < works.size(); ++i) {
         if (i / own.size() == cluster_.rank()) continue;

@@ -228,6 +228,7 @@ void add_result(Command& program, Action& action) {
     add_server_address(command, request->server);
     command.callback([request, &action] {
         check_server_named(request->server);
+        if (request->output == "-") request->output.clear();
         if (!request->output.empty()) (void)io::result_format(request->output);
         action = [request] { return run_result(*request); };
     });

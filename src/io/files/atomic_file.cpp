@@ -1,10 +1,12 @@
 #include "io/files/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <random>
@@ -47,11 +49,31 @@ void write_whole(const Descriptor& file, const std::string& path, std::span<cons
     }
 }
 
+/// Returns whether results go to a path at the end, as to a pipe, instead of replacing a file.
+bool is_output_stream(const std::string& path) {
+    if (path == "-") return true;
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return false;
+    return S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode);
+}
+
+Descriptor open_output_stream(const std::string& path) {
+    if (path == "-") return Descriptor(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0));
+    return Descriptor(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+}
+
 std::string own_link(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
 
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path) {
+    if (is_output_stream(path)) {
+        path_ = path;
+        stream_ = open_output_stream(path);
+        descriptor_ = Descriptor(::memfd_create("octopair", MFD_CLOEXEC));
+        if (!stream_.open() || !descriptor_.open()) fail_io(path_, "cannot open", errno);
+        return;
+    }
     choose_place(path);
     open_unnamed();
     if (!descriptor_.open()) open_named();
@@ -126,7 +148,36 @@ void AtomicFile::write_all(std::span<const std::byte> bytes, std::uint64_t offse
     write_whole(descriptor_, path_, bytes, offset);
 }
 
+/// Gives the temporary file the mode of the file that it replaces and, where the system allows it, the owner.
+void AtomicFile::keep_attributes() const {
+    struct stat old {};
+    if (::stat(path_.c_str(), &old) != 0) return;
+    (void)!::fchown(descriptor_.number(), old.st_uid, gid_t(-1));
+    const bool same_group = ::fchown(descriptor_.number(), uid_t(-1), old.st_gid) == 0;
+    const mode_t group = same_group ? 0070 : 0;  // rights of the old group are not for another group
+    (void)::fchmod(descriptor_.number(), old.st_mode & (0707 | group));
+}
+
+void AtomicFile::copy_to_stream() {
+    std::array<std::byte, 1 << 16> piece;
+    for (off_t at = 0;;) {
+        const ssize_t got = ::pread(descriptor_.number(), piece.data(), piece.size(), at);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) fail_io(path_, "cannot read its copy", errno);
+        if (got == 0) return;
+        at += got;
+        for (std::span bytes(piece.data(), std::size_t(got)); !bytes.empty();) {
+            const ssize_t written = ::write(stream_.number(), bytes.data(), bytes.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written < 0) fail_io(path_, "cannot write", errno);
+            bytes = bytes.subspan(std::size_t(written));
+        }
+    }
+}
+
 void AtomicFile::finish() {
+    if (stream_.open()) return copy_to_stream();
+    keep_attributes();
     if (::fsync(descriptor_.number()) != 0) fail_io(path_, "cannot write", errno);
     give_name();
     if (descriptor_.close() != 0) fail_io(path_, "cannot write", errno);

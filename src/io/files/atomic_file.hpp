@@ -5,7 +5,8 @@
 //   Elsewhere, and for shared files, it has a random name.
 // - commit() syncs the temporary file, renames it to the path, and syncs the directory.
 // - Without commit(), the destructor removes the temporary file, and the file at the path stays unchanged.
-// - A symbolic link at the path is followed.
+// - A symbolic link at the path is followed. A file that is replaced keeps its mode and, where the system allows it, its owner.
+// - If the path is "-" (standard output), a pipe or a device, the temporary file is in memory. commit() copies it there.
 // - Several processes can write one shared file: its maker through AtomicFile, the others through FilePart.
 #pragma once
 
@@ -19,10 +20,9 @@ namespace octopair::io {
 
 class AtomicFile final : public OutputStream {
 public:
-    /// Throws: Error{io_failed} if no file can be created in the directory, or if the path is something other than a regular
-    /// file.
+    /// Throws: Error{io_failed} if no file can be created in the directory, or if the path is a directory.
     explicit AtomicFile(const std::string& path);
-    /// Makes a shared file: other processes can open its temporary file by name.
+    /// Makes a shared file: other processes can open its temporary file by name. The path must not be a stream.
     struct Shared {};
     AtomicFile(const std::string& path, Shared);
     ~AtomicFile() override;
@@ -35,6 +35,8 @@ public:
 
 private:
     void choose_place(const std::string& path);
+    void keep_attributes() const;
+    void copy_to_stream();
     void put(std::span<const std::byte> bytes) override;
     void finish() override;
     void write_all(std::span<const std::byte> bytes, std::uint64_t offset);
@@ -47,6 +49,7 @@ private:
     std::string directory_;
     std::string temporary_;  // path of the temporary file, or empty if it has no name
     Descriptor descriptor_;
+    Descriptor stream_;  // open if the path is a stream; descriptor_ is then in memory
     std::uint64_t end_ = 0;
 };
 

@@ -7,13 +7,14 @@
 #include <cerrno>
 
 #include "io/files/failure.hpp"
+#include "io/files/stream_input.hpp"
 
 namespace octopair::io {
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
-    // With O_NONBLOCK, opening a pipe that has no writer does not block; the check below then refuses the pipe. The flag has no
-    // effect on a regular file.
-    descriptor_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    // With O_NONBLOCK, opening a device does not block; the check below then refuses it. The flag has no effect on a regular file.
+    descriptor_ = is_stream(path_) ? open_stream_copy(path_)
+                                   : Descriptor(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
     struct stat status {};
     if (::fstat(descriptor_.number(), &status) != 0) fail_io(path_, "cannot read", errno);

@@ -1,4 +1,4 @@
-// InputFile: a regular file that is open for reading.
+// InputFile: a regular file, or the copy of a stream (stream_input.hpp), that is open for reading.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace octopair::io {
 
 class InputFile {
 public:
-    /// Throws: Error{io_failed} if the file cannot be opened; Error{bad_input} if it is not a regular file.
+    /// Throws: Error{io_failed} if the file cannot be opened; Error{bad_input} if it is neither a regular file nor a stream.
     explicit InputFile(std::string path);
 
     const std::string& path() const { return path_; }
