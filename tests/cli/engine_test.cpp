@@ -1,6 +1,7 @@
 // Tests `octopair detect --engine`: worker processes write the same bytes as threads, even if workers fail.
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "cli/program.hpp"
 #include "support/compare.hpp"
@@ -213,16 +214,50 @@ TEST_F(Engines, RefusesAnInvalidWorkerProgram) {
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
 }
 
+/// The program is killed while its workers are stopped, under a subreaper in its own session: only there the system does not
+/// continue and end such processes by itself.
+TEST_F(Engines, StoppedWorkersEndWithTheProgram) {
+    generate("coincident", 60'000, "big.npy");
+    const Outcome outcome = shell(
+        "/usr/bin/python3 - \"$P\" <<'END'\n"
+        "import ctypes, os, signal, subprocess, sys, time\n"
+        "ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER\n"
+        "program = subprocess.Popen([sys.argv[1], 'detect', 'big.npy', '--count-only', '--engine', 'processes',\n"
+        "                            '--workers', '2', '--quiet'])\n"
+        "children = []\n"
+        "while len(children) < 2:\n"
+        "    time.sleep(0.05)\n"
+        "    tasks = os.listdir(f'/proc/{program.pid}/task')\n"
+        "    children = sum((open(f'/proc/{program.pid}/task/{t}/children').read().split() for t in tasks), [])\n"
+        "time.sleep(0.3)\n"
+        "for child in children: os.kill(int(child), signal.SIGSTOP)\n"
+        "program.kill()\n"
+        "program.wait()\n"
+        "ended = 0\n"
+        "for i in range(100):\n"
+        "    time.sleep(0.05)\n"
+        "    try:\n"
+        "        while os.waitpid(-1, os.WNOHANG)[0]: ended += 1\n"
+        "    except ChildProcessError: break\n"
+        "for child in children:\n"
+        "    try: os.kill(int(child), signal.SIGKILL)\n"
+        "    except ProcessLookupError: pass\n"
+        "print(ended, 'of', len(children))\n"
+        "END\n");
+    EXPECT_EQ(outcome.out, "2 of 2\n") << outcome.err;
+}
+
 TEST_F(Engines, AnInterruptLeavesTheOldFileAndNoWorkers) {
     generate("coincident", 60'000, "big.npy");  // 1,799,970,000 pairs: seconds of work
     write_file(file("p.npy"), "old");
-    for (const std::string signal : {"INT", "TERM"}) {
+    for (const auto& [signal, status, words] :
+         {std::tuple<std::string, int, std::string>("INT", 130, "interrupted"), {"TERM", 143, "terminated"}}) {
         const Outcome outcome =
             shell(functions + ("\"$P\" detect big.npy --output p.npy --engine processes --workers 2 & child=$!; "
                                "find_workers; sleep 0.3; kill -" +
                                signal + " $child; wait $child; status=$?; gone; exit $status"));
-        EXPECT_EQ(outcome.status, 130);
-        EXPECT_EQ(outcome.err, "octopair: interrupted\n");
+        EXPECT_EQ(outcome.status, status);
+        EXPECT_EQ(outcome.err, "octopair: " + words + "\n");
         EXPECT_EQ(outcome.out, "");
         EXPECT_EQ(content("p.npy"), "old");
         EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));

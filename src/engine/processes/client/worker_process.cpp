@@ -13,6 +13,7 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/processes/client/spawner.hpp"
 #include "engine/processes/worker/worker.hpp"
 #include "octopair/error.hpp"
 
@@ -96,8 +97,11 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
     const SpawnSettings settings(sockets.theirs.number());
     std::string name = "octopair-worker", number = std::to_string(slot);
     const std::array<char*, 3> arguments = {name.data(), number.data(), nullptr};
-    const int error =
-        ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(), environ);
+    int error = 0;
+    run_on_spawner([&] {
+        error =
+            ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(), environ);
+    });
     if (error != 0) throw_cannot_start(program, error);
     handle_ = Descriptor(int(::syscall(SYS_pidfd_open, id_, 0)));
     if (!handle_.open() && errno != ESRCH) {  // ESRCH: it has ended, and the application has waited for it

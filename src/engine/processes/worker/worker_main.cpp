@@ -1,13 +1,30 @@
 // octopair-worker: the program of worker processes. Only the process engine starts it.
 #include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 
 #include "engine/processes/worker/worker.hpp"
+
+namespace {
+
+/// Makes the system kill this process when its parent ends, even if this process is stopped. Ends it if the parent has ended
+/// before: the parent is the process that made the socket.
+void die_with_parent() {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ucred maker{};
+    socklen_t size = sizeof(maker);
+    const int got = ::getsockopt(octopair::worker_socket, SOL_SOCKET, SO_PEERCRED, &maker, &size);
+    if (got == 0 && maker.pid != ::getppid()) ::_exit(0);
+}
+
+}  // namespace
 
 int main(int count, char** arguments) {
     unsigned slot = 0;
@@ -17,6 +34,7 @@ int main(int count, char** arguments) {
         std::fputs("octopair-worker is started by programs that use octopair's process engine\n", stderr);
         return 2;
     }
+    die_with_parent();
     try {
         octopair::run_worker(octopair::Descriptor(octopair::worker_socket), slot, nullptr, [] { ::_exit(0); });
     } catch (const std::exception& failure) {
