@@ -22,8 +22,14 @@ namespace octopair {
 struct ClientOptions {
     std::chrono::milliseconds connect_timeout = std::chrono::seconds(5);  ///< longest wait for the first connection
     std::chrono::milliseconds patience = std::chrono::seconds(30);        ///< longest later outage of the server
-    /// One of the server's tokens; empty: none. Sent only over connections that are encrypted or stay on this machine.
+    /// One of the server's tokens; empty: none. Sent only over encrypted connections, and over Unix sockets where no other user can
+    /// listen: in a folder that only this user, root and `server_user` can write to.
     std::string token = {};
+    /// User that runs the server at a Unix socket, by name or number, if it is neither this user nor root.
+    std::string server_user = {};
+    /// True: the token is also sent to this machine's loopback addresses without encryption. Any user of this machine may listen there
+    /// while the server does not.
+    bool token_in_clear = false;
     /// PEM file of a certificate authority. If set, the connection is encrypted and the server's certificate must be of this
     /// authority. If empty, the connection is encrypted only if `certificate` or `tls` is set.
     std::string authority = {};

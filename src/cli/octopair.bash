@@ -18,7 +18,7 @@ _octopair_jobs() {
 _octopair() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
     local subcommand=${COMP_WORDS[1]}
-    local asked="--server --token-file --tls --tls-authority --tls-certificate --tls-key --patience"
+    local asked="--server --token-file --token-in-clear --server-user --tls --tls-authority --tls-certificate --tls-key --patience"
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
@@ -52,7 +52,7 @@ _octopair() {
             if [[ $current == -* ]]; then
                 mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --tolerance --duplicate-tolerance --min-depth --weld --exclude --same-parent --baseline --report --up --unit --objects --margin --padding --output --order
                     --index-type --count-only --events --limit --verify --fail-on-collision --engine --threads --workers --stats --quiet --help
-                    --token-file --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
+                    --token-file --token-in-clear --server-user --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;

@@ -107,6 +107,52 @@ TEST_F(Access, AddressesThatOthersReachNeedProtection) {
     }
 }
 
+TEST_F(Access, TheSchemeOfATokenHasAnyCase) {
+    const service::Server server(with_tokens(socket()), silent());
+    for (const std::string scheme : {"bearer ", "BEARER ", "bEaReR "})
+        EXPECT_TRUE(call_raw(socket(), "/octopair.v1.Octopair/Describe", scheme + right).ok()) << scheme;
+    for (const std::string scheme : {"Basic ", "Bearer", "Bearer  ", ""})
+        EXPECT_FALSE(call_raw(socket(), "/octopair.v1.Octopair/Describe", scheme + right).ok()) << scheme;
+}
+
+/// A client shows its token only where no other user can listen.
+TEST_F(Access, TokensGoOnlyToSocketsOfTrustedUsers) {
+    const service::Server server(with_tokens(socket()), silent());
+    EXPECT_EQ(ask(socket(), with(right)), right_answer);
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 01777), 0);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(right)); }),
+              socket() + ": the token is not sent, because other users can write to " + folder_.path() +
+                  "; use a folder of your own");
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with("")); }), socket() + ": the server requires a token");
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0700), 0);
+    EXPECT_EQ(ask(socket(), with(right)), right_answer);
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can give a socket to another user";
+    const auto of_user = [&](const std::string& user) {
+        ClientOptions options = with(right);
+        options.server_user = user;
+        return options;
+    };
+    ASSERT_EQ(::lchown(folder_.file("socket").c_str(), 65534, gid_t(-1)), 0);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), with(right)); }),
+              socket() + ": the token is not sent, because another user listens there");
+    EXPECT_EQ(ask(socket(), of_user("nobody")), right_answer);
+    EXPECT_EQ(ask(socket(), of_user("65534")), right_answer);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(socket(), of_user("no such user")); }),
+              "no user has the name 'no such user'");
+}
+
+TEST_F(Access, TokensGoToLoopbackOnlyOnRequest) {
+    const service::Server server(with_tokens("127.0.0.1:0"), silent());
+    const std::string address = server.address().text();
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(address, with(right)); }),
+              address +
+                  ": a token is not sent without encryption, because any user of this machine may listen there; "
+                  "use TLS, a Unix socket, or --token-in-clear");
+    ClientOptions options = with(right);
+    options.token_in_clear = true;
+    EXPECT_EQ(ask(address, options), right_answer);
+}
+
 TEST_F(Access, TokensDoNotLeaveTheMachineInTheClear) {
     for (const std::string address : {"192.0.2.1:7000", "127.0.0.1.example.invalid:7000"}) {
         EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(address, with(right)); }),

@@ -65,7 +65,17 @@ public:
         sign("expired-server", "authority", -1);
         sign("expired-client", "authority", -1);
         sign("stranger", "other", 2);
+        for (const auto& [name, subject, extension] : named) sign(name, subject, extension);
     }
+
+    /// Client certificates with other names: file, subject, and extension.
+    static constexpr std::array<std::array<const char*, 3>, 6> named = {
+        {{"nameless", "/O=octopair", "basicConstraints=CA:FALSE"},
+         {"nameless-too", "/O=octopair two", "basicConstraints=CA:FALSE"},
+         {"by-common-name", "/CN=anna", "basicConstraints=CA:FALSE"},
+         {"by-dns", "/CN=anna", "subjectAltName=DNS:anna.example"},
+         {"by-email", "/O=octopair", "subjectAltName=DNS:anna.example,email:anna@example.org"},
+         {"by-uri", "/CN=anna", "subjectAltName=email:anna@example.org,URI:spiffe://example.org/anna"}}};
 
     std::string pem(const std::string& name) const { return folder_.file(name + ".pem"); }
     std::string key(const std::string& name) const { return folder_.file(name + ".key"); }
@@ -79,10 +89,18 @@ private:
         run("openssl req -x509 " + fresh(name) + " -out " + name + ".pem -days 2 -subj /CN=" + name);
     }
     void sign(const std::string& name, const std::string& authority, int days) const {
-        run("openssl req " + fresh(name) + " -out request -subj /CN=" + name +
-            " && echo 'subjectAltName=DNS:localhost,IP:127.0.0.1' > names && openssl x509 -req -in request -CA " +
-            authority + ".pem -CAkey " + authority + ".key -CAcreateserial -extfile names -days " +
-            std::to_string(days) + " -out " + name + ".pem");
+        run("openssl req " + fresh(name) + " -out request -subj /CN=" + name);
+        sign_request(name, authority, days, "subjectAltName=DNS:localhost,IP:127.0.0.1");
+    }
+    void sign(const std::string& name, const std::string& subject, const std::string& extension) const {
+        run("openssl req " + fresh(name) + " -out request -subj '" + subject + "'");
+        sign_request(name, "authority", 2, extension);
+    }
+    // NOLINTNEXTLINE(readability-function-size): they are the arguments of one command
+    void sign_request(const std::string& name, const std::string& authority, int days,
+                      const std::string& extension) const {
+        run("echo '" + extension + "' > names && openssl x509 -req -in request -CA " + authority + ".pem -CAkey " +
+            authority + ".key -CAcreateserial -extfile names -days " + std::to_string(days) + " -out " + name + ".pem");
     }
     static std::string fresh(const std::string& name) {
         return "-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout " + name + ".key";

@@ -105,5 +105,29 @@ TEST_F(Log, TellsOfJobsAndRefusalsButNoToken) {
     EXPECT_EQ(text_.str().find("not the right token"), std::string::npos);
 }
 
+TEST_F(Log, RefusedCallsDoNotFillTheLog) {
+    write_secret(folder_.file("tokens"), "anna 0123456789abcdef\n");
+    service::ServerOptions options = options_at("unix:" + folder_.file("socket"));
+    options.token_file = folder_.file("tokens");
+    const auto logger = log(LogForm::json);
+    const service::Server server(options, logger);
+    const auto call = [&] { (void)call_raw(server.address().text(), "/octopair.v1.Octopair/Describe"); };
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 50; ++i) call();
+    const auto seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    call();
+    std::istringstream lines(text_.str());
+    std::size_t refused = 0, unreported = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const json read = json::parse(line);
+        if (read["message"] != "call refused") continue;
+        ++refused;
+        unreported += read.value("unreported", std::size_t(0));
+    }
+    EXPECT_LE(refused, 2 + std::size_t(seconds));
+    EXPECT_EQ(refused + unreported, 51u);
+}
+
 }  // namespace
 }  // namespace octopair::test

@@ -1,4 +1,9 @@
 // Tests connections with TLS, and certificates in place of tokens.
+#include <spdlog/sinks/ostream_sink.h>
+
+#include <sstream>
+#include <thread>
+
 #include "service/guarded.hpp"
 
 namespace octopair::test {
@@ -61,6 +66,30 @@ TEST_F(Tls, ClientsShowTheirCertificates) {
         EXPECT_TRUE(failure_of(address, trusting(name)).starts_with(address + ": no server answers: ")) << name;
     }
     EXPECT_EQ(ask(address, trusting("client")), right_answer);
+}
+
+/// The owner of a job is a name of the client's certificate. A certificate without a name is refused, so such clients do not share jobs.
+TEST_F(Tls, CertificatesNameTheirClients) {
+    std::ostringstream text;
+    const auto log = service::make_log(service::LogForm::json, std::make_shared<spdlog::sinks::ostream_sink_mt>(text));
+    log->set_level(spdlog::level::debug);
+    const service::Server server(secured("server", true), log);
+    const std::string address = server.address().text();
+    for (const std::string name : {"nameless", "nameless-too"}) {
+        EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(address, trusting(name)); }),
+                  address + ": the certificate names nobody");
+    }
+    for (const auto& [name, owner] : {std::pair("by-common-name", "certificate:anna"),
+                                      {"by-dns", "certificate-dns:anna.example"},
+                                      {"by-email", "certificate-email:anna@example.org"},
+                                      {"by-uri", "certificate-uri:spiffe://example.org/anna"}}) {
+        EXPECT_EQ(ask(address, trusting(name)), right_answer) << name;
+        const std::string field = "\"owner\":\"" + std::string(owner) + "\"";
+        const auto is_logged = [&] { return text.str().find(field) != std::string::npos; };
+        for (int tries = 0; tries < 3000 && !is_logged(); ++tries)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_TRUE(is_logged()) << name << ": " << text.str();
+    }
 }
 
 TEST_F(Tls, PlainAndEncryptedDoNotMix) {

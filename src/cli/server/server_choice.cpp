@@ -15,6 +15,12 @@ void add_server_options(Command& command, ServerChoice& choice) {
         .add_option("--token-file", choice.token_file,
                     "with a server: file with the token (default: the token in $OCTOPAIR_TOKEN)")
         .type_name("FILE");
+    command.add_flag("--token-in-clear", choice.options.token_in_clear,
+                     "with a server at a loopback address: send the token without encryption");
+    command
+        .add_option("--server-user", choice.options.server_user,
+                    "with a server at a Unix socket: user that runs it, if neither this user nor root")
+        .type_name("USER");
     command.add_flag("--tls", choice.options.tls,
                      "with a server: encrypt, and trust the system's certificate authorities");
     command
@@ -52,6 +58,8 @@ void check_server_choice(const ServerChoice& choice) {
     const ClientOptions& options = choice.options;
     const char* given = nullptr;
     if (!choice.token_file.empty()) given = "--token-file";
+    if (options.token_in_clear) given = "--token-in-clear";
+    if (!options.server_user.empty()) given = "--server-user";
     if (options.tls) given = "--tls";
     if (!options.authority.empty()) given = "--tls-authority";
     if (!options.certificate.empty()) given = "--tls-certificate";

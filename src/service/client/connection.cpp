@@ -10,6 +10,7 @@
 
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
+#include "service/client/socket_trust.hpp"
 #include "service/protocol/address.hpp"
 #include "service/protocol/certificate.hpp"
 #include "service/protocol/grpc_lifetime.hpp"
@@ -29,15 +30,24 @@ bool encrypts(const ClientOptions& options) {
     return options.tls || !options.authority.empty() || !options.certificate.empty();
 }
 
+/// Throws: Error{usage} if the token may not be sent over TCP without encryption.
+void check_clear_token(const Address& address, const ClientOptions& options) {
+    if (!is_this_machine(address)) {
+        throw Error(ErrorCode::usage,
+                    address.text() + ": a token is sent to another machine only with encryption; use TLS");
+    }
+    if (options.token_in_clear) return;
+    throw Error(ErrorCode::usage, address.text() +
+                                      ": a token is not sent without encryption, because any user of this machine may "
+                                      "listen there; use TLS, a Unix socket, or --token-in-clear");
+}
+
 std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address, const ClientOptions& options) {
     if (options.certificate.empty() != options.key.empty()) {
         throw Error(ErrorCode::usage, "a certificate needs its key, and a key its certificate");
     }
     if (!encrypts(options)) {
-        if (!options.token.empty() && !is_this_machine(address)) {
-            throw Error(ErrorCode::usage,
-                        address.text() + ": a token is sent to another machine only with encryption; use TLS");
-        }
+        if (!options.token.empty() && !address.is_unix()) check_clear_token(address, options);
         return grpc::InsecureChannelCredentials();
     }
     grpc::SslCredentialsOptions files;
@@ -98,7 +108,15 @@ Connection::Connection(std::string_view address, const ClientOptions& options)
       channel_(grpc::CreateCustomChannel(parse_address(address).text(), credentials_of(parse_address(address), options),
                                          arguments())) {
     check_token(token_);
+    const Address parsed = parse_address(address);
+    if (parsed.is_unix() && !token_.empty()) guarded_socket_ = parsed.path;
+    server_user_ = options.server_user;
+    check_socket();
     keep_grpc();
+}
+
+void Connection::check_socket() const {
+    if (!guarded_socket_.empty()) check_socket_trust(guarded_socket_, server_user_);
 }
 
 void Connection::prepare(grpc::ClientContext& context) const {
@@ -137,6 +155,7 @@ void Connection::RetryTimer::wait_or_throw(const grpc::Status& status, const std
     if (refuses_connections(status)) refused_ = true;
     // A refused connection may also break before GOAWAY arrives.
     if (was_connected(status) && !refused_) connection_.met();
+    connection_.check_socket();
     // Backoff, because gRPC would reconnect at once, thousands of times a second.
     std::this_thread::sleep_for(refuses_connections(status) ? 4 * apart : apart);
     // gRPC connects only while a thread waits in it. Wait here, because a call would wait too long if no server answers.

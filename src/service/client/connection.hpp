@@ -71,11 +71,15 @@ private:
         bool refused_ = false;  // since then the server has refused a connection because of its limit
     };
 
+    /// Throws: what check_socket_trust() throws, if the token goes to a Unix socket.
+    void check_socket() const;
     void met() { met_ = true; }
     [[noreturn]] void throw_unavailable(const grpc::Status& status, bool refused) const;
 
     std::string server_;
     std::string token_;
+    std::string guarded_socket_,
+        server_user_;  // path of the Unix socket that the token goes to; empty for other addresses
     std::chrono::milliseconds connect_timeout_, reconnect_timeout_;
     std::shared_ptr<grpc::Channel> channel_;
     std::atomic<Clock::time_point> heard_ = Clock::time_point();

@@ -2,6 +2,7 @@
 
 #include <grpcpp/support/status.h>
 
+#include <utility>
 #include <vector>
 
 #include "service/protocol/limit_error.hpp"
@@ -56,8 +57,19 @@ void ServerLog::connections_refused(std::uint64_t allowed, std::uint64_t refused
 void ServerLog::call_refused(const std::string& peer, const grpc::Status& why) {
     const bool going = why.error_code() == grpc::StatusCode::UNAVAILABLE;
     metrics_.call_refused(going ? "going down" : "unauthenticated");
-    log_event(*log_, going ? LogLevel::debug : LogLevel::warning, "call refused",
-              {{"peer", peer}, {"reason", why.error_message()}});
+    std::vector<Field> fields = {{"peer", peer}, {"reason", why.error_message()}};
+    if (!going) {
+        constexpr std::chrono::seconds apart(1);
+        const std::lock_guard lock(mutex_);
+        const auto now = std::chrono::steady_clock::now();
+        if (last_refusal_ != std::chrono::steady_clock::time_point() && now - last_refusal_ < apart) {
+            ++unreported_;
+            return;
+        }
+        last_refusal_ = now;
+        if (unreported_ > 0) fields.push_back({"unreported", std::exchange(unreported_, 0)});
+    }
+    log_event(*log_, going ? LogLevel::debug : LogLevel::warning, "call refused", fields);
 }
 
 }  // namespace octopair::service

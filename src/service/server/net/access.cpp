@@ -1,12 +1,15 @@
 #include "service/server/net/access.hpp"
 
 #include <grpc/grpc_security_constants.h>
+#include <grpcpp/security/auth_context.h>
 #include <grpcpp/server_context.h>
 #include <openssl/crypto.h>
 #include <openssl/sha.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
+#include <utility>
 
 #include "octopair/error.hpp"
 #include "service/protocol/private_file.hpp"
@@ -19,6 +22,32 @@ std::array<unsigned char, 32> digest_of(std::string_view token) {
     std::array<unsigned char, 32> digest{};
     SHA256(reinterpret_cast<const unsigned char*>(token.data()), token.size(), digest.data());
     return digest;
+}
+
+constexpr std::string_view bearer = "bearer ";
+
+/// Returns whether credentials have the scheme Bearer, in any case (RFC 9110).
+bool is_bearer(std::string_view credentials) {
+    const auto same = [](char given, char lower) {
+        return (given >= 'A' && given <= 'Z' ? given + 32 : given) == lower;
+    };
+    return credentials.size() > bearer.size() && std::equal(bearer.begin(), bearer.end(), credentials.begin(),
+                                                            [&](char lower, char c) { return same(c, lower); });
+}
+
+/// Returns the name of an authenticated peer (access.hpp). Empty: its certificate has no name.
+std::string name_of(const grpc::AuthContext& peer) {
+    constexpr std::array<std::pair<const char*, const char*>, 4> kinds = {
+        {{GRPC_PEER_URI_PROPERTY_NAME, "certificate-uri:"},
+         {GRPC_PEER_EMAIL_PROPERTY_NAME, "certificate-email:"},
+         {GRPC_PEER_DNS_PROPERTY_NAME, "certificate-dns:"},
+         {GRPC_X509_CN_PROPERTY_NAME, "certificate:"}}};
+    for (const auto& [property, kind] : kinds) {
+        for (const grpc::string_ref& name : peer.FindPropertyValues(property)) {
+            if (!name.empty()) return kind + std::string(name.data(), name.size());
+        }
+    }
+    return {};
 }
 
 [[noreturn]] void refuse(const std::string& file, std::size_t line, const char* why) {
@@ -62,22 +91,19 @@ const Access::Token* Access::find(std::string_view token) const {
 
 grpc::Status Access::identify(const grpc::ServerContextBase& context, std::string& owner) const {
     if (has_tokens()) {
-        constexpr std::string_view scheme = "Bearer ";
         const auto& metadata = context.client_metadata();
         const auto given = metadata.find("authorization");
         if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server requires a token"};
         const std::string_view value(given->second.data(), given->second.size());
-        const bool bearer = value.substr(0, scheme.size()) == scheme;
-        const Token* const token = bearer ? find(value.substr(scheme.size())) : nullptr;
+        const Token* const token = is_bearer(value) ? find(value.substr(bearer.size())) : nullptr;
         if (token == nullptr) return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
         owner = "token:" + token->name;
         return grpc::Status::OK;
     }
     const auto caller = context.auth_context();
     if (caller && caller->IsPeerAuthenticated()) {
-        const auto names = caller->FindPropertyValues(GRPC_X509_CN_PROPERTY_NAME);
-        if (names.empty()) return {grpc::StatusCode::UNAUTHENTICATED, "the certificate has no common name"};
-        owner = "certificate:" + std::string(names.front().data(), names.front().size());
+        owner = name_of(*caller);
+        if (owner.empty()) return {grpc::StatusCode::UNAUTHENTICATED, "the certificate names nobody"};
         return grpc::Status::OK;
     }
     owner = "local";

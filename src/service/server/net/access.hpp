@@ -2,7 +2,9 @@
 //
 // Name of a caller, which owns its jobs:
 //   with tokens                "token:" and the name of its token
-//   with client certificates   "certificate:" and the common name of its certificate
+//   with client certificates   the first subject alternative name of its certificate, a URI, e-mail address or DNS name in this
+//                              order of preference: "certificate-uri:", "certificate-email:" or "certificate-dns:" and the name;
+//                              without one, "certificate:" and the common name. A certificate without a name is refused.
 //   else                       "local" for all callers; the address limits them (private Unix socket, or loopback)
 #pragma once
 
