@@ -22,8 +22,10 @@ struct LoadedScene {
     std::variant<Buffer<Box3f>, Buffer<Box3d>> boxes;
     std::uint64_t objects = 0;  ///< number of objects in each frame
     std::uint64_t frames = 1;
-    bool moving = false;   ///< true for a file with a frame axis, even with one frame
-    bool rounded = false;  ///< true if coordinates of meshes were rounded to float32, in the file or by its reader
+    bool moving = false;  ///< true for a file with a frame axis, even with one frame
+    /// Bound on the coordinates of meshes that were rounded to float32, in the file or by its reader. 0: none were. Coordinates before
+    /// transforms count, too, in the unit of the world, and so do the translations of the transforms.
+    double largest_rounded = 0;
     std::vector<std::string> names;      ///< empty, or one name per object; an object without a name has an empty one
     ObjectDetails details;               ///< empty, or a row per object
     SceneSpace space;                    ///< axes and unit of the coordinates

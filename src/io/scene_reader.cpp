@@ -152,7 +152,8 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     check_same_content(scenes, paths);
     LoadedScene joined;
     joined.moving = scenes.front().moving;
-    joined.rounded = std::any_of(scenes.begin(), scenes.end(), [](const LoadedScene& scene) { return scene.rounded; });
+    for (const LoadedScene& scene : scenes)
+        joined.largest_rounded = std::max(joined.largest_rounded, scene.largest_rounded);
     joined.space = joint_space(scenes);
     joined.frames = scenes.front().frames;
     bool named = false;

@@ -129,7 +129,7 @@ void find_impact(const Moment& moment, const ContactRequest& request, Finding& f
     finding.contacts = {contact};
 }
 
-/// Returns whether a point is in the bounding box of an object, in the coordinates of its shape.
+/// Returns whether a point is in the interior of the bounding box of an object, in the coordinates of its shape.
 bool is_in_bounds(const Point3d& point, const PosedObject& object) {
     const ShapeBounds& bounds = object.geometry.bounds;
     if (!bounds.bounded) return false;
@@ -139,7 +139,9 @@ bool is_in_bounds(const Point3d& point, const PosedObject& object) {
         const auto axis = [&](std::size_t i) { return vector::column(object.pose, i % 3); };
         const Point3d normal = vector::cross(axis(k + 1), axis(k + 2));
         const double half = bounds.box.max[k] - bounds.centre[k];
-        if (!(std::fabs(vector::dot(offset, normal)) <= half * std::fabs(vector::dot(axis(k), normal)))) return false;
+        constexpr double inner = 1 - 1e-9;  // so that rounding does not move corners on the box into it
+        if (!(std::fabs(vector::dot(offset, normal)) < inner * half * std::fabs(vector::dot(axis(k), normal))))
+            return false;
     }
     return true;
 }

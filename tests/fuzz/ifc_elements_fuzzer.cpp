@@ -1,4 +1,4 @@
-// Fuzzes the search for names in the text of IFC files.
+// Fuzzes the reader of the text of IFC files.
 #include <cstdint>
 #include <cstdlib>
 
@@ -16,11 +16,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     using namespace octopair;
     const std::string_view text(reinterpret_cast<const char*>(bytes), size);
     std::size_t all = 0;
-    for (const auto& [id, name] : io::find_ifc_names(text)) {
+    const io::IfcText read = io::read_ifc_text(text);
+    for (const auto& [id, name] : read.names) {
         require(id.size() == 22 && !name.empty());
         all += name.size();
     }
-    require(all <= 2 * size);
+    require(all <= 2 * size && read.largest_coordinate >= 0);
+    for (const auto& [id, material] : read.materials) require(id.size() == 22 && !material.empty());
     require(io::decode_step_text(text).size() <= 2 * size);
     if (const auto element = io::parse_ifc_element(text)) {
         require(element->type.size() + element->name.size() + element->id.size() <= size);

@@ -1,10 +1,13 @@
 // Tests that result files appear complete or not at all, and that no other files stay in their directory.
 #include "io/files/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 
@@ -102,8 +105,21 @@ TEST_F(AtomicFileTest, RefusesPlacesThatCannotBe) {
               directory_.file("none/a.csv") + ": cannot create: No such file or directory");
     EXPECT_NE(error_of(ErrorCode::io_failed, [&] { AtomicFile(directory_.path()); }).find("directory"),
               std::string::npos);
-    ASSERT_EQ(::mkfifo(directory_.file("pipe.csv").c_str(), 0600), 0);
-    EXPECT_NE(error_of(ErrorCode::io_failed, [&] { AtomicFile(directory_.file("pipe.csv")); }), "");
+    EXPECT_EQ(directory_.names(), Names{});
+}
+
+TEST_F(AtomicFileTest, WritesToAPipeAtTheEnd) {
+    const std::string pipe = directory_.file("pipe.csv");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const Descriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    std::array<char, 16> got{};
+    AtomicFile file(pipe);
+    file.write("later");
+    file.flush();
+    EXPECT_EQ(::read(reader.number(), got.data(), got.size()), -1) << "nothing has come yet";
+    file.commit();
+    EXPECT_EQ(::read(reader.number(), got.data(), got.size()), 5);
+    EXPECT_EQ(std::string(got.data(), 5), "later");
     EXPECT_EQ(directory_.names(), Names{"pipe.csv"});
 }
 

@@ -99,10 +99,11 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
     const std::vector<Box3f> others = {{{0, 0, 0}, {1, 1, 1}}, {}, {}, {{0, 0, 0}, {0.5f, 1, 1}}};
     const io::ReportScene scene{
         "t", {{{reported_names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
-    const std::string text =
-        page(scene, {pair, {}, changes}, {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"contacts":[{}]})"});
+    const std::string text = page(
+        scene, {pair, {}, changes},
+        {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"depth_kind":"at_least","b_label":"L","contacts":[{}]})"});
     EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null,0,null,0]]"));
-    EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1]])"));
+    EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1,1,"","","L",""]])"));
     const json objects = data_of(text, "objects");
     ASSERT_EQ(objects.size(), 2u);
     EXPECT_EQ(objects[1], json::parse("[[3,\"\",0,0,0,0.5,1,1]]"));

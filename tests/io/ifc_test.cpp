@@ -93,6 +93,32 @@ TEST(Ifc, OwnersOfTrianglesHaveDetails) {
     EXPECT_EQ(scene.triangles->owner_details.of(1, Detail::id), "0000000000000000000007");
 }
 
+TEST(Ifc, MaterialsAreThoseOfTheModel) {
+    const std::string wall = "'3rPX_Juz59peXXY6wDJl18'", beam = "'16DNNqzfP2thtfaOflvsKA'";
+    const io::IfcText text = io::read_ifc_text(
+        "#1=IFCWALL(" + wall + ",#9,$);#2=IFCBEAM(" + beam +
+        ",#9,$);\n"
+        "#3=IFCMATERIAL('Holz \\X2\\00DF\\X0\\');#4=ifcmaterial('Stahl',$);#5=IFCMATERIALLAYER(#3,0.2,$);\n"
+        "#6=IFCMATERIALLAYERSET((#5,#7),'#4 in a "
+        "text');#7=IFCMATERIALLAYER(#4,0.1,$);#8=IFCMATERIALLAYERSETUSAGE(#6);\n"
+        "#10=IFCRELASSOCIATESMATERIAL('0000000000000000000009',#9,$,$,(#1),#8);\n"
+        "#11=IFCRELASSOCIATESMATERIAL('0000000000000000000010',#9,$,$,(#2,#1),#4);\n"
+        "#12=IFCCARTESIANPOINT((1.,-2.5E3,0.));#13=IFCMATERIALLIST((#13,#3));END-ISO-10303-21;");
+    EXPECT_EQ(text.materials.at(wall.substr(1, 22)), "Holz ß, Stahl");
+    EXPECT_EQ(text.materials.at(beam.substr(1, 22)), "Stahl");
+    EXPECT_EQ(text.largest_coordinate, 2500);
+    EXPECT_TRUE(text.complete);
+    EXPECT_FALSE(io::read_ifc_text("DATA;#1=IFCWALL(").complete);
+}
+
+TEST(Ifc, CutFilesAreRefused) {
+    const TemporaryDirectory directory;
+    write_file(directory.file("cut.ifc"), std::string(model).substr(0, std::string(model).size() - 30));
+    EXPECT_EQ(error_of(ErrorCode::bad_input,
+                       [&] { (void)io::read_mesh_scene(directory.file("cut.ifc"), {io::MeshObjects::node}); }),
+              directory.file("cut.ifc") + ": is cut: an IFC file ends with END-ISO-10303-21;");
+}
+
 TEST(Ifc, NodeNamesAreParsed) {
     const auto parsed = io::parse_ifc_element("IfcDoor_a_b_3rPX_Juz59peXXY6wDJl18");
     ASSERT_TRUE(parsed);
@@ -101,6 +127,11 @@ TEST(Ifc, NodeNamesAreParsed) {
     EXPECT_EQ(parsed->id, "3rPX_Juz59peXXY6wDJl18");
     EXPECT_EQ(io::parse_ifc_element("IfcDoor_Unnamed_3rPX_Juz59peXXY6wDJl18")->name, "");
     EXPECT_EQ(io::parse_ifc_element("IfcDoor_3rPX_Juz59peXXY6wDJl18")->name, "");
+    const std::string long_name = "IfcDoor_" + std::string(1015, 'x');
+    const auto cut = io::parse_ifc_element(long_name);  // Assimp has cut it at 1023 bytes
+    ASSERT_TRUE(cut);
+    EXPECT_EQ(cut->type, "IfcDoor");
+    EXPECT_EQ(cut->id, "");
     for (const char* other : {"", "IfcMappedItem", "$RelAggregates", "Door_x_3rPX_Juz59peXXY6wDJl18",
                               "IfcDoor_3rPX_Juz59peXXY6wDJl1", "IfcDoor3rPX_Juz59peXXY6wDJl18x"}) {
         EXPECT_FALSE(io::parse_ifc_element(other)) << other;
@@ -123,7 +154,7 @@ TEST(Ifc, TextIsDecoded) {
 TEST(Ifc, NamesAreFoundInTheText) {
     const std::string id = "'3rPX_Juz59peXXY6wDJl18'";
     const auto found = [&](const std::string& text) {
-        const io::IfcNames names = io::find_ifc_names(text);
+        const io::IfcTexts names = io::read_ifc_text(text).names;
         return names.size() == 1 ? names.begin()->second : std::to_string(names.size());
     };
     EXPECT_EQ(found("#1= IFCWALL(" + id + ",#13,'n',$);"), "n");

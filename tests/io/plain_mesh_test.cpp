@@ -264,7 +264,7 @@ TEST(PlainMesh, ScenesHaveTheBoxesOfUsedVertices) {
     EXPECT_EQ(boxes.data()[0].min[0], 450000.1);
     EXPECT_EQ(boxes.data()[0].max[1], 5410001.2);
     EXPECT_EQ(scene.names, std::vector<std::string>{"far.off"});
-    EXPECT_FALSE(scene.rounded);
+    EXPECT_EQ(scene.largest_rounded, 0);
     ASSERT_TRUE(scene.shapes.has_value());
     EXPECT_EQ(std::get<shape::Mesh>(scene.shapes->shapes[0]).triangles.size(), 1u);
     const io::LoadedScene triangles = io::read_scene(directory.file("far.off"), {io::MeshObjects::triangle, false});

@@ -8,6 +8,7 @@
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
 #include "cli/detect/precision.hpp"
+#include "io/json/json_fields.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
@@ -24,10 +25,11 @@ namespace {
 [[maybe_unused]] std::string short_name(const io::LoadedScene& scene, std::uint32_t object) {
     const std::string_view label = scene.details.of(object, io::Detail::label);
     const std::string_view type = scene.details.of(object, io::Detail::type);
-    if (!label.empty() && type != label && !type.empty()) return fmt::format("{} ({})", label, type);
-    if (!label.empty()) return std::string(label);
+    if (!label.empty() && type != label && !type.empty())
+        return fmt::format("{} ({})", io::shown_text(label), io::shown_text(type));
+    if (!label.empty()) return io::shown_text(label);
     const bool has_name = object < scene.names.size() && !scene.names[object].empty();
-    return has_name ? scene.names[object] : fmt::format("object {}", object);
+    return has_name ? io::shown_text(scene.names[object]) : fmt::format("object {}", object);
 }
 
 class Detection {

@@ -11,12 +11,8 @@ namespace octopair::cli {
 
 namespace {
 
-/// Largest coordinate of a set, by its absolute value, and the largest extent along an axis. 0 for an empty set.
-struct Extent {
-    double coordinate = 0, size = 0;
-};
-
-Extent extent_of(const InputSet& set) {
+/// Returns the largest extent of a set along an axis. 0 for an empty set.
+double size_of(const InputSet& set) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
     std::visit(
@@ -29,13 +25,9 @@ Extent extent_of(const InputSet& set) {
             }
         },
         set.scene.boxes);
-    Extent extent;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!(low[axis] <= high[axis])) continue;
-        extent.coordinate = std::max({extent.coordinate, std::fabs(low[axis]), std::fabs(high[axis])});
-        extent.size = std::max(extent.size, high[axis] - low[axis]);
-    }
-    return extent;
+    double size = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) size = std::max(size, high[axis] - low[axis]);
+    return size;
 }
 
 /// Returns the distance between neighbouring numbers of float32 at `value`. Requires: `value` is finite and > 0.
@@ -48,18 +40,17 @@ std::string name_of(const InputSet& set) {
 /// Returns a warning if the coordinates of a set are coarse, or an empty text.
 std::string coarseness_of(const DetectRequest& request, const InputSet& set) {
     constexpr double fine = 1e-6;  // of the size of the scene
-    if (!set.scene.rounded) return {};
-    const Extent extent = extent_of(set);
-    if (!(extent.coordinate > 0) || !std::isfinite(extent.coordinate)) return {};
-    const double step = float32_step(extent.coordinate);
-    const bool coarse = step > fine * extent.size;
+    const double largest = set.scene.largest_rounded;
+    if (!(largest > 0) || !std::isfinite(largest)) return {};
+    const double step = float32_step(largest), size = size_of(set);
+    const bool coarse = step > fine * size;
     const bool too_coarse = request.pipeline.tolerance && *request.pipeline.tolerance < step;
     if (!coarse && !too_coarse) return {};
     std::string text = fmt::format("{}: coordinates up to {:.6g} were rounded to float32, in steps of {:.2g}",
-                                   name_of(set), extent.coordinate, step);
+                                   name_of(set), largest, step);
     if (too_coarse) text += fmt::format(", more than the tolerance {:.3g}", *request.pipeline.tolerance);
-    text += fmt::format("; the scene measures {:.3g}. Gaps and overlaps below a step are not reliable", extent.size);
-    if (coarse) text += "; move the scene nearer to the origin, or use a format with float64";
+    text += fmt::format("; the scene measures {:.3g}. Gaps and overlaps below a step are not reliable", size);
+    if (coarse) text += "; move the model nearer to its origin, or use a format with float64";
     return text;
 }
 
@@ -69,7 +60,7 @@ double tolerance_of(const DetectRequest& request, const SetPair& sets) {
     if (request.pipeline.tolerance) return *request.pipeline.tolerance;
     double largest = 0;
     for (const InputSet* set : {&sets.first, sets.second}) {
-        if (set != nullptr && set->scene.rounded) largest = std::max(largest, extent_of(*set).coordinate);
+        if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
     }
     constexpr double relative_step = 0x1p-23;
     return 2 * largest * relative_step;
@@ -82,12 +73,14 @@ std::vector<std::string> coordinate_warnings(const DetectRequest& request, const
         const std::string text = coarseness_of(request, *set);
         if (!text.empty()) warnings.push_back(text);
     }
-    if (sets.second != nullptr && sets.first.scene.space.up != sets.second->scene.space.up &&
-        sets.first.scene.space.up != io::UpAxis::unknown && sets.second->scene.space.up != io::UpAxis::unknown) {
-        warnings.push_back(
-            fmt::format("the formats of {} and {} have different axes up; coordinates are used as they are",
-                        name_of(sets.first), name_of(*sets.second)));
-    }
+    const auto differ = [](io::UpAxis a, io::UpAxis b) {
+        return a != b && a != io::UpAxis::unknown && b != io::UpAxis::unknown;
+    };
+    bool mixed = sets.first.mixed_axes;
+    if (const InputSet* const second = sets.second)
+        mixed |= second->mixed_axes || differ(sets.first.scene.space.up, second->scene.space.up);
+    if (mixed)
+        warnings.emplace_back("the formats of the inputs have different axes up; coordinates are used as they are");
     return warnings;
 }
 

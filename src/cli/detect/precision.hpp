@@ -8,8 +8,8 @@
 
 namespace octopair::cli {
 
-/// Returns the tolerance of --tolerance. Without it: two steps of float32 at the largest coordinate, if coordinates of meshes were
-/// rounded to float32; otherwise 0.
+/// Returns the tolerance of --tolerance. Without it: 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two
+/// to four steps of float32 there; 0 if none was.
 double tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns warnings about coordinates: rounded in steps that are coarse against the scene or the tolerance, or with different

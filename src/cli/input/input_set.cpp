@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include "cli/input/isolated_read.hpp"
@@ -121,6 +122,10 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
         scenes.push_back(read_part(path, wanted, stop));
         set.parts.push_back({path, scenes.back().objects});
     }
+    std::set<io::UpAxis> axes;
+    for (const io::LoadedScene& scene : scenes) axes.insert(scene.space.up);
+    axes.erase(io::UpAxis::unknown);
+    set.mixed_axes = axes.size() > 1;
     set.scene = io::join_scenes(scenes, paths);
     set.total = set.scene.objects;
     return set;

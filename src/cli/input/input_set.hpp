@@ -39,6 +39,7 @@ struct InputSet {
     std::shared_ptr<ShapedSet> shaped;  ///< prepared shapes, after make_shaped(); null in a build without the pipeline
     bool moves_meanwhile = false;       ///< true if objects have end poses, at time 1
     std::vector<Part> parts;
+    bool mixed_axes = false;               ///< true if the formats of the files have different axes up
     std::uint64_t begin = 0;               ///< for a slice, the number of its first object
     std::uint64_t total = 0;               ///< number of objects of all parts
     std::span<const double> padding = {};  ///< empty, or one padding per object; borrowed

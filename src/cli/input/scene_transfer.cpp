@@ -17,8 +17,8 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 // The members of each class that is sent member by member. Sender and receiver use the same list.
 
 auto members(Some<io::LoadedScene> auto& scene) {
-    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.rounded, scene.names, scene.details,
-                    scene.space, scene.shapes, scene.triangles);
+    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.names,
+                    scene.details, scene.space, scene.shapes, scene.triangles);
 }
 auto members(Some<io::LoadedShapes> auto& loaded) {
     return std::tie(loaded.shapes, loaded.geometry, loaded.poses, loaded.parents, loaded.end_poses, loaded.padding,

@@ -104,8 +104,8 @@ std::string exact_text(const DetectReport& report) {
     }
     if (report.open_objects == 0) return text;
     if (const std::uint64_t undecided = undecided_pairs(report); undecided > 0) {
-        text += fmt::format("undecided   {} pairs left out: an object is in the bounds of one that is not closed\n",
-                            grouped(undecided));
+        text += fmt::format("undecided   {} pair{} left out: an object is in the bounds of one that is not closed\n",
+                            grouped(undecided), undecided == 1 ? "" : "s");
     }
     return text + fmt::format("not closed  {} of {} objects have no inside (--weld joins vertices): {}{}\n",
                               grouped(report.open_objects), grouped(report.objects), fmt::join(report.first_open, ", "),

@@ -167,10 +167,13 @@ private:
     std::uint64_t last_parent_ = 0;
 };
 
-shape::Mesh load_mesh(const std::string& path) {
+/// Reads a mesh file. Sets `largest_rounded` to that of the file (LoadedScene), if that is larger.
+shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] double& largest_rounded) {
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, {});
-    return whole_mesh_of(MeshFile(path, true));
+    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, largest_rounded, {});
+    const MeshFile file(path, true);
+    largest_rounded = std::max(largest_rounded, file.largest_rounded());
+    return whole_mesh_of(file);
 #else
     refuse(path, "this build of octopair reads no mesh files");
 #endif
@@ -189,8 +192,11 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    const auto load = [&](const std::string& name) { return load_mesh((directory / name).string()); };
-    return parse_json_scene({text.data(), text.size()}, path, load, stop);
+    double largest_rounded = 0;
+    const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), largest_rounded); };
+    LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);
+    scene.largest_rounded = largest_rounded;
+    return scene;
 }
 
 }  // namespace octopair::io

@@ -1,8 +1,11 @@
 #include "io/meshes/ifc_elements.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <vector>
 
 namespace octopair::io {
 
@@ -84,12 +87,26 @@ std::size_t decode_code(std::string_view text, std::string& decoded) {
 constexpr std::string_view space = " \t\r\n", digits = "0123456789",
                            keyword = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
 
-/// Reads the instances of a STEP file: #NUMBER = KEYWORD(attributes);
+/// An instance of a STEP file: #NUMBER = KEYWORD(attributes). Borrows from the text.
+struct StepInstance {
+    std::string_view number, type;
+    std::string_view attributes;  ///< text after the opening parenthesis, to the closing one
+
+    /// Returns whether the type is `name`, or with `prefix` begins with it. Case does not matter.
+    bool is(std::string_view name, bool prefix = false) const {
+        if (type.size() < name.size() || (!prefix && type.size() > name.size())) return false;
+        return std::equal(name.begin(), name.end(), type.begin(),
+                          [](char a, char b) { return a == (b >= 'a' ? b - 32 : b); });
+    }
+};
+
+/// Reads a STEP text from its begin.
 class StepReader {
 public:
     explicit StepReader(std::string_view step) : rest_(step) {}
 
     bool at_end() const { return rest_.empty(); }
+    std::string_view rest() const { return rest_; }
 
     /// Skips white space and comments. Returns whether the next character is `c`, and skips that one, too.
     bool take(char c) {
@@ -114,51 +131,162 @@ public:
         }
         return std::nullopt;
     }
+    /// Reads characters of `set`.
+    std::string_view take_all(std::string_view set) {
+        const std::string_view before = rest_;
+        skip(set);
+        return before.substr(0, before.size() - rest_.size());
+    }
     /// Skips all characters of `set`.
     void skip(std::string_view set) {
         const std::size_t end = rest_.find_first_not_of(set);
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end);
     }
-    /// Goes behind the next ";" that is not in a text.
-    void skip_instance() {
+    /// Goes to the next character of `set` that is in neither a text nor a comment. Returns false at the end.
+    bool find(std::string_view set) {
+        const std::string wanted = std::string(set) + "'/";
         while (!rest_.empty()) {
-            const std::size_t at = rest_.find_first_of(";'/");
+            const std::size_t at = rest_.find_first_of(wanted);
             if (at == std::string_view::npos) break;
             rest_.remove_prefix(at);
-            if (take(';')) return;
-            if (!rest_.empty() && rest_.front() == '\'' && !take_text()) break;
-            if (!rest_.empty() && rest_.front() == '/') rest_.remove_prefix(1);
+            if (rest_.front() == '\'') {
+                if (!take_text()) break;
+            } else if (rest_.front() == '/') {
+                if (!take('/')) continue;  // a comment, which take() has skipped
+            } else {
+                return true;
+            }
         }
         rest_ = {};
+        return false;
+    }
+    /// Reads to the end of the next instance, or of a line of the header. Returns nothing for the latter.
+    std::optional<StepInstance> next() {
+        StepInstance instance;
+        const bool numbered = take('#');
+        if (numbered) instance.number = take_all(digits);
+        const bool named = numbered && take('=') && (skip(space), true);
+        if (named) instance.type = take_all(keyword);
+        const bool has_attributes = named && take('(');
+        const std::string_view begin = rest_;
+        const bool ends = find(";");
+        instance.attributes = begin.substr(0, begin.size() - rest_.size());
+        if (ends) rest_.remove_prefix(1);
+        return has_attributes && ends ? std::optional(instance) : std::nullopt;
     }
 
 private:
     std::string_view rest_;
 };
 
-/// Reads the beginning of an instance, #NUMBER = KEYWORD(GLOBALID, OWNER, NAME. Adds the name, if the instance has both texts.
-void read_instance(StepReader& reader, IfcNames& names) {
-    constexpr std::size_t id_length = 22;
-    if (!reader.take('#')) return;
-    reader.skip(digits);
-    if (!reader.take('=')) return;
-    reader.skip(space);
-    reader.skip(keyword);
-    if (!reader.take('(')) return;
-    const auto id = reader.take_text();
-    if (!id || id->size() != id_length || !reader.take(',')) return;
-    reader.skip(" \t\r\n#$*");
-    reader.skip(digits);
-    if (!reader.take(',')) return;
-    const auto name = reader.take_text();
-    if (name && !name->empty()) names.emplace(*id, decode_step_text(*name));
+/// Returns the numbers of the instances that attributes refer to, in order.
+std::vector<std::string_view> references_of(std::string_view attributes) {
+    std::vector<std::string_view> references;
+    for (StepReader reader(attributes); reader.find("#");) {
+        (void)reader.take('#');
+        references.push_back(reader.take_all(digits));
+    }
+    return references;
 }
+
+double largest_of(std::string_view point) {
+    double largest = 0;
+    for (StepReader reader(point); reader.find("0123456789");) {
+        const std::string_view text = reader.take_all("0123456789.eE+-");
+        double value = 0;
+        if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc())
+            largest = std::max(largest, value);
+    }
+    return largest;
+}
+
+class IfcTextReader {
+public:
+    IfcText read(std::string_view step) {
+        StepReader reader(step);
+        while (!reader.at_end()) {
+            if (const auto instance = reader.next()) add(*instance);
+        }
+        add_materials();
+        text_.complete = step.rfind("END-ISO-10303-21") != std::string_view::npos;
+        return std::move(text_);
+    }
+
+private:
+    struct Material {
+        std::string name;                          // of an IfcMaterial
+        std::vector<std::string_view> references;  // of a layer, a set or a list
+    };
+
+    void add(const StepInstance& instance) {
+        constexpr std::size_t id_length = 22;
+        StepReader reader(instance.attributes);
+        if (instance.is("IFCCARTESIANPOINT")) {
+            text_.largest_coordinate = std::max(text_.largest_coordinate, largest_of(instance.attributes));
+            return;
+        }
+        const auto first = reader.take_text();
+        if (instance.is("IFCMATERIAL")) {
+            materials_[instance.number].name = first ? decode_step_text(*first) : std::string();
+        } else if (instance.is("IFCMATERIAL", true)) {
+            materials_[instance.number].references = references_of(instance.attributes);
+        } else if (instance.is("IFCRELASSOCIATESMATERIAL")) {
+            associations_.push_back(references_of(instance.attributes));
+        }
+        if (!first || first->size() != id_length) return;
+        ids_.emplace(instance.number, *first);
+        if (!reader.take(',')) return;
+        reader.skip(" \t\r\n#$*");
+        reader.skip(digits);
+        const auto name = reader.take(',') ? reader.take_text() : std::nullopt;
+        if (name && !name->empty()) text_.names.emplace(*first, decode_step_text(*name));
+    }
+
+    /// An association has elements, and the material as its last reference.
+    void add_materials() {
+        for (const auto& references : associations_) {
+            if (references.empty()) continue;
+            std::set<std::string> names;
+            std::set<std::string_view> seen;
+            collect(references.back(), names, seen);
+            const std::string joined = joined_names(names);
+            for (const std::string_view element : references) {
+                const auto id = ids_.find(element);
+                if (id != ids_.end() && !joined.empty()) text_.materials.emplace(id->second, joined);
+            }
+        }
+    }
+
+    /// Adds the names of all materials that an instance leads to. The stack is explicit, because the file controls the depth.
+    void collect(std::string_view number, std::set<std::string>& names, std::set<std::string_view>& seen) const {
+        std::vector<std::string_view> waiting = {number};
+        while (!waiting.empty()) {
+            const auto found = materials_.find(waiting.back());
+            waiting.pop_back();
+            if (found == materials_.end() || !seen.insert(found->first).second) continue;
+            if (!found->second.name.empty()) names.insert(found->second.name);
+            waiting.insert(waiting.end(), found->second.references.begin(), found->second.references.end());
+        }
+    }
+
+    static std::string joined_names(const std::set<std::string>& names) {
+        std::string joined;
+        for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+        return joined;
+    }
+
+    IfcText text_;
+    std::unordered_map<std::string_view, std::string_view> ids_;  // GlobalIds, by the numbers of instances
+    std::unordered_map<std::string_view, Material> materials_;    // by the numbers of instances
+    std::vector<std::vector<std::string_view>> associations_;
+};
 
 }  // namespace
 
 std::optional<IfcElement> parse_ifc_element(std::string_view node_name) {
-    constexpr std::size_t id_length = 22;
+    constexpr std::size_t id_length = 22, most_bytes = 1023;  // Assimp cuts longer names
     if (!node_name.starts_with("Ifc") || node_name.size() < id_length + 2) return std::nullopt;
+    if (node_name.size() >= most_bytes) return IfcElement{node_name.substr(0, node_name.find('_')), {}, {}};
     const std::size_t type_end = node_name.find('_'), name_end = node_name.size() - id_length - 1;
     if (node_name[name_end] != '_' || type_end > name_end) return std::nullopt;
     IfcElement element{node_name.substr(0, type_end), {}, node_name.substr(name_end + 1)};
@@ -182,14 +310,6 @@ std::string decode_step_text(std::string_view text) {
     return decoded;
 }
 
-IfcNames find_ifc_names(std::string_view step) {
-    IfcNames names;
-    StepReader reader(step);
-    while (!reader.at_end()) {
-        read_instance(reader, names);
-        reader.skip_instance();
-    }
-    return names;
-}
+IfcText read_ifc_text(std::string_view step) { return IfcTextReader().read(step); }
 
 }  // namespace octopair::io

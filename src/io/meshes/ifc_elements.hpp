@@ -1,5 +1,5 @@
-// IFC elements: their descriptions in the names of Assimp's nodes, and their names in the text of the file (STEP, ISO 10303-21).
-// The latter are needed, because Assimp loses encoded letters: "B\X2\00FC\X0\ro", for Büro, becomes "Bro".
+// IFC elements: their descriptions in the names of Assimp's nodes, and what the text of the file (STEP, ISO 10303-21) adds. Assimp loses
+// encoded letters of names: "B\X2\00FC\X0\ro", for Büro, becomes "Bro". It does not read materials, and reads files that are cut.
 #pragma once
 
 #include <optional>
@@ -11,18 +11,27 @@ namespace octopair::io {
 
 /// An IFC element, as the name of its node describes it: TYPE_NAME_GLOBALID. Borrows from that name.
 struct IfcElement {
-    std::string_view type, name, id;  ///< `name` is empty if the element has none
+    std::string_view type, name,
+        id;  ///< `name` is empty if the element has none; both are, if Assimp has cut the node's name
 };
 
 /// Parses the name of a node of an IFC file. Returns nothing if the node is not an element.
 std::optional<IfcElement> parse_ifc_element(std::string_view node_name);
 
-/// Maps the GlobalId of an element to its name in UTF-8. Elements without a name are missing.
-using IfcNames = std::unordered_map<std::string, std::string>;
+/// Maps the GlobalId of an element to a text in UTF-8.
+using IfcTexts = std::unordered_map<std::string, std::string>;
 
-/// Returns the names of all elements: instances whose first attribute is a text of 22 characters, and whose third is a text. Text
-/// that is not STEP gives no names. Complexity: linear.
-IfcNames find_ifc_names(std::string_view step);
+/// What the text of an IFC file says besides its geometry.
+struct IfcText {
+    IfcTexts names;                 ///< of elements that have one
+    IfcTexts materials;             ///< names of the materials that are associated with an element, joined by ", "
+    double largest_coordinate = 0;  ///< of all points, without its sign, in the unit of the file
+    bool complete = false;          ///< false: the text ends before the end of a STEP file
+};
+
+/// Reads a STEP text. An element is an instance whose first attribute is a text of 22 characters; its name is the third attribute. Text
+/// that is not STEP has no elements. Complexity: linear.
+IfcText read_ifc_text(std::string_view step);
 
 /// Returns a text of a STEP file in UTF-8. Decodes '', \\, \S\, \X\, \X2\ and \X4\. Keeps what is not a
 /// valid code.

@@ -57,32 +57,52 @@ BoundedPose root_pose(const aiNode& root, const std::string& path) {
     return BoundedPose(rows);
 }
 
-/// Returns the names of the elements of an IFC file that is not compressed; otherwise nothing.
-IfcNames read_ifc_names(const std::string& path) {
+/// Returns the largest coordinate of a node's translation, without its sign.
+double translation_of(const aiNode& node) {
+    const aiMatrix4x4& m = node.mTransformation;
+    return std::max({std::abs(double(m.a4)), std::abs(double(m.b4)), std::abs(double(m.c4))});
+}
+
+/// Returns the largest factor by which a pose lengthens an axis.
+double scale_of(const BoundedPose& pose) {
+    const auto rows = pose.value().rows;
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        largest = std::max(largest, std::hypot(rows[0][axis], rows[1][axis], rows[2][axis]));
+    return largest;
+}
+
+/// Returns what the text of an IFC file says, if it is not compressed.
+/// Throws: Error{bad_input} if the file is cut. Assimp would read the part that is there.
+IfcText read_text_of_ifc(const std::string& path) {
     if (ending_of(path) != ".ifc") return {};
     const InputFile file(path);
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()));
-    return find_ifc_names({text.data(), text.size()});
+    IfcText read = read_ifc_text({text.data(), text.size()});
+    if (!read.complete) refuse(path, "is cut: an IFC file ends with END-ISO-10303-21;");
+    return read;
 }
 
 /// Lists the instances of a scene.
 class InstanceSearch {
 public:
-    InstanceSearch(const aiScene& scene, const std::string& path, const IfcNames& ifc_names)
+    InstanceSearch(const aiScene& scene, const std::string& path, const IfcTexts& ifc_names)
         : scene_(scene), path_(path), ifc_names_(ifc_names) {}
 
     /// Returns all nodes with meshes, in pre-order. The traversal has an explicit stack, because the file controls the depth.
     std::vector<MeshInstance> find() const {
         std::vector<MeshInstance> instances;
         std::vector<MeshInstance> waiting;
-        waiting.push_back({scene_.mRootNode, name_of(*scene_.mRootNode, 0), root_pose(*scene_.mRootNode, path_)});
+        const aiNode& root = *scene_.mRootNode;
+        waiting.push_back({&root, name_of(root, 0), root_pose(root, path_), translation_of(root)});
         while (!waiting.empty()) {
             const MeshInstance at = std::move(waiting.back());
             waiting.pop_back();
             for (unsigned i = at.node->mNumChildren; i-- > 0;) {
                 const aiNode& child = *at.node->mChildren[i];
-                waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child)});
+                waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child),
+                                   at.translations + scale_of(at.pose) * translation_of(child)});
             }
             if (at.node->mNumMeshes > 0) instances.push_back(at);
         }
@@ -103,15 +123,15 @@ private:
 
     const aiScene& scene_;
     const std::string& path_;
-    const IfcNames& ifc_names_;
+    const IfcTexts& ifc_names_;
 };
 
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path, bool triangles)
-    : path_(path), ifc_names_(read_ifc_names(path)), scene_(&import(path, triangles)) {
+    : path_(path), ifc_text_(read_text_of_ifc(path)), scene_(&import(path, triangles)) {
     used_vertices_.resize(scene_->mNumMeshes);
-    instances_ = InstanceSearch(*scene_, path, ifc_names_).find();
+    instances_ = InstanceSearch(*scene_, path, ifc_text_.names).find();
     std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
 }
 
@@ -125,6 +145,20 @@ const aiScene& MeshFile::import(const std::string& path, bool triangles) {
         words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
     refuse(path,
            words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
+}
+
+double MeshFile::largest_rounded() const {
+    double largest = scale_of(root_pose(*scene_->mRootNode, path_)) * ifc_text_.largest_coordinate;
+    for (const MeshInstance& instance : instances_) {
+        double vertex_size = 0;
+        for (const unsigned number : instance.meshes()) {
+            for (const unsigned index : used_vertices(number)) {
+                for (const double at : vertex(mesh(number), index)) vertex_size = std::max(vertex_size, std::abs(at));
+            }
+        }
+        largest = std::max(largest, instance.translations + scale_of(instance.pose) * vertex_size);
+    }
+    return largest;
 }
 
 bool MeshFile::has_vertices(const MeshInstance& instance) {

@@ -24,6 +24,8 @@ struct MeshInstance {
     const aiNode* node;
     std::string name;  ///< node path from the root, joined by "/"
     BoundedPose pose;  ///< product of the transforms along the path
+    double translations =
+        0;  ///< sum of the largest coordinates of the translations along the path, in the unit of the world
 
     std::span<const unsigned> meshes() const { return {node->mMeshes, node->mNumMeshes}; }
 };
@@ -37,10 +39,12 @@ public:
 
     /// Returns all instances, in pre-order of their nodes.
     const std::vector<MeshInstance>& instances() const { return instances_; }
+    /// Returns LoadedScene::largest_rounded: Assimp rounds vertices and transforms to float32.
+    double largest_rounded() const;
     const aiScene& scene() const { return *scene_; }
     const std::string& path() const { return path_; }
-    /// Returns the names of the elements of an IFC file; nothing for other files.
-    const IfcNames& ifc_names() const { return ifc_names_; }
+    /// Returns what the text of an IFC file says; nothing for other files, and for compressed ones.
+    const IfcText& ifc_text() const { return ifc_text_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
     /// Returns the used vertices of a mesh, each once, in the order of first use. Requires: an instance has the mesh.
     const std::vector<unsigned>& used_vertices(unsigned mesh) const { return *used_vertices_[mesh]; }
@@ -61,7 +65,7 @@ private:
     std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
 
     std::string path_;
-    IfcNames ifc_names_;
+    IfcText ifc_text_;
     Assimp::Importer importer_;
     const aiScene* scene_;
     std::vector<MeshInstance> instances_;

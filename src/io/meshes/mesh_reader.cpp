@@ -100,7 +100,7 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
         scene.details = details_of(file);
         if (content.shapes) scene.shapes = shapes_of(file);
     }
-    scene.rounded = true;  // by Assimp
+    scene.largest_rounded = file.largest_rounded();
     scene.space = format_space(path);
     return scene;
 }

@@ -54,19 +54,22 @@ std::optional<ElementNode> nearest_element(const aiNode* node, const Accept& acc
 }
 
 /// Returns the name of an element, or its type if it has none.
-std::string label_of(const IfcElement& element, const IfcNames& names) {
+std::string label_of(const IfcElement& element, const IfcTexts& names) {
     const auto known = names.find(std::string(element.id));
     if (known != names.end()) return known->second;
     return std::string(element.name.empty() ? element.type : element.name);
 }
 
-void add_ifc_details(const aiNode& node, const IfcNames& names, DetailTexts& texts) {
+void add_ifc_details(const aiNode& node, const IfcText& text, DetailTexts& texts) {
+    const IfcTexts& names = text.names;
     const auto any = [](const IfcElement&) { return true; };
     const auto own = nearest_element(&node, any);
     if (!own) return;
     text_of(texts, Detail::label) = label_of(own->element, names);
     text_of(texts, Detail::type) = own->element.type;
     text_of(texts, Detail::id) = own->element.id;
+    const auto material = text.materials.find(std::string(own->element.id));
+    if (material != text.materials.end()) text_of(texts, Detail::material) = material->second;
     if (const auto parent = nearest_element(own->node->mParent, any))
         text_of(texts, Detail::parent) = label_of(parent->element, names);
     const auto is_storey = [](const IfcElement& element) { return element.type == "IfcBuildingStorey"; };
@@ -89,11 +92,12 @@ ObjectDetails details_of(const MeshFile& file) {
     for (const MeshInstance& instance : file.instances()) {
         DetailTexts texts;
         if (is_ifc_file(file.path())) {
-            add_ifc_details(*instance.node, file.ifc_names(), texts);
+            add_ifc_details(*instance.node, file.ifc_text(), texts);
         } else {
             add_node_details(*instance.node, texts);
         }
-        text_of(texts, Detail::material) = materials_of(file, instance);
+        std::string& material = text_of(texts, Detail::material);
+        if (material.empty()) material = materials_of(file, instance);
         builder.add(texts);
     }
     return details;

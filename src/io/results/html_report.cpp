@@ -67,6 +67,11 @@ nlohmann::json old_label(const nlohmann::json& row, const std::string& side) {
     return triangle == row.end() ? name : name + ", triangle " + dump_json(*triangle);
 }
 
+nlohmann::json old_text(const nlohmann::json& row, const char* key) {
+    const auto value = row.find(key);
+    return value != row.end() && value->is_string() ? *value : nlohmann::json("");
+}
+
 nlohmann::json old_number(const nlohmann::json& row, const char* key) {
     const auto value = row.find(key);
     return value != row.end() && value->is_number() ? *value : nlohmann::json();
@@ -171,7 +176,12 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
                                     old_number(old, "distance"),
                                     old_number(old, "depth"),
                                     old_number(old, "time"),
-                                    contacts == old.end() ? nlohmann::json() : nlohmann::json(contacts->size())};
+                                    contacts == old.end() ? nlohmann::json() : nlohmann::json(contacts->size()),
+                                    int(old.value("depth_kind", nlohmann::json()) == word_of(DepthKind::at_least)),
+                                    old_text(old, "a_label"),
+                                    old_text(old, "a_type"),
+                                    old_text(old, "b_label"),
+                                    old_text(old, "b_type")};
         gone_.push_back(script_json(dump_json(row)));
     }
 }

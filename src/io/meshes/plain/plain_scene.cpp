@@ -103,6 +103,18 @@ Box3d box_of(const std::vector<Point3d>& places) {
     return box;
 }
 
+/// Returns the largest coordinate of meshes in float32; 0 for others.
+double largest_rounded(const std::vector<PlainMesh>& meshes) {
+    double largest = 0;
+    for (const PlainMesh& mesh : meshes) {
+        if (!mesh.rounded) continue;
+        for (const Point3d& place : mesh.vertices) {
+            for (const double at : place) largest = std::max(largest, std::abs(at));
+        }
+    }
+    return largest;
+}
+
 LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, bool shapes) {
     for (PlainMesh& mesh : meshes) keep_used_vertices(mesh);
     std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
@@ -177,15 +189,14 @@ bool is_plain_ending(std::string_view ending) {
 
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
     std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress);
-    const bool is_rounded =
-        std::any_of(meshes.begin(), meshes.end(), [](const PlainMesh& mesh) { return mesh.rounded; });
+    const double largest = largest_rounded(meshes);
     LoadedScene scene;
     if (content.objects == MeshObjects::node) {
         scene = node_scene(std::move(meshes), path, content.shapes);
-        scene.rounded = is_rounded;
+        scene.largest_rounded = largest;
         return scene;
     }
-    scene.rounded = is_rounded;
+    scene.largest_rounded = largest;
     LoadedTriangles loaded = triangles_of(std::move(meshes), path);
     scene.objects = loaded.triangles.size();
     if (content.shapes) {
@@ -196,9 +207,11 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
     return scene;
 }
 
-shape::Mesh read_plain_mesh(const std::string& path, const std::stop_token& stop) {
+shape::Mesh read_plain_mesh(const std::string& path, double& largest, const std::stop_token& stop) {
     shape::Mesh whole;
-    for (PlainMesh& mesh : read_meshes(path, stop, {})) {
+    std::vector<PlainMesh> meshes = read_meshes(path, stop, {});
+    largest = std::max(largest, largest_rounded(meshes));
+    for (PlainMesh& mesh : meshes) {
         const auto first = std::uint32_t(whole.vertices.size());
         const shape::Mesh part = cut_into_triangles(std::move(mesh));
         whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());

@@ -7,6 +7,7 @@
 const element = id => document.getElementById(id);
 const read = id => JSON.parse(element(id)?.textContent ?? '[]');
 const summary = read('summary'), words = read('words'), others = read('others');
+if (words.length === 0) words.push('');
 const classes = ['unknown', 'clearance', 'collision', 'touching', 'penetrating', 'contained', 'duplicate'];
 const changes = ['new', 'same', 'gone'], gone = 2;
 const axes = 'xyz', perPage = 100;
@@ -29,11 +30,18 @@ function makeRow([a, b, kind, change, distance, depth, time, contacts, more, at,
   return {first: objects[0].get(a), second: objects[summary.join ? 1 : 0].get(b), kind, change, distance, depth, time,
           contacts, more, at, atLeast, atMost, open, a, b};
 }
-// For a collision that is gone, only the names of the objects are known.
-function makeGoneRow([a, b, kind, distance, depth, time, contacts]) {
-  const known = Math.max(0, classes.indexOf(kind));
-  const row = makeRow([null, null, known, gone, distance, depth, time, contacts, 0, null, 0]);
-  [row.first, row.second] = [a, b].map(name => makeObject([null, name]));
+function numberOfWord(text) {
+  const found = words.indexOf(text);
+  return found >= 0 ? found : words.push(text) - 1;
+}
+// For a collision that is gone, only names, labels and types of the objects are known.
+function makeGoneRow([a, b, kind, distance, depth, time, contacts, atLeast, ...details]) {
+  const known = Math.max(0, classes.indexOf(kind)), noBox = Array(6).fill(null);
+  const row = makeRow([null, null, known, gone, distance, depth, time, contacts, 0, null, atLeast]);
+  const [aLabel, aType, bLabel, bType] = details.map(numberOfWord);
+  row.first = makeObject([null, a, ...noBox, aLabel, aType]);
+  row.second = makeObject([null, b, ...noBox, bLabel, bType]);
+  row.first.box = row.second.box = null;
   allObjects.push(row.first, row.second);
   return row;
 }
@@ -51,7 +59,6 @@ function deriveParents() {
     object.parent = index.get(parent) ?? 0;
   }
 }
-if (words.length === 0) words.push('');
 if (!hasDetails) deriveParents();
 
 // Returns where the pair meets; without a known place, the centre of the overlap (or gap) of the two boxes.

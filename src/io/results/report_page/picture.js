@@ -162,10 +162,9 @@ function drawScaleBar({context, width, height, scale}) {
   const most = width / 3 / scale, power = 10 ** Math.floor(Math.log10(most));
   const long = [5, 2, 1].find(factor => factor * power <= most) * power, text = length(long);
   context.font = '12px system-ui, sans-serif';
-  context.fillStyle = colourOf('panel');
-  context.globalAlpha = .8;
-  context.fillRect(4, height - 24, Math.max(long * scale, context.measureText(text).width) + 8, 24);
-  context.globalAlpha = 1;
+  context.strokeStyle = colourOf('panel');  // an edge around the letters, so that lines below do not hide them
+  context.lineWidth = 3;
+  context.strokeText(text, 8, height - 10);
   context.fillStyle = colourOf('text');
   context.fillRect(8, height - 6, long * scale, 2);
   context.fillText(text, 8, height - 10);
