@@ -1,6 +1,9 @@
 #include "service/server/jobs/job_scheduler.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
@@ -12,6 +15,9 @@ namespace {
 
 /// How soon a job that waits for memory asks again: nothing signals that memory was given back.
 constexpr std::chrono::milliseconds ask_again(20);
+
+/// Work of the smallest job, in objects: taking and answering it costs as much.
+constexpr std::uint64_t min_work = 1000;
 
 }  // namespace
 
@@ -29,25 +35,40 @@ JobScheduler::JobScheduler(const Makers& makers, const Widths& widths) : instant
 JobScheduler::~JobScheduler() { stop(); }
 
 void JobScheduler::stop() {
-    small_.close();
-    large_.close();
+    small_.queue.close();
+    large_.queue.close();
     threads_.clear();
 }
 
-void JobScheduler::start(Queue& queue, const EngineMaker& maker, unsigned width) {
+void JobScheduler::start(Lane& lane, const EngineMaker& maker, unsigned width) {
     engines_.push_back(maker(width));
-    threads_.emplace_back([this, &queue, &engine = *engines_.back()] {
-        queue.run([this](Queue::Items& jobs) { return first_ready(jobs); }, ask_again,
-                  [&engine](const std::shared_ptr<ServerJob>& job) { job->run(engine); });
+    threads_.emplace_back([this, &lane, &engine = *engines_.back()] {
+        lane.queue.run([this, &lane](Queue::Items& jobs) { return next_ready(jobs, lane.order); }, ask_again,
+                       [&engine](const std::shared_ptr<ServerJob>& job) { job->run(engine); });
     });
 }
 
-/// Returns the first job that can run, or jobs.end().
-JobScheduler::Queue::Items::iterator JobScheduler::first_ready(Queue::Items& jobs) const {
-    bool detached_wait = holds_detached_;
+/// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
+/// job of each client.
+JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs, FairOrder& order) const {
+    struct Candidate {
+        double start;
+        Queue::Items::iterator job;
+    };
+    std::vector<Candidate> candidates;
+    std::set<std::pair<std::string_view, bool>> seen;
     for (auto job = jobs.begin(); job != jobs.end(); ++job) {
+        if (seen.emplace((*job)->owner(), (*job)->detached()).second)
+            candidates.push_back({order.start_of((*job)->owner()), job});
+    }
+    std::ranges::stable_sort(candidates, {}, &Candidate::start);
+    bool detached_wait = holds_detached_;
+    for (const auto& [start, job] : candidates) {
         if ((*job)->detached() && detached_wait) continue;
-        if ((*job)->ask_memory()) return job;
+        if ((*job)->ask_memory()) {
+            order.begin((*job)->owner(), double(std::max<std::uint64_t>(object_count((*job)->spec()), min_work)));
+            return job;
+        }
         detached_wait = true;
     }
     return jobs.end();
@@ -68,12 +89,12 @@ bool JobScheduler::run_at_once(ServerJob& job) {
 void JobScheduler::add(std::shared_ptr<ServerJob> job) {
     const std::uint64_t objects = object_count(job->spec());
     if (objects <= max_instant_objects && !job->detached() && run_at_once(*job)) return;
-    queue_of(objects).add(std::move(job), [](const auto& waiting) { return waiting->ended(); });
+    lane_of(objects).queue.add(std::move(job), [](const auto& waiting) { return waiting->ended(); });
 }
 
 std::uint64_t JobScheduler::queued_before(const ServerJob& job) const {
     const auto is_job = [&](const auto& waiting) { return waiting.get() == &job; };
-    return small_.waiting_before(is_job) + large_.waiting_before(is_job);
+    return small_.queue.waiting_before(is_job) + large_.queue.waiting_before(is_job);
 }
 
 std::uint64_t JobScheduler::sum(const std::function<std::uint64_t(const Engine&)>& value) const {

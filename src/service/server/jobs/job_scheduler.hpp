@@ -3,8 +3,8 @@
 // Invariants
 //   Jobs of at most `max_small_objects` objects have engines of one thread each, so they never wait for large jobs. Large
 //   jobs share one engine with all threads.
-//   In each of the two queues, jobs run in the order in which they were added. A detached job that waits for memory lets
-//   attached jobs pass, but no other detached one.
+//   In each of the two queues, clients take turns (fair_order.hpp). The jobs of one client run in the order in which they were added. A
+//   detached job that waits for memory lets attached jobs pass, but no detached one whose turn is later.
 //   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.
 #pragma once
@@ -19,6 +19,7 @@
 
 #include "base/work_queue.hpp"
 #include "octopair/engine.hpp"
+#include "service/server/jobs/fair_order.hpp"
 
 namespace octopair::service {
 
@@ -55,25 +56,30 @@ public:
     /// From now on no detached job starts: those that wait are left to the next server.
     void hold_detached() { holds_detached_ = true; }
 
-    /// Returns the number of jobs that wait before `job`; 0 if it does not wait.
+    /// Returns the number of waiting jobs that were added before `job`; 0 if it does not wait. Jobs of other clients may run first, or
+    /// later than it.
     std::uint64_t queued_before(const ServerJob& job) const;
-    std::uint64_t waiting() const { return small_.waiting() + large_.waiting(); }
+    std::uint64_t waiting() const { return small_.queue.waiting() + large_.queue.waiting(); }
     /// Returns the sum of value(engine) over all engines but the instant ones.
     std::uint64_t sum(const std::function<std::uint64_t(const Engine&)>& value) const;
 
 private:
     using Queue = WorkQueue<std::shared_ptr<ServerJob>>;
+    struct Lane {
+        Queue queue;
+        FairOrder order;  // used with the queue locked
+    };
     struct Instant {
         std::mutex mutex;
         std::unique_ptr<Engine> engine;
     };
     bool run_at_once(ServerJob& job);
-    Queue& queue_of(std::uint64_t objects) { return objects <= max_small_objects ? small_ : large_; }
+    Lane& lane_of(std::uint64_t objects) { return objects <= max_small_objects ? small_ : large_; }
     void stop();
-    void start(Queue& queue, const EngineMaker& maker, unsigned width);
-    Queue::Items::iterator first_ready(Queue::Items& jobs) const;
+    void start(Lane& lane, const EngineMaker& maker, unsigned width);
+    Queue::Items::iterator next_ready(Queue::Items& jobs, FairOrder& order) const;
 
-    Queue small_, large_;
+    Lane small_, large_;
     std::atomic<bool> holds_detached_ = false;
     std::vector<std::unique_ptr<Engine>> engines_;  // the one for large jobs first
     std::vector<Instant> instant_;

@@ -1,0 +1,35 @@
+// FairOrder: whose job runs next, when clients have more jobs than the server can run.
+//
+// - Each client gets the same share of the work, however many jobs it has waiting.
+// - The work of a job is an estimate: its objects. A client that was idle does not collect a claim on more than its share.
+// - Source: Goyal, Vin, Cheng 1996, "Start-time fair queueing".
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace octopair::service {
+
+/// Not thread-safe: the caller locks.
+class FairOrder {
+public:
+    /// Returns the time at which the next job of a client starts in the order: the smallest is next.
+    double start_of(const std::string& client) const {
+        const auto known = ends_.find(client);
+        return known == ends_.end() ? now_ : std::max(now_, known->second);
+    }
+    /// Notes that a job of a client begins. `work` > 0.
+    void begin(const std::string& client, double work) {
+        now_ = start_of(client);
+        ends_[client] = now_ + work;
+        constexpr std::size_t many = 1000;
+        if (ends_.size() > many) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
+    }
+
+private:
+    double now_ = 0;                      // start of the job that began last
+    std::map<std::string, double> ends_;  // end of the last job of each client
+};
+
+}  // namespace octopair::service
