@@ -59,7 +59,7 @@ _octopair() {
         serve)
             mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --rank-timeout --grace --stall --max-objects
                 --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-seconds --max-memory
-                --max-state --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --metrics --log --log-level --quiet
+                --max-memory-per-client --max-state --max-state-per-client --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --metrics --log --log-level --quiet
                 --help" -- "$current") ;;
         generate)
             if ((COMP_CWORD == 2)); then

@@ -3,12 +3,25 @@
 
 #include "service/gate.hpp"
 #include "service/guarded.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/served.hpp"
+#include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/fair_order.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
 namespace {
+
+/// Expects that `call` throws LimitError with this limit.
+void expect_limit(const std::string& name, std::uint64_t allowed, const std::function<void()>& call) {
+    try {
+        call();
+        ADD_FAILURE() << "not refused";
+    } catch (const service::LimitError& error) {
+        EXPECT_EQ(error.name(), name);
+        EXPECT_EQ(error.allowed(), allowed);
+    }
+}
 
 using service::FairOrder;
 
@@ -74,6 +87,63 @@ TEST(ServedFairness, OneJobPassesTheManyOfAnotherClient) {
     const auto done = std::ranges::count_if(many, [](const Job& job) { return job.state() == JobState::done; });
     EXPECT_LE(done, 10) << "first come, first served would be 20";
     for (Job& job : many) job.wait();
+}
+
+TEST(Budget, AClientHasALimitOfItsOwn) {
+    service::Budget budget("bytes", "bytes of it", 100, 60);
+    auto greedy = budget.take(50, "greedy");
+    expect_limit("bytes_per_client", 60, [&] { (void)budget.take(11, "greedy"); });
+    expect_limit("bytes_per_client", 60, [&] { greedy.grow(11); });
+    greedy.grow(10);
+    auto polite = budget.take(40, "polite");
+    expect_limit("bytes", 100, [&] { (void)budget.take(1, "polite"); });
+    greedy.shrink(30);
+    EXPECT_EQ(budget.taken(), 70u);
+    auto server = budget.take(30);  // of no client
+    server.give_back();
+    auto moved = std::move(greedy);
+    moved.give_back();
+    greedy = budget.take(60, "greedy");
+    expect_limit("bytes_per_client", 60, [&] { budget.check(61); });
+    expect_limit("bytes", 100, [&] { budget.check(101); });
+}
+
+/// Unread results of one client do not take the memory that a job of another client needs.
+TEST(ServedFairness, OneClientCannotTakeAllMemory) {
+    const TemporaryDirectory folder;
+    write_secret(folder.file("tokens"), "greedy 0123456789abcdef\npolite fedcba9876543210\n");
+    Gate gate;
+    const Served served([&](service::ServerOptions& options) {
+        options.token_file = folder.file("tokens");
+        options.engine = gated_engines(gate);
+        options.engine_widths = {1, 1, 0};
+        options.limits.memory_bytes = 100'000'000;
+    });
+    const auto client = [&](const std::string& token) {
+        ClientOptions options;
+        options.token = token;
+        return connect(served.address(), options);
+    };
+    const std::vector<Box3f> boxes = make_boxes("uniform", 100'000, 1);  // 10.4 MB a job
+    std::vector<std::unique_ptr<Engine>> engines;
+    std::vector<Job> many;
+    for (std::size_t i = 0; i < 8; ++i) {
+        engines.push_back(client("0123456789abcdef"));
+        many.push_back(engines.back()->submit(boxes));
+    }
+    const auto failed = [&] {
+        return std::ranges::count_if(many, [](const Job& job) { return job.state() == JobState::failed; });
+    };
+    ASSERT_TRUE(comes_true([&] { return failed() == 4; }, std::chrono::minutes(1))) << "half has room for 4 jobs";
+    EXPECT_GT(served.load().memory_bytes, 41'000'000u);
+    const auto polite = client("fedcba9876543210");
+    Job one = polite->submit(boxes);
+    EXPECT_LE(served.load().memory_bytes, 61'000'000u);
+    gate.open();
+    one.wait();
+    EXPECT_NO_THROW((void)one.summary());
+    for (Job& job : many) job.wait();
+    EXPECT_EQ(failed(), 4);
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ void add_number(Command& command, const Described& option, std::uint64_t& value)
         .type_name(option.type);
 }
 
-void add_bytes(Command& command, const Described& option, std::uint64_t& value) {
+/// `Bytes` is a number, or an optional one.
+template <typename Bytes>
+void add_bytes(Command& command, const Described& option, Bytes& value) {
     command
         .add_option(
             option.name, [option, &value](const std::string& text) { value = parse_bytes(option.name, text); },
@@ -71,8 +73,18 @@ void add_limits(Command& command, service::ServerLimits& limits) {
         .type_name("SECONDS");
     add_bytes(command, {"--max-memory", "BYTES", "maximum memory of all jobs together (default 8G)"},
               limits.memory_bytes);
+    add_bytes(command,
+              {"--max-memory-per-client", "BYTES",
+               "maximum memory of one client (default: half of --max-memory, "
+               "with tokens or client certificates)"},
+              limits.memory_bytes_per_client);
     add_bytes(command, {"--max-state", "BYTES", "maximum disk space of all detached jobs together (default 16G)"},
               limits.state_bytes);
+    add_bytes(command,
+              {"--max-state-per-client", "BYTES",
+               "maximum disk space of one client (default: half of --max-state, "
+               "with tokens or client certificates)"},
+              limits.state_bytes_per_client);
 }
 
 void add_state(Command& command, service::ServerOptions& options) {

@@ -25,6 +25,12 @@ std::uint64_t buffer_of(const v1::JobSpec& spec, std::uint64_t memory_bytes) {
     return memory_bytes == 0 ? most : std::min(most, memory_bytes / 8);
 }
 
+/// Returns how much of a limited amount one client may take: what the options say, or half, if the server can tell clients apart.
+std::uint64_t share_of(const ServerOptions& options, std::uint64_t all, std::optional<std::uint64_t> each) {
+    const bool tells_apart = !options.token_file.empty() || !options.tls.client_authority.empty();
+    return each.value_or(tells_apart ? all / 2 : 0);
+}
+
 void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
     if (allowed == 0 || asked <= allowed) return;
     throw LimitError(name, allowed,
@@ -38,11 +44,16 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
       log(std::move(logger)),
       access(given.token_file),
       server_log(log),
-      memory("memory_bytes", "bytes of memory", given.limits.memory_bytes),
+      memory("memory_bytes", "bytes of memory", given.limits.memory_bytes,
+             share_of(given, given.limits.memory_bytes, given.limits.memory_bytes_per_client)),
       job_quota(given.limits.jobs, given.limits.jobs_per_client),
       state(given.state_folder.empty()
                 ? nullptr
-                : std::make_unique<StateFolder>(given.state_folder, given.limits.state_bytes, log)),
+                : std::make_unique<StateFolder>(
+                      given.state_folder,
+                      StateFolder::Room{given.limits.state_bytes,
+                                        share_of(given, given.limits.state_bytes, given.limits.state_bytes_per_client)},
+                      log)),
       attached("", "", 0),
       scheduler({given.engine, given.small_engine ? given.small_engine : given.engine}, given.engine_widths) {
     if (!state) return;
@@ -92,9 +103,9 @@ std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::Jo
         ServerJob::Parts parts;
         parts.owner = owner;
         parts.slot = job_quota.take_slot(owner);
-        parts.memory = memory.take(memory_of(spec));
+        parts.memory = memory.take(memory_of(spec), owner);
         parts.input = std::make_unique<UploadedInput>(spec, scheduler.engine_for(object_count(spec)), &array_pool);
-        parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs);
+        parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs, owner);
         parts.spec = std::move(spec);
         auto job = make_job(std::move(parts));
         server_log.job_state_changed(*job, {}, v1::UPLOADING);

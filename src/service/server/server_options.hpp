@@ -24,6 +24,8 @@ struct ServerLimits {
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
     std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder
+    /// Parts of the two amounts above that one client may take. Default: half, on a server with tokens or client certificates; otherwise all.
+    std::optional<std::uint64_t> memory_bytes_per_client = {}, state_bytes_per_client = {};
 };
 
 /// Paths of PEM files. Without a certificate connections are not encrypted.

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "engine/processes/client/spawner.hpp"
@@ -98,10 +99,14 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
     std::string name = "octopair-worker", number = std::to_string(slot);
     const std::array<char*, 3> arguments = {name.data(), number.data(), nullptr};
     int error = 0;
-    run_on_spawner([&] {
-        error =
-            ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(), environ);
-    });
+    try {
+        run_on_spawner([&] {
+            error = ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(),
+                                  environ);
+        });
+    } catch (const std::system_error& no_thread) {
+        error = no_thread.code().value();
+    }
     if (error != 0) throw_cannot_start(program, error);
     handle_ = Descriptor(int(::syscall(SYS_pidfd_open, id_, 0)));
     if (!handle_.open() && errno != ESRCH) {  // ESRCH: it has ended, and the application has waited for it

@@ -26,7 +26,7 @@ public:
             job_ = server().jobs.find(owner(), asked.id());
             check(asked);
             // A piece stays in memory until the client has read it.
-            piece_ = server().memory.take(piece_bytes);
+            piece_ = server().memory.take(piece_bytes, owner());
             send(job_, asked.offset());
         } catch (...) {
             refuse(status_of_exception());

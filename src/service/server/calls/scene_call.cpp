@@ -131,7 +131,7 @@ private:
         }
         message_.Clear();
         for (RecordedCall call; calls_.next(call);) {
-            if (!scene_) scene_.emplace(server_, calls_.options());
+            if (!scene_) scene_.emplace(server_, owner_, calls_.options());
             call.kind == RecordKind::step ? step() : scene_->make(call);
             in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
         }

@@ -17,8 +17,8 @@ constexpr std::uint64_t own_bytes = std::uint64_t(4) << 20;
 
 }  // namespace
 
-ServerScene::ServerScene(ServerContext& server, const SceneOptions& options)
-    : server_(server), memory_(server.memory.take(own_bytes)), scene_(within_limits(options)) {}
+ServerScene::ServerScene(ServerContext& server, const std::string& owner, const SceneOptions& options)
+    : server_(server), memory_(server.memory.take(own_bytes, owner)), scene_(within_limits(options)) {}
 
 SceneOptions ServerScene::within_limits(SceneOptions options) {
     options.threads = server_.options.engine_widths.large;

@@ -15,7 +15,8 @@ namespace octopair::service {
 /// memory is allocated, the limit of pairs after a step has found them.
 class ServerScene {
 public:
-    ServerScene(ServerContext& server, const SceneOptions& options);
+    /// `owner`: client that the memory counts for.
+    ServerScene(ServerContext& server, const std::string& owner, const SceneOptions& options);
     ServerScene(const ServerScene&) = delete;
     ServerScene& operator=(const ServerScene&) = delete;
 

@@ -1,7 +1,9 @@
-// Budget: a limited amount of a resource. Users reserve parts of the amount; a reservation beyond the limit is refused.
+// Budget: a limited amount of a resource. Users reserve parts of the amount; a reservation beyond the limit is refused. A client has a
+// limit of its own, so that one client cannot take everything.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -15,10 +17,13 @@ public:
     public:
         Reservation() = default;
         Reservation(Reservation&& other) noexcept
-            : budget_(std::exchange(other.budget_, nullptr)), amount_(std::exchange(other.amount_, 0)) {}
+            : budget_(std::exchange(other.budget_, nullptr)),
+              amount_(std::exchange(other.amount_, 0)),
+              client_(std::move(other.client_)) {}
         Reservation& operator=(Reservation&& other) noexcept {
             std::swap(budget_, other.budget_);
             std::swap(amount_, other.amount_);
+            std::swap(client_, other.client_);
             return *this;
         }
         ~Reservation() { give_back(); }
@@ -31,33 +36,38 @@ public:
 
     private:
         friend class Budget;
-        Reservation(Budget& budget, std::uint64_t amount) : budget_(&budget), amount_(amount) {}
+        Reservation(Budget& budget, std::uint64_t amount, std::string client)
+            : budget_(&budget), amount_(amount), client_(std::move(client)) {}
 
         Budget* budget_ = nullptr;
         std::uint64_t amount_ = 0;
+        std::string client_;
     };
 
     /// `limit`: name of the limit in messages, as in octopair.proto's Limits. `unit`: noun that follows the number in messages,
-    /// as in "bytes of memory". `total`: size of the budget; 0: unlimited.
-    Budget(std::string limit, std::string unit, std::uint64_t total);
+    /// as in "bytes of memory". `total`: size of the budget. `each`: what one client may take. 0: unlimited.
+    Budget(std::string limit, std::string unit, std::uint64_t total, std::uint64_t each = 0);
 
-    /// Reserves `amount`. Throws: LimitError if less is left. Thread safety: all members of Budget are safe.
-    Reservation take(std::uint64_t amount);
-    /// Reserves `amount` even beyond the limit. For resources that were in use before this budget existed.
-    Reservation take_unchecked(std::uint64_t amount);
-    /// Throws: LimitError if `amount` is more than the whole budget, so that take() can never succeed.
+    /// Reserves `amount` for a client; "" is no client, and has no limit of its own. Throws: LimitError if less is left. Thread safety:
+    /// all members of Budget are safe.
+    Reservation take(std::uint64_t amount, const std::string& client = {});
+    /// Reserves `amount` even beyond the limits. For resources that were in use before this budget existed.
+    Reservation take_unchecked(std::uint64_t amount, const std::string& client = {});
+    /// Throws: LimitError if `amount` is more than a client or the whole budget may have, so that take() can never succeed.
     void check(std::uint64_t amount) const;
     std::uint64_t taken() const;
     std::uint64_t total() const { return total_; }
 
 private:
-    void add(std::uint64_t amount);
-    void give(std::uint64_t amount) noexcept;
+    void add(std::uint64_t amount, const std::string& client);
+    void add_unchecked(std::uint64_t amount, const std::string& client);
+    void give(std::uint64_t amount, const std::string& client) noexcept;
 
     const std::string limit_, unit_;
-    const std::uint64_t total_;
+    const std::uint64_t total_, each_;
     mutable std::mutex mutex_;
     std::uint64_t taken_ = 0;
+    std::map<std::string, std::uint64_t> of_clients_;  // clients that have taken something
 };
 
 }  // namespace octopair::service

@@ -36,7 +36,8 @@ public:
 class PairsInMemory final : public KeptPairs {
 public:
     /// append() throws LimitError "pairs" for more than `most` pairs; 0: no limit.
-    PairsInMemory(Budget& memory, std::uint64_t most) : most_(most), reservation_(memory.take(0)) {}
+    PairsInMemory(Budget& memory, std::uint64_t most, const std::string& client = {})
+        : most_(most), reservation_(memory.take(0, client)) {}
 
     void append(std::span<const Pair> pairs) override;
     void finish() override;

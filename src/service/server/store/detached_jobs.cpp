@@ -47,8 +47,8 @@ void remove_superseded(std::vector<StateFolder::Found>& jobs) {
 
 }  // namespace
 
-PairsInFile::Target DetachedJobs::result_target(const std::string& base, const std::string& hash) const {
-    return {base + ".result", hash, server_.state->disk(), server_.options.limits.pairs};
+PairsInFile::Target DetachedJobs::result_target(const std::string& base, const StoredSpec& stored) const {
+    return {base + ".result", stored.hash, server_.state->disk(), server_.options.limits.pairs, stored.owner};
 }
 
 std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, JobQuota::Slot slot) const {
@@ -98,9 +98,9 @@ void DetachedJobs::restore(StateFolder::Found found) {
     }
     const std::string name = "job " + found.stored.spec.id();
     if (damage) log_text(*server_.log, LogLevel::error, name + ": " + damage->what());
-    auto pairs = found.result ? std::make_shared<PairsInFile>(result_target(found.base, found.stored.hash),
-                                                              *found.result, std::move(found.result_disk))
-                              : std::make_shared<PairsInFile>(result_target(found.base, found.stored.hash));
+    auto pairs = found.result ? std::make_shared<PairsInFile>(result_target(found.base, found.stored), *found.result,
+                                                              std::move(found.result_disk))
+                              : std::make_shared<PairsInFile>(result_target(found.base, found.stored));
     JobQuota::Slot slot;
     if (!found.result && !damage) {
         try {
@@ -167,7 +167,7 @@ std::shared_ptr<ServerJob> DetachedJobs::commit(Submission& submission) {
     const std::string base = upload.commit();
     StoredSpec stored = upload.stored();
     const std::uint64_t memory_bytes = server_.memory_of(stored.spec);
-    auto pairs = std::make_shared<PairsInFile>(result_target(base, stored.hash));
+    auto pairs = std::make_shared<PairsInFile>(result_target(base, stored));
     auto job = make_job(
         {*server_.state, base, std::move(stored), upload.take_disk(), std::move(pairs), server_.memory, memory_bytes},
         std::move(submission.slot));

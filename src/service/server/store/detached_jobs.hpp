@@ -45,7 +45,7 @@ private:
     Submission begin_job(const std::string& owner, v1::JobSpec spec);
     std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, JobQuota::Slot slot) const;
     void set_queued(ServerJob& job) const;
-    PairsInFile::Target result_target(const std::string& base, const std::string& hash) const;
+    PairsInFile::Target result_target(const std::string& base, const StoredSpec& stored) const;
 
     ServerContext& server_;
     std::chrono::steady_clock::time_point last_check_{};  // used by the watchdog's thread only

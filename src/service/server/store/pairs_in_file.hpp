@@ -27,10 +27,12 @@ public:
         std::string hash;  ///< hash of the job
         Budget& disk;
         std::uint64_t max_pairs = 0;  ///< 0: no limit
+        std::string owner = {};       ///< client that the disk space counts for
     };
 
     /// For a job that has not ended.
-    explicit PairsInFile(Target target) : target_(std::move(target)), reservation_(target_.disk.take(0)) {}
+    explicit PairsInFile(Target target)
+        : target_(std::move(target)), reservation_(target_.disk.take(0, target_.owner)) {}
     /// For a job that has ended. `reservation`: disk space of the result file.
     PairsInFile(Target target, StoredResult stored, Budget::Reservation reservation);
     PairsInFile(const PairsInFile&) = delete;

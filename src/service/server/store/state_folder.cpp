@@ -38,8 +38,10 @@ FileBytes bytes_of(const File& file) {
 
 }  // namespace
 
-StateFolder::StateFolder(std::string path, std::uint64_t max_bytes, std::shared_ptr<spdlog::logger> log)
-    : path_(std::move(path)), log_(std::move(log)), disk_("state_bytes", "bytes of state on its disk", max_bytes) {
+StateFolder::StateFolder(std::string path, const Room& room, std::shared_ptr<spdlog::logger> log)
+    : path_(std::move(path)),
+      log_(std::move(log)),
+      disk_("state_bytes", "bytes of state on its disk", room.all, room.each) {
     const bool made = ::mkdir(path_.c_str(), 0700) == 0;
     if (!made && errno != EEXIST) fail_io(path_, "cannot create", errno);
     if (made && !sync_folder_of(path_)) fail_io(path_, "cannot sync its folder", errno);
@@ -104,8 +106,8 @@ std::optional<StateFolder::Found> StateFolder::find_job(const std::string& base)
         const File file(base + ".job", File::Mode::read);
         Found found;
         found.base = base;
-        found.disk = disk_.take_unchecked(file.size() + overhead_bytes);
         found.stored = read_job(bytes_of(file));
+        found.disk = disk_.take_unchecked(file.size() + overhead_bytes, found.stored.owner);
         if (found.stored.hash.empty()) {
             found.damage = Error(ErrorCode::io_failed, file.path() + ": damaged: the end of the file is invalid");
         }
@@ -122,7 +124,7 @@ void StateFolder::find_result(Found& found) {
     if (!fs::exists(path)) return;
     try {
         const File file(path, File::Mode::read);
-        found.result_disk = disk_.take_unchecked(file.size());
+        found.result_disk = disk_.take_unchecked(file.size(), found.stored.owner);
         found.result = read_result(bytes_of(file));
         if (found.result->hash != found.stored.hash && !found.damage) {
             fail_damaged(path, "it is the result of another job");

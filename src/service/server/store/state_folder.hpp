@@ -31,9 +31,14 @@ public:
     /// blocks.
     static constexpr std::uint64_t overhead_bytes = 16 << 10;
 
+    /// Bytes of disk space. 0: no limit.
+    struct Room {
+        std::uint64_t all = 0, each = 0;  ///< for all jobs, and for those of one client
+    };
+
     /// Creates the folder, private to its owner, if it does not exist, and locks it. Throws: Error{usage} if other users may
     /// access it; Error{io_failed} on failure, or if another server uses it.
-    StateFolder(std::string path, std::uint64_t max_bytes, std::shared_ptr<spdlog::logger> log);
+    StateFolder(std::string path, const Room& room, std::shared_ptr<spdlog::logger> log);
 
     /// A job that was found in the folder.
     struct Found {

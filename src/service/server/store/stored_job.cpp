@@ -16,7 +16,7 @@ namespace octopair::service {
 
 std::optional<Budget::Reservation> StoredJob::ask_memory() {
     try {
-        return parts_.memory.take(parts_.memory_bytes);
+        return parts_.memory.take(parts_.memory_bytes, parts_.stored.owner);
     } catch (const LimitError&) {
         return {};
     }
@@ -63,7 +63,7 @@ StoredUpload::StoredUpload(StoredSpec stored)
 StoredUpload::StoredUpload(StateFolder& folder, StoredSpec stored) : StoredUpload(std::move(stored)) {
     block_ = encode_block(stored_);
     const std::uint64_t bytes = job_file_bytes(block_, missing_);
-    disk_ = folder.disk().take(bytes + StateFolder::overhead_bytes);
+    disk_ = folder.disk().take(bytes + StateFolder::overhead_bytes, stored_.owner);
     base_ = folder.new_base();
     job_path_ = base_ + ".job";
     file_ = File(base_ + ".job.part", File::Mode::create);
