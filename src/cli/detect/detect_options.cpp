@@ -110,6 +110,7 @@ void check_verify_options(const DetectRequest& request) {
 
 std::vector<FileOption> input_files(const DetectRequest& request) {
     std::vector<FileOption> files;
+    files.reserve(request.inputs.size() + 4);
     for (const std::string& input : request.inputs) files.push_back({"", input});
     for (const auto& [option, path] :
          {std::pair("--against", request.against), std::pair("--padding", request.padding),

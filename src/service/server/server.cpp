@@ -78,12 +78,16 @@ public:
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "cannot start the gRPC server");
         if (options.metrics) show_metrics(*options.metrics);
+        context_.admitted = [this](const grpc::ServerContextBase& call) {
+            if (listener_.awaits_calls()) listener_.make_known(call.peer());
+        };
         listener_.start({options.limits.connections, !options.tls.certificate.empty(),
                          [this](Descriptor connection) { hand_over(std::move(connection)); },
                          [this] {
                              context_.server_log.connections_refused(context_.options.limits.connections,
                                                                      listener_.refused());
-                         }});
+                         },
+                         std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall)});
     }
 
     ~State() {

@@ -69,7 +69,11 @@ ServerContext::~ServerContext() {
 grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, std::string& owner) {
     grpc::Status status = draining ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is going down")
                                    : access.identify(context, owner);
-    if (!status.ok()) server_log.call_refused(context.peer(), status);
+    if (!status.ok()) {
+        server_log.call_refused(context.peer(), status);
+    } else if (admitted) {
+        admitted(context);
+    }
     return status;
 }
 

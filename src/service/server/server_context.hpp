@@ -4,6 +4,7 @@
 #include <spdlog/fwd.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -47,6 +48,9 @@ public:
     /// Number of attached jobs that the server waits for when it shuts down. Each job reserves 1 from the end of its upload to
     /// the end of its call.
     Budget attached;
+
+    /// Called with each admitted call; may be empty. Set before the first call.
+    std::function<void(const grpc::ServerContextBase&)> admitted;
 
     /// Authenticates the caller and sets `owner` to its name. Returns an error for a refused caller, and while the server shuts
     /// down.

@@ -68,7 +68,9 @@ void Budget::give(std::uint64_t amount, const std::string& client) noexcept {
     const std::lock_guard lock(mutex_);
     taken_ -= amount;
     const auto known = of_clients_.find(client);
-    if (known != of_clients_.end() && (known->second -= amount) == 0) of_clients_.erase(known);
+    if (known == of_clients_.end()) return;
+    known->second -= amount;
+    if (known->second == 0) of_clients_.erase(known);
 }
 
 void Budget::Reservation::grow(std::uint64_t amount) {

@@ -29,6 +29,7 @@ namespace {
 
 constexpr int backlog = 1024;
 constexpr std::chrono::seconds check_interval(1);        // between checks for closed connections, and between log lines
+constexpr std::chrono::milliseconds watch_interval(50);  // between checks of connections without an admitted call
 constexpr std::chrono::milliseconds refusal_delay(250);  // to sending the reason, and from there to closing
 constexpr std::size_t max_refused_open = 64;             // refused connections that are not closed yet
 constexpr std::size_t max_spares = 8;                    // descriptors reserved for refusing connections
@@ -131,6 +132,8 @@ void Listener::bind_tcp(const std::string& unprotected) {
 
 void Listener::start(Terms terms) {
     terms_ = std::move(terms);
+    if (!address_.is_unix())
+        watch_.emplace(ConnectionWatch::Terms{.max_connections = terms_.max_connections, .greeting = terms_.greeting});
     thread_ = std::thread([this] { accept_connections(); });
 }
 
@@ -144,6 +147,7 @@ void Listener::stop() {
 
 void Listener::accept_connections() {
     const auto poll_timeout = [&] {
+        if (awaits_calls()) return int(watch_interval.count());
         if (!refused_connections_.empty()) return int(refusal_delay.count());
         return accepted_.empty() ? -1 : int(std::chrono::milliseconds(check_interval).count());
     };
@@ -152,6 +156,7 @@ void Listener::accept_connections() {
         ready = ::poll(watched.data(), watched.size(), poll_timeout());
         if (ready == 0) forget_closed();
         close_refused();
+        check_watched();
         if (ready <= 0) continue;
         if (watched[1].revents != 0) return;
         Descriptor connection(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -200,9 +205,48 @@ void Listener::take(Descriptor connection) {
         const int on = 1;
         (void)::setsockopt(connection.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
     }
+    if (!watch(connection)) return;
     accepted_.push_back({connection.number(), socket_of(connection.number())});
     connections_ = accepted_.size();
     terms_.accept(std::move(connection));
+}
+
+/// Watches a TCP connection until a call of it is admitted. Returns false if the connection has ended.
+bool Listener::watch(const Descriptor& connection) {
+    if (!watch_) return true;
+    const auto peer = peer_of(connection);
+    if (!peer) return false;  // it has ended
+    const std::lock_guard lock(watch_mutex_);
+    watch_->add(connection, *peer, ConnectionWatch::Clock::now());
+    unknown_ = watch_->unknown();
+    return true;
+}
+
+void Listener::make_known(const std::string& peer) {
+    if (!watch_) return;
+    const std::lock_guard lock(watch_mutex_);
+    watch_->make_known(peer);
+    unknown_ = watch_->unknown();
+}
+
+void Listener::check_watched() {
+    if (!watch_ || !awaits_calls()) return;
+    std::uint64_t cut = 0;
+    {
+        const std::lock_guard lock(watch_mutex_);
+        cut = watch_->check(ConnectionWatch::Clock::now());
+        unknown_ = watch_->unknown();
+    }
+    if (cut == 0) return;
+    refused_ += cut;
+    report_refusals();
+}
+
+void Listener::report_refusals() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terms_.refused || now - last_report_ < check_interval) return;
+    last_report_ = now;
+    terms_.refused();
 }
 
 /// Returns whether the peer may connect. On a Unix socket the peer must be the user that runs the server, or root.
@@ -223,11 +267,8 @@ void Listener::forget_closed() {
 
 void Listener::refuse(Descriptor connection, std::string why) {
     ++refused_;
+    report_refusals();
     const auto now = std::chrono::steady_clock::now();
-    if (terms_.refused && now - last_report_ >= check_interval) {
-        last_report_ = now;
-        terms_.refused();
-    }
     if (!terms_.encrypted) send(connection, empty_settings);
     refused_connections_.push_back({std::move(connection), std::move(why), now});
     if (refused_connections_.size() > max_refused_open) {

@@ -11,12 +11,15 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/descriptor.hpp"
 #include "service/protocol/address.hpp"
+#include "service/server/net/connection_watch.hpp"
 
 namespace octopair::service {
 
@@ -37,16 +40,22 @@ public:
     const Address& address() const { return address_; }
 
     struct Terms {
-        std::uint64_t max_connections = 0;       ///< 0: no limit
-        bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
-        std::function<void(Descriptor)> accept;  ///< receives each accepted connection
-        std::function<void()> refused;           ///< called after refusals, at most once a second
+        std::uint64_t max_connections = 0;           ///< 0: no limit
+        bool encrypted = false;                      ///< connections use TLS; a refused connection then gets no reason
+        std::function<void(Descriptor)> accept;      ///< receives each accepted connection
+        std::function<void()> refused;               ///< called after refusals and cuts, at most once a second
+        std::chrono::milliseconds greeting{10'000};  ///< time in which a TCP client must make a call that is admitted
     };
     /// Starts a thread that accepts connections. The functions of `terms` are called on this thread.
     void start(Terms terms);
     /// Stops accepting connections.
     void stop();
+    /// Notes that a call of this peer was admitted (ConnectionWatch::Peer::name). Thread safety: safe.
+    void make_known(const std::string& peer);
+    /// Returns whether connections wait for that. Thread safety: safe.
+    bool awaits_calls() const { return unknown_ > 0; }
     std::uint64_t connections() const { return connections_; }
+    /// Returns the number of connections that were refused or cut.
     std::uint64_t refused() const { return refused_; }
 
 private:
@@ -75,6 +84,9 @@ private:
     void refuse_one_more();
     void refill_spares();
     void refuse(Descriptor connection, std::string why);
+    bool watch(const Descriptor& connection);
+    void check_watched();
+    void report_refusals();
     void send_refusal(Refused& refused) const;
     void close_refused();
 
@@ -86,7 +98,10 @@ private:
     std::deque<Refused> refused_connections_;
     std::chrono::steady_clock::time_point last_report_;  // last call of terms_.refused
     std::size_t forget_from_ = 64;
-    std::atomic<std::uint64_t> connections_ = 0, refused_ = 0;
+    std::mutex watch_mutex_;
+    std::optional<ConnectionWatch>
+        watch_;  // guarded by watch_mutex_; not for Unix sockets, whose peers are this user or root
+    std::atomic<std::uint64_t> connections_ = 0, refused_ = 0, unknown_ = 0;
     std::thread thread_;
 };
 

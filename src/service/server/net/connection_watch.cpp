@@ -1,0 +1,116 @@
+#include "service/server/net/connection_watch.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <utility>
+
+namespace octopair::service {
+
+namespace {
+
+struct Received {
+    bool open = false;
+    std::uint64_t bytes = 0;  ///< 0 if the system does not tell
+};
+
+/// Reads TCP_INFO. Its bytes are at a fixed place of the system's interface (linux/tcp.h), which glibc's struct tcp_info lacks.
+Received received_by(const Descriptor& connection) {
+    constexpr std::size_t bytes_at = 128;
+    std::array<std::uint8_t, 256> info{};
+    socklen_t size = info.size();
+    if (::getsockopt(connection.number(), IPPROTO_TCP, TCP_INFO, info.data(), &size) != 0) return {};
+    Received received{info[0] == TCP_ESTABLISHED};
+    if (size >= bytes_at + sizeof(received.bytes))
+        std::memcpy(&received.bytes, &info[bytes_at], sizeof(received.bytes));
+    return received;
+}
+
+}  // namespace
+
+void ConnectionWatch::add(const Descriptor& connection, const Peer& peer, Clock::time_point now) {
+    Descriptor copy(::fcntl(connection.number(), F_DUPFD_CLOEXEC, 0));
+    if (!copy.open()) return;  // without descriptors nothing can be watched; the limit on connections still holds
+    while (is_full(peer.address)) cut_oldest();
+    unknown_.push_back({std::move(copy), peer, now});
+}
+
+bool ConnectionWatch::is_full(const std::string& address) const {
+    const std::uint64_t most = terms_.max_connections;
+    if (most == 0 || unknown_.empty()) return false;
+    const auto same = std::uint64_t(std::count_if(unknown_.begin(), unknown_.end(), [&](const Unknown& connection) {
+        return connection.peer.address == address;
+    }));
+    constexpr std::uint64_t few = 4;  // clients that connect at the same time
+    return unknown_.size() >= std::max(few, most / 2) || same >= std::max(few, most / 8);
+}
+
+/// Cuts the oldest connection of the address that has the most unknown ones.
+void ConnectionWatch::cut_oldest() {
+    std::map<std::string, std::size_t> counts;
+    for (const Unknown& connection : unknown_) ++counts[connection.peer.address];
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    cut(std::find_if(unknown_.begin(), unknown_.end(),
+                     [&](const Unknown& connection) { return connection.peer.address == most->first; }));
+}
+
+void ConnectionWatch::cut(std::vector<Unknown>::iterator connection) {
+    (void)::shutdown(connection->connection.number(), SHUT_RDWR);
+    unknown_.erase(connection);
+    ++cut_;
+}
+
+void ConnectionWatch::make_known(const std::string& name) {
+    std::erase_if(unknown_, [&](const Unknown& connection) { return connection.peer.name == name; });
+}
+
+std::uint64_t ConnectionWatch::check(Clock::time_point now) {
+    for (std::size_t i = unknown_.size(); i-- > 0;) {
+        const auto connection = unknown_.begin() + std::ptrdiff_t(i);
+        const Received received = received_by(connection->connection);
+        if (!received.open) {
+            unknown_.erase(connection);
+        } else if (now - connection->since > terms_.greeting || received.bytes > terms_.max_bytes) {
+            cut(connection);
+        }
+    }
+    return std::exchange(cut_, 0);
+}
+
+std::optional<ConnectionWatch::Peer> peer_of(const Descriptor& connection) {
+    sockaddr_storage peer{};
+    socklen_t size = sizeof(peer);
+    if (::getpeername(connection.number(), reinterpret_cast<sockaddr*>(&peer), &size) != 0) return std::nullopt;
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (peer.ss_family == AF_INET) {
+        const auto& four = reinterpret_cast<const sockaddr_in&>(peer);
+        if (::inet_ntop(AF_INET, &four.sin_addr, text.data(), text.size()) == nullptr) return std::nullopt;
+        return ConnectionWatch::Peer{"ipv4:" + std::string(text.data()) + ":" + std::to_string(ntohs(four.sin_port)),
+                                     text.data()};
+    }
+    if (peer.ss_family != AF_INET6) return std::nullopt;
+    const auto& six = reinterpret_cast<const sockaddr_in6&>(peer);
+    if (IN6_IS_ADDR_V4MAPPED(&six.sin6_addr)) {
+        if (::inet_ntop(AF_INET, &six.sin6_addr.s6_addr[12], text.data(), text.size()) == nullptr) return std::nullopt;
+        return ConnectionWatch::Peer{"ipv4:" + std::string(text.data()) + ":" + std::to_string(ntohs(six.sin6_port)),
+                                     text.data()};
+    }
+    if (::inet_ntop(AF_INET6, &six.sin6_addr, text.data(), text.size()) == nullptr) return std::nullopt;
+    // One client may use all addresses of a network with a prefix of 64 bits.
+    in6_addr network = six.sin6_addr;
+    std::fill(std::begin(network.s6_addr) + 8, std::end(network.s6_addr), std::uint8_t(0));
+    std::array<char, INET6_ADDRSTRLEN> prefix{};
+    (void)::inet_ntop(AF_INET6, &network, prefix.data(), prefix.size());
+    return ConnectionWatch::Peer{"ipv6:%5B" + std::string(text.data()) + "%5D:" + std::to_string(ntohs(six.sin6_port)),
+                                 prefix.data()};
+}
+
+}  // namespace octopair::service
