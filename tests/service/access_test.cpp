@@ -1,4 +1,6 @@
 // Tests access to a server: tokens, token files, and addresses that other machines can reach.
+#include <filesystem>
+
 #include "service/guarded.hpp"
 #include "service/protocol/octopair.pb.h"
 
@@ -105,6 +107,19 @@ TEST_F(Access, AddressesThatOthersReachNeedProtection) {
         const service::Server server(options_at(address), silent());
         EXPECT_EQ(ask(server.address().text(), {}), right_answer) << address;
     }
+}
+
+TEST_F(Access, AServerRemovesOnlyItsOwnSocket) {
+    const std::string path = folder_.file("socket");
+    {
+        const service::Server server(options_at(socket()), silent());
+        ASSERT_EQ(::rename(path.c_str(), folder_.file("moved").c_str()), 0);
+        write_file(path, "another one's");
+    }
+    EXPECT_EQ(read_file(path), "another one's");
+    ASSERT_EQ(::unlink(path.c_str()), 0);
+    { const service::Server server(options_at(socket()), silent()); }
+    EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST_F(Access, TheSchemeOfATokenHasAnyCase) {

@@ -19,6 +19,16 @@ using test::comes_true;
 using test::RawSocket;
 using test::ServerProgram;
 
+TEST(ServerProgramLimits, ConnectionsFitTheDescriptors) {
+    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    ServerProgram server({.before = "ulimit -n 296;"});
+    const auto engine = connect(server.address(), {.patience = minutes(1)});
+    std::vector<RawSocket> held;
+    for (int i = 0; i < 100; ++i) held.emplace_back(server.address());
+    EXPECT_NE(held.back().receive(minutes(1)).find("at most 100 connections"), std::string::npos);
+    EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
+}
+
 TEST(ServerProgramLimits, OfDescriptors) {
     if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     ServerProgram server({.before = "ulimit -n 60;"});

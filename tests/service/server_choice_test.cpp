@@ -44,6 +44,22 @@ TEST_F(ServerChoice, EventsAskWithTheSameToken) {
     EXPECT_EQ(outcome.out, "frame,event,a,b\n0,begin,0,2\n");
 }
 
+TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
+    const Outcome outcome = with_server(
+        "install -m 600 /dev/null new && echo fedcba9876543210 >new\n"
+        "reads() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"
+        "\"$P\" $D --quiet --count-only --token-file new 2>&1\n"
+        "echo 'bert fedcba9876543210' >tokens; kill -HUP $child; reads 'read the tokens again'\n"
+        "\"$P\" $D --quiet --count-only --token-file new; \"$P\" $D --quiet --count-only --token-file token 2>&1\n"
+        "echo broken >tokens; kill -HUP $child; reads 'the tokens stay as they are'\n"
+        "\"$P\" $D --quiet --count-only --token-file new");
+    const std::string refused = "octopair: unix:socket: the server does not accept this token\n";
+    EXPECT_EQ(outcome.out, refused + "1\n" + refused + "1\n");
+    EXPECT_NE(content("log").find("the tokens stay as they are: tokens: line 1: a line must be NAME TOKEN"),
+              std::string::npos)
+        << content("log");
+}
+
 TEST_F(ServerChoice, TokenFilesOthersMayReadAreRefused) {
     const Outcome outcome = with_server("chmod 644 token; \"$P\" $D --quiet --token-file token");
     EXPECT_EQ(outcome.status, 2);

@@ -4,6 +4,8 @@
 #include <mpi.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -33,6 +35,7 @@ class FirstRank {
 public:
     FirstRank(const ServeRequest& request, unsigned ranks)
         : log_(make_log(request)), options_(server_options_of(request)), ranks_(ranks) {
+        fit_descriptors(options_.limits, *log_);
         LeadingOptions leading = leading_options_of(request);
         leading.on_silent_rank = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
@@ -85,6 +88,7 @@ private:
 }  // namespace
 
 int serve_on_ranks(const ServeRequest& request) {
+    std::signal(SIGHUP, SIG_IGN);  // the end of a terminal does not end the server
     const Interrupt interrupt;
     Cluster cluster;
     cluster.joint(check_leading_threads);

@@ -24,11 +24,14 @@ int run_serve(const ServeRequest& request) {
 #ifdef OCTOPAIR_WITH_MPI
     if (request.engine.has_ranks()) return serve_on_ranks(request);
 #endif
+    block_hang_up();
     const Interrupt interrupt;
     const auto log = make_log(request);
-    const service::ServerOptions options = server_options_of(request);
+    service::ServerOptions options = server_options_of(request);
+    fit_descriptors(options.limits, *log);
     service::Server server(options, log);
     log_start(*log, server, options);
+    const Reloader reloader(server, *log);
     wait_for_stop(interrupt.token());
     drain(*log, server);
     return 0;

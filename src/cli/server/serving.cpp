@@ -1,9 +1,13 @@
 #include "cli/server/serving.hpp"
 
+#include <pthread.h>
 #include <spdlog/logger.h>
+#include <sys/resource.h>
 
 #include <condition_variable>
+#include <csignal>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <string>
 
@@ -51,6 +55,60 @@ void log_start(spdlog::logger& log, const service::Server& server, const service
                                           {"width", std::uint64_t(options.engine_widths.large)}};
     fields.insert(fields.end(), more.begin(), more.end());
     service::log_event(log, service::LogLevel::info, "started", fields);
+}
+
+void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log) {
+    // Besides connections: files of jobs, engines, the log. A connection has a second descriptor until its first call.
+    constexpr rlim_t reserved = 96, smallest = 256, for_connection = 2;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+    files.rlim_cur = files.rlim_max;
+    if (::setrlimit(RLIMIT_NOFILE, &files) != 0) (void)::getrlimit(RLIMIT_NOFILE, &files);
+    if (files.rlim_cur == RLIM_INFINITY || files.rlim_cur < smallest) return;
+    const std::uint64_t fits = (files.rlim_cur - reserved) / for_connection;
+    if (limits.connections != 0 && limits.connections <= fits) return;
+    limits.connections = fits;
+    log_text(log, service::LogLevel::warning,
+             "at most " + std::to_string(fits) + " connections: the system allows this process " +
+                 std::to_string(files.rlim_cur) + " open files");
+}
+
+namespace {
+
+sigset_t hang_up() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGHUP);
+    return set;
+}
+
+void reload(service::Server& server, spdlog::logger& log) {
+    try {
+        server.reload();
+        log_text(log, service::LogLevel::info, "read the tokens again");
+    } catch (const std::exception& error) {
+        log_text(log, service::LogLevel::error, "the tokens stay as they are: " + std::string(error.what()));
+    }
+}
+
+}  // namespace
+
+void block_hang_up() {
+    const sigset_t set = hang_up();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    std::signal(SIGHUP, SIG_DFL);  // sigwait() may not return for an ignored signal
+}
+
+Reloader::Reloader(service::Server& server, spdlog::logger& log)
+    : thread_([this, &server, &log] {
+          const sigset_t set = hang_up();
+          for (int signal = 0; sigwait(&set, &signal) == 0 && !ends_;) reload(server, log);
+      }) {}
+
+Reloader::~Reloader() {
+    ends_ = true;
+    pthread_kill(thread_.native_handle(), SIGHUP);
+    thread_.join();
 }
 
 void wait_for_stop(const std::stop_token& stop) {

@@ -3,8 +3,10 @@
 
 #include <spdlog/fwd.h>
 
+#include <atomic>
 #include <memory>
 #include <stop_token>
+#include <thread>
 #include <vector>
 
 #include "cli/server/serve_options.hpp"
@@ -26,6 +28,26 @@ void log_start(spdlog::logger& log, const service::Server& server, const service
 /// Returns the exit status of this rank. Ends the program if a rank no longer responds.
 int serve_on_ranks(const ServeRequest& request);
 #endif
+/// Raises the limit on open files of this process as far as the system allows. Lowers ServerLimits::connections to what fits, and
+/// logs it.
+void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log);
+
+/// Blocks SIGHUP in this thread and those that it starts, for a Reloader. Call it before the first thread starts.
+void block_hang_up();
+
+/// Calls Server::reload on each SIGHUP, and logs the result. Borrows the server and the log.
+class Reloader {
+public:
+    Reloader(service::Server& server, spdlog::logger& log);
+    Reloader(const Reloader&) = delete;
+    Reloader& operator=(const Reloader&) = delete;
+    ~Reloader();
+
+private:
+    std::atomic<bool> ends_ = false;
+    std::thread thread_;
+};
+
 /// Waits for a stop request.
 void wait_for_stop(const std::stop_token& stop);
 /// Drains the server (Server::drain), and logs the beginning and the end.

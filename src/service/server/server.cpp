@@ -100,6 +100,8 @@ public:
     const Address& address() const { return listener_.address(); }
     ServerLoad load() const { return {context_.job_quota.count(), context_.memory.taken(), listener_.connections()}; }
 
+    void reload() { context_.access.reload(); }
+
     void drain(std::optional<std::chrono::milliseconds> grace) {
         constexpr std::chrono::milliseconds apart(20);
         context_.draining = true;
@@ -151,6 +153,8 @@ Server::~Server() = default;
 const Address& Server::address() const { return state_->address(); }
 
 ServerLoad Server::load() const { return state_->load(); }
+
+void Server::reload() { state_->reload(); }
 
 void Server::drain(std::optional<std::chrono::milliseconds> grace) { state_->drain(grace); }
 

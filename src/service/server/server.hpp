@@ -33,6 +33,8 @@ public:
     const Address& address() const;
     /// Thread safety: safe.
     ServerLoad load() const;
+    /// Reads the token file again (Access::reload). Thread safety: safe. Throws: as the constructor, for that file.
+    void reload();
     /// Refuses new calls, waits for running jobs for at most `grace` (default: ServerOptions::grace), then cancels the rest.
     void drain(std::optional<std::chrono::milliseconds> grace = {});
 

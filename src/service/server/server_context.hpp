@@ -34,7 +34,7 @@ public:
 
     const ServerOptions options;
     const std::shared_ptr<spdlog::logger> log;
-    const Access access;
+    Access access;
     ServerLog server_log;
     Budget memory;
     ArrayPool array_pool;

@@ -20,6 +20,18 @@ TEST(Folder, IsItsOwnersAndOneServers) {
     EXPECT_NE(words.find("another server"), std::string::npos) << words;
 }
 
+TEST(Folder, OtherKindsOfFilesDoNotStopTheServer) {
+    DetachedServer server;
+    server.stop();
+    ASSERT_EQ(::mkfifo((server.state() + "/0000000000000007.job").c_str(), 0600), 0);
+    ASSERT_EQ(::mkdir((server.state() + "/0000000000000008.job").c_str(), 0700), 0);
+    server.start();
+    const auto boxes = make_boxes("uniform", 1000, 1);
+    const Work work(Objects{std::span(boxes), {}});
+    const auto client = server.client();
+    EXPECT_TRUE(same_bytes(pairs_there(*client, submit(*client, work)), pairs_here(work)));
+}
+
 TEST(Folder, IsNotOneThatOthersMayUse) {
     const test::TemporaryDirectory folder;
     const std::string open = folder.file("open");

@@ -56,9 +56,23 @@ std::string name_of(const grpc::AuthContext& peer) {
 
 }  // namespace
 
-Access::Access(const std::string& token_file) {
-    if (token_file.empty()) return;
+Access::Access(std::string token_file) : token_file_(std::move(token_file)) { reload(); }
+
+void Access::reload() {
+    if (token_file_.empty()) return;
+    auto tokens = std::make_shared<const Tokens>(read(token_file_));
+    const std::lock_guard lock(mutex_);
+    tokens_ = std::move(tokens);
+}
+
+std::shared_ptr<const Access::Tokens> Access::tokens() const {
+    const std::lock_guard lock(mutex_);
+    return tokens_;
+}
+
+Access::Tokens Access::read(const std::string& token_file) {
     constexpr std::size_t shortest = 16;
+    Tokens tokens;
     std::istringstream in(read_private_file(token_file));
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -72,21 +86,12 @@ Access::Access(const std::string& token_file) {
         if (token.size() < shortest) refuse(token_file, number, "a token must have at least 16 bytes");
         const Digest digest = digest_of(token);
         const auto same = [&](const Token& known) { return known.name == name || known.digest == digest; };
-        if (std::any_of(tokens_.begin(), tokens_.end(), same))
+        if (std::any_of(tokens.begin(), tokens.end(), same))
             refuse(token_file, number, "an earlier line has the same name or token");
-        tokens_.push_back({name, digest});
+        tokens.push_back({name, digest});
     }
-    if (tokens_.empty()) throw Error(ErrorCode::bad_input, token_file + ": the file contains no token");
-}
-
-/// Compares with all tokens, each in constant time, so that the time reveals nothing about a token.
-const Access::Token* Access::find(std::string_view token) const {
-    const Digest digest = digest_of(token);
-    const Token* found = nullptr;
-    for (const Token& known : tokens_) {
-        if (CRYPTO_memcmp(known.digest.data(), digest.data(), digest.size()) == 0) found = &known;
-    }
-    return found;
+    if (tokens.empty()) throw Error(ErrorCode::bad_input, token_file + ": the file contains no token");
+    return tokens;
 }
 
 grpc::Status Access::identify(const grpc::ServerContextBase& context, std::string& owner) const {
@@ -95,8 +100,15 @@ grpc::Status Access::identify(const grpc::ServerContextBase& context, std::strin
         const auto given = metadata.find("authorization");
         if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server requires a token"};
         const std::string_view value(given->second.data(), given->second.size());
-        const Token* const token = is_bearer(value) ? find(value.substr(bearer.size())) : nullptr;
-        if (token == nullptr) return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
+        const std::shared_ptr<const Tokens> known = tokens();
+        const Digest digest = digest_of(value.substr(std::min(bearer.size(), value.size())));
+        const Token* token = nullptr;
+        // All tokens are compared, each in constant time, so that the time reveals nothing about a token.
+        for (const Token& one : *known) {
+            if (CRYPTO_memcmp(one.digest.data(), digest.data(), digest.size()) == 0) token = &one;
+        }
+        if (token == nullptr || !is_bearer(value))
+            return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
         owner = "token:" + token->name;
         return grpc::Status::OK;
     }

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,9 +27,12 @@ public:
     /// `token_file`: path of a file with lines "NAME TOKEN", in which lines that begin with # are comments; empty: no tokens.
     /// Throws: as read_private_file; Error{bad_input} for an invalid line, a token of less than 16 bytes, a duplicate name or
     /// token, or a file without tokens.
-    explicit Access(const std::string& token_file);
+    explicit Access(std::string token_file);
 
-    bool has_tokens() const { return !tokens_.empty(); }
+    /// Reads the token file again. Calls that are admitted later need one of its tokens. Throws: as the constructor; the tokens then stay.
+    /// Thread safety: safe.
+    void reload();
+    bool has_tokens() const { return !token_file_.empty(); }
     /// Sets `owner` to the caller's name, or returns why the caller is refused. Takes the same time for every wrong token.
     /// Thread safety: safe.
     grpc::Status identify(const grpc::ServerContextBase& context, std::string& owner) const;
@@ -39,9 +44,14 @@ private:
         Digest digest;
     };
 
-    const Token* find(std::string_view token) const;
+    using Tokens = std::vector<Token>;
 
-    std::vector<Token> tokens_;
+    static Tokens read(const std::string& token_file);
+    std::shared_ptr<const Tokens> tokens() const;
+
+    const std::string token_file_;
+    mutable std::mutex mutex_;
+    std::shared_ptr<const Tokens> tokens_;
 };
 
 }  // namespace octopair::service

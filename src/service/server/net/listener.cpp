@@ -73,7 +73,9 @@ Listener::Listener(const Address& address, const std::string& unprotected) : add
 
 Listener::~Listener() {
     stop();
-    if (address_.is_unix()) ::unlink(address_.path.c_str());
+    struct stat found {};
+    const bool is_own = address_.is_unix() && ::lstat(address_.path.c_str(), &found) == 0 && found.st_ino == bound_;
+    if (is_own) ::unlink(address_.path.c_str());
 }
 
 /// Takes the lock, then replaces a socket at the path. While the lock was free, the server of that socket was dead.
@@ -100,6 +102,8 @@ void Listener::bind_unix() {
         ::chmod(address_.path.c_str(), 0600) != 0) {
         fail_io(address_.text(), "cannot listen", errno);
     }
+    struct stat found {};
+    if (::lstat(address_.path.c_str(), &found) == 0) bound_ = found.st_ino;
 }
 
 void Listener::bind_tcp(const std::string& unprotected) {

@@ -33,7 +33,7 @@ public:
     Listener(const Address& address, const std::string& unprotected);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
-    /// Stops, and removes the Unix socket.
+    /// Stops, and removes the Unix socket, unless another one has taken its place.
     ~Listener();
 
     /// Returns the address, with the port that the system chose if port 0 was given.
@@ -93,6 +93,7 @@ private:
     Address address_;
     Terms terms_;
     Descriptor lock_, socket_, wake_;
+    ino_t bound_ = 0;                 // inode of the Unix socket that this listener made
     std::vector<Descriptor> spares_;  // reserved: freeing one allows to accept and refuse a connection
     std::vector<Accepted> accepted_;
     std::deque<Refused> refused_connections_;

@@ -17,8 +17,12 @@ namespace octopair::service {
 
 File::File(std::string path, Mode mode) : path_(std::move(path)) {
     const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_EXCL;
-    descriptor_ = Descriptor(::open(path_.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0600));
+    // With O_NONBLOCK, opening a pipe does not wait for its other end.
+    descriptor_ = Descriptor(::open(path_.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600));
     if (!descriptor_.open()) fail_io(path_, mode == Mode::read ? "cannot open" : "cannot create", errno);
+    struct stat status {};
+    if (::fstat(descriptor_.number(), &status) != 0 || !S_ISREG(status.st_mode))
+        throw Error(ErrorCode::io_failed, path_ + ": damaged: it is not a regular file");
 }
 
 std::uint64_t File::size() const {
