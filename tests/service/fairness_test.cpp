@@ -54,41 +54,6 @@ TEST(FairOrder, IdleClientsCollectNoClaim) {
     EXPECT_LE(in_a_row, 2);
 }
 
-/// 20 jobs of one client wait when the only job of another one is sent. It does not wait for them.
-TEST(ServedFairness, OneJobPassesTheManyOfAnotherClient) {
-    const TemporaryDirectory folder;
-    write_secret(folder.file("tokens"), "greedy 0123456789abcdef\npolite fedcba9876543210\n");
-    Gate gate;
-    const Served served([&](service::ServerOptions& options) {
-        options.token_file = folder.file("tokens");
-        options.engine = gated_engines(gate);
-        options.engine_widths = {1, 1, 0};
-    });
-    const auto client = [&](const std::string& token) {
-        ClientOptions options;
-        options.token = token;
-        return connect(served.address(), options);
-    };
-    const std::vector<Box3f> boxes = make_boxes("dense", 60'000, 1);
-    std::vector<std::unique_ptr<Engine>> engines;  // an engine sends one job at a time
-    std::vector<Job> many;
-    for (std::size_t i = 0; i < 20; ++i) {
-        engines.push_back(client("0123456789abcdef"));
-        many.push_back(engines.back()->submit(boxes));
-    }
-    const auto polite = client("fedcba9876543210");
-    ASSERT_TRUE(gate.wait_for(1));
-    ASSERT_TRUE(comes_true([&] { return served.load().jobs == 20; }, std::chrono::minutes(1)));
-    Job one = polite->submit(boxes);
-    ASSERT_TRUE(comes_true([&] { return served.load().jobs == 21; }, std::chrono::minutes(1)));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the uploads end
-    gate.open();
-    one.wait();
-    const auto done = std::ranges::count_if(many, [](const Job& job) { return job.state() == JobState::done; });
-    EXPECT_LE(done, 10) << "first come, first served would be 20";
-    for (Job& job : many) job.wait();
-}
-
 TEST(Budget, AClientHasALimitOfItsOwn) {
     service::Budget budget("bytes", "bytes of it", 100, 60);
     auto greedy = budget.take(50, "greedy");
@@ -108,42 +73,75 @@ TEST(Budget, AClientHasALimitOfItsOwn) {
     expect_limit("bytes", 100, [&] { budget.check(101); });
 }
 
-/// Unread results of one client do not take the memory that a job of another client needs.
-TEST(ServedFairness, OneClientCannotTakeAllMemory) {
-    const TemporaryDirectory folder;
-    write_secret(folder.file("tokens"), "greedy 0123456789abcdef\npolite fedcba9876543210\n");
-    Gate gate;
-    const Served served([&](service::ServerOptions& options) {
-        options.token_file = folder.file("tokens");
-        options.engine = gated_engines(gate);
-        options.engine_widths = {1, 1, 0};
-        options.limits.memory_bytes = 100'000'000;
-    });
-    const auto client = [&](const std::string& token) {
+/// A server with two clients, whose engine waits at a gate.
+class ServedFairness : public ::testing::Test {
+protected:
+    ServedFairness() { write_secret(folder_.file("tokens"), "greedy 0123456789abcdef\npolite fedcba9876543210\n"); }
+
+    Served::Change gated(std::uint64_t memory_bytes = std::uint64_t(8) << 30) {
+        return [this, memory_bytes](service::ServerOptions& options) {
+            options.token_file = folder_.file("tokens");
+            options.engine = gated_engines(gate_);
+            options.engine_widths = {1, 1, 0};
+            options.limits.memory_bytes = memory_bytes;
+        };
+    }
+    static std::unique_ptr<Engine> client(const Served& served, const std::string& token) {
         ClientOptions options;
         options.token = token;
         return connect(served.address(), options);
-    };
-    const std::vector<Box3f> boxes = make_boxes("uniform", 100'000, 1);  // 10.4 MB a job
-    std::vector<std::unique_ptr<Engine>> engines;
-    std::vector<Job> many;
-    for (std::size_t i = 0; i < 8; ++i) {
-        engines.push_back(client("0123456789abcdef"));
-        many.push_back(engines.back()->submit(boxes));
     }
-    const auto failed = [&] {
-        return std::ranges::count_if(many, [](const Job& job) { return job.state() == JobState::failed; });
-    };
-    ASSERT_TRUE(comes_true([&] { return failed() == 4; }, std::chrono::minutes(1))) << "half has room for 4 jobs";
+    static std::unique_ptr<Engine> polite(const Served& served) { return client(served, "fedcba9876543210"); }
+    /// Submits jobs of the greedy client. An engine sends one job at a time, so each has its own.
+    void submit_greedy(const Served& served, const std::vector<Box3f>& boxes, std::size_t jobs) {
+        for (std::size_t i = 0; i < jobs; ++i) {
+            engines_.push_back(client(served, "0123456789abcdef"));
+            many_.push_back(engines_.back()->submit(boxes));
+        }
+    }
+    std::ptrdiff_t count(JobState state) const {
+        return std::ranges::count_if(many_, [state](const Job& job) { return job.state() == state; });
+    }
+
+    TemporaryDirectory folder_;
+    Gate gate_;
+    std::vector<std::unique_ptr<Engine>> engines_;
+    std::vector<Job> many_;
+};
+
+/// 20 jobs of one client wait when the only job of another one is sent. It does not wait for them.
+TEST_F(ServedFairness, OneJobPassesTheManyOfAnotherClient) {
+    const Served served(gated());
+    const std::vector<Box3f> boxes = make_boxes("dense", 60'000, 1);
+    submit_greedy(served, boxes, 20);
+    const auto engine = polite(served);
+    ASSERT_TRUE(gate_.wait_for(1));
+    ASSERT_TRUE(comes_true([&] { return served.load().jobs == 20; }, std::chrono::minutes(1)));
+    Job one = engine->submit(boxes);
+    ASSERT_TRUE(comes_true([&] { return served.load().jobs == 21; }, std::chrono::minutes(1)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the uploads end
+    gate_.open();
+    one.wait();
+    EXPECT_LE(count(JobState::done), 10) << "first come, first served would be 20";
+    for (Job& job : many_) job.wait();
+}
+
+/// Jobs of one client do not take the memory that a job of another client needs.
+TEST_F(ServedFairness, OneClientCannotTakeAllMemory) {
+    const Served served(gated(100'000'000));
+    const std::vector<Box3f> boxes = make_boxes("uniform", 100'000, 1);  // 10.4 MB a job
+    submit_greedy(served, boxes, 8);
+    ASSERT_TRUE(comes_true([&] { return count(JobState::failed) == 4; }, std::chrono::minutes(1)))
+        << "half has room for 4 jobs";
     EXPECT_GT(served.load().memory_bytes, 41'000'000u);
-    const auto polite = client("fedcba9876543210");
-    Job one = polite->submit(boxes);
+    const auto engine = polite(served);
+    Job one = engine->submit(boxes);
     EXPECT_LE(served.load().memory_bytes, 61'000'000u);
-    gate.open();
+    gate_.open();
     one.wait();
     EXPECT_NO_THROW((void)one.summary());
-    for (Job& job : many) job.wait();
-    EXPECT_EQ(failed(), 4);
+    for (Job& job : many_) job.wait();
+    EXPECT_EQ(count(JobState::failed), 4);
 }
 
 }  // namespace

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace octopair::cli {
 
@@ -13,20 +11,9 @@ namespace {
 
 /// Returns the largest extent of a set along an axis. 0 for an empty set.
 double size_of(const InputSet& set) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-    std::visit(
-        [&](const auto& boxes) {
-            for (const auto& box : boxes.span()) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    low[axis] = std::min(low[axis], double(box.min[axis]));
-                    high[axis] = std::max(high[axis], double(box.max[axis]));
-                }
-            }
-        },
-        set.scene.boxes);
+    const Box3d bounds = set.bounds();
     double size = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) size = std::max(size, high[axis] - low[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) size = std::max(size, bounds.max[axis] - bounds.min[axis]);
     return size;
 }
 

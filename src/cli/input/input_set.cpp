@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <system_error>
 
@@ -25,6 +26,22 @@ Objects InputSet::frame_slice(std::uint64_t f, const SliceNumber& number) const 
     std::visit([&](auto& boxes) { boxes = boxes.subspan(first, count); }, objects.boxes);
     if (!objects.padding.empty()) objects.padding = objects.padding.subspan(first, count);
     return objects;
+}
+
+Box3d InputSet::bounds() const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box3d bounds{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    std::visit(
+        [&](const auto& boxes) {
+            for (const auto& box : boxes.span()) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    bounds.min[axis] = std::min(bounds.min[axis], double(box.min[axis]));
+                    bounds.max[axis] = std::max(bounds.max[axis], double(box.max[axis]));
+                }
+            }
+        },
+        scene.boxes);
+    return bounds;
 }
 
 std::optional<std::string> InputSet::find_fault() const {

@@ -48,6 +48,8 @@ struct InputSet {
     Objects frame(std::uint64_t f) const;
     /// Returns the objects of a slice of frame `f`. Requires: the set is not a slice itself.
     Objects frame_slice(std::uint64_t f, const SliceNumber& number) const;
+    /// Returns the smallest box that contains all boxes. For an empty set, its minima are infinite, and its maxima -infinite.
+    Box3d bounds() const;
     /// Returns a message about the first invalid box, with the file and the object; or nothing if all boxes are valid.
     /// Throws: Error{bad_input} if the file of mapped boxes was shortened.
     std::optional<std::string> find_fault() const;

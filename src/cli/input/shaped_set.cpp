@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -92,23 +91,12 @@ Buffer<AnyBox> copy_of(const std::vector<AnyBox>& boxes) {
 
 /// Returns a shape with the bounds of all boxes of a set. Returns no shape if the set is empty or has invalid boxes.
 io::LoadedShapes bounds_of(const InputSet& set) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-    std::visit(
-        [&](const auto& boxes) {
-            for (const auto& box : boxes.span()) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    low[axis] = std::min(low[axis], double(box.min[axis]));
-                    high[axis] = std::max(high[axis], double(box.max[axis]));
-                }
-            }
-        },
-        set.scene.boxes);
+    const Box3d box = set.bounds();
     io::LoadedShapes bounds;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!(std::isfinite(low[axis]) && std::isfinite(high[axis]))) return bounds;
+        if (!(std::isfinite(box.min[axis]) && std::isfinite(box.max[axis]))) return bounds;
     }
-    bounds.shapes = {shape::ConvexHull{{low, high}}};
+    bounds.shapes = {shape::ConvexHull{{{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}}}};
     bounds.geometry = {0};
     bounds.poses.resize(1);
     return bounds;
