@@ -1,8 +1,8 @@
 // Loop at 60 Hz with pairs from a server. The loop never waits for the server, and takes each result in the first frame
 // after the result has arrived.
 //
-//     octopair serve --listen unix:/tmp/octopair &
-//     remote unix:/tmp/octopair [OBJECTS [FRAMES]]
+//     octopair serve --listen unix:octopair.socket &
+//     remote unix:octopair.socket [OBJECTS [FRAMES]]
 #include <octopair/client.hpp>
 #include <octopair/octopair.hpp>
 
@@ -36,7 +36,7 @@ int main(int count, char** words) {
     const std::uint64_t objects = count > 2 ? std::strtoull(words[2], nullptr, 10) : 1'000'000;
     const std::uint64_t frames = count > 3 ? std::strtoull(words[3], nullptr, 10) : 120;
     try {
-        const auto engine = octopair::connect(count > 1 ? words[1] : "unix:/tmp/octopair");
+        const auto engine = octopair::connect(count > 1 ? words[1] : "unix:octopair.socket");
         const std::vector<octopair::Box3f> boxes = row_of_cubes(objects);
         const auto scene = octopair::borrowed({std::span<const octopair::Box3f>(boxes)});
 

@@ -36,6 +36,17 @@ void DetailsBuilder::append(const ObjectDetails& others, std::size_t count) {
     table_.rows.resize(before + count);
 }
 
+std::string joined_materials(const std::set<std::string>& names) {
+    constexpr std::size_t most = 8;
+    std::string joined;
+    std::size_t count = 0;
+    for (const std::string& name : names) {
+        if (++count > most) return joined + ", ...";
+        joined += (joined.empty() ? "" : ", ") + name;
+    }
+    return joined;
+}
+
 void append_details(ObjectDetails& first, const ObjectDetails& second, const DetailCounts& counts) {
     if (first.empty() && second.empty()) return;
     first.rows.resize(counts.first);

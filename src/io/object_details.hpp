@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -62,6 +63,9 @@ private:
     ObjectDetails& table_;
     std::unordered_map<std::string, std::uint32_t> numbers_;  // index of each word
 };
+
+/// Returns the names of materials, joined by ", ". After eight names, the rest becomes "...".
+std::string joined_materials(const std::set<std::string>& names);
 
 /// Counts of objects of two sets.
 struct DetailCounts {

@@ -159,7 +159,8 @@ TEST_F(Failure, NoOutputReplacesAnInput) {
     for (const std::string wrong :
          {"a.npy --output a.npy", "a.npy --output ./a.npy", "a.npy --output link.npy", "link.npy --output hard.npy",
           "a.npy --output d/up.npy", "a.npy --stats a.npy", "b.npy a.npy --output a.npy",
-          "b.npy --against a.npy --output a.npy", "b.npy --padding a.npy --output a.npy"}) {
+          "b.npy --against a.npy --output a.npy", "b.npy --padding a.npy --output a.npy",
+          "b.npy --engine unix:s --token-file a.npy --output a.npy"}) {
         const Outcome outcome = run("detect " + wrong);
         EXPECT_EQ(outcome.status, 2) << wrong;
         EXPECT_NE(outcome.err.find("which would be replaced"), std::string::npos) << outcome.err;

@@ -36,6 +36,17 @@ TEST_F(MeshScene, NamesReachTheResult) {
     EXPECT_EQ(content("p.jsonl"), "{\"a\":0,\"b\":1,\"a_name\":\"two.obj/left\",\"b_name\":\"two.obj/right\"}\n");
 }
 
+TEST_F(MeshScene, DifferentAxesAreAWarning) {
+    const fs::path models = data("assimp_models");
+    if (models.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";
+    const std::string house = "'" + (models / "IFC/AC14-FZK-Haus.ifc").string() + "'";
+    const std::string box = "'" + (models / "glTF2/BoxTextured-glTF-Binary/BoxTextured.glb").string() + "'";
+    const std::string warning = "warning     the formats of the inputs have different axes up";
+    for (const std::string& inputs : {house + " " + box, house + " --against " + box})
+        EXPECT_NE(run("detect " + inputs + " --output p.csv").err.find(warning), std::string::npos) << inputs;
+    EXPECT_EQ(run("detect " + house + " --output p.csv").err.find("warning"), std::string::npos);
+}
+
 TEST_F(MeshScene, NoFileCrashesTheProgram) {
     const fs::path models = data("assimp_models");
     if (models.empty()) GTEST_SKIP() << "no data; scripts/data unpacks it";

@@ -213,6 +213,33 @@ TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
     EXPECT_NE(content("r.html").find("\"unit\":\"mm\",\"up\":1"), std::string::npos);
 }
 
+/// A box that lacks a triangle has no inside: the box in it is left out, but counted.
+TEST_F(Stages, UndecidedPairsAreCounted) {
+    const auto box = [](const std::string& name, int low, int high, int first, bool whole) {
+        std::string text = "o " + name + "\n";
+        for (int i = 0; i < 8; ++i) {
+            text += "v";
+            for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string((i >> axis & 1) != 0 ? high : low);
+            text += "\n";
+        }
+        const int faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+        for (int i = 0; i < (whole ? 12 : 11); ++i) {
+            text += "f";
+            for (const int corner : faces[i]) text += " " + std::to_string(first + corner);
+            text += "\n";
+        }
+        return text;
+    };
+    write_file(file("open.obj"), box("outer", 0, 9, 1, false) + box("inner", 2, 3, 9, true));
+    write_file(file("closed.obj"), box("outer", 0, 9, 1, true) + box("inner", 2, 3, 9, true));
+    EXPECT_NE(run("detect open.obj").err.find("undecided   1 pair left out"), std::string::npos);
+    EXPECT_EQ(stats("open.obj")["undecided"], 1);
+    EXPECT_EQ(stats("open.obj")["pairs"], 0);
+    EXPECT_EQ(stats("closed.obj")["pairs"], 1);
+    EXPECT_FALSE(stats("closed.obj").contains("undecided"));
+}
+
 TEST_F(Stages, CoarseCoordinatesAreAWarning) {
     const auto save = [&](const std::string& name, const std::string& type, auto x) {
         const decltype(x) corners[] = {x, 0, 0, x, 1, 0, x, 0, 1};

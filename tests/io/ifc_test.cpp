@@ -111,6 +111,26 @@ TEST(Ifc, MaterialsAreThoseOfTheModel) {
     EXPECT_FALSE(io::read_ifc_text("DATA;#1=IFCWALL(").complete);
 }
 
+/// Many elements that share one long list of materials take linear time: of a long list, only a part is visited.
+TEST(Ifc, LongListsOfMaterialsTakeLittleTime) {
+    constexpr int many = 20'000;
+    std::string text, list = "#1=IFCMATERIALLIST((";
+    for (int i = 0; i < many; ++i) {
+        const std::string number = std::to_string(10 + i);
+        text += "#" + number + "=IFCMATERIAL('m" + number + "');";
+        list += (i > 0 ? ",#" : "#") + number;
+    }
+    for (int i = 0; i < many; ++i) {
+        const std::string id = std::to_string(i), padded = std::string(22 - id.size(), '0') + id;
+        text += "#" + std::to_string(100'000 + i) + "=IFCWALL('" + padded + "',$,$);";
+        text += "#" + std::to_string(200'000 + i) + "=IFCRELASSOCIATESMATERIAL('0',$,$,$,(#" +
+                std::to_string(100'000 + i) + "),#1);";
+    }
+    const io::IfcText read = io::read_ifc_text(text + list + "));END-ISO-10303-21;");
+    ASSERT_EQ(read.materials.size(), std::size_t(many));
+    EXPECT_TRUE(read.materials.begin()->second.ends_with(", ...")) << read.materials.begin()->second;
+}
+
 TEST(Ifc, CutFilesAreRefused) {
     const TemporaryDirectory directory;
     write_file(directory.file("cut.ifc"), std::string(model).substr(0, std::string(model).size() - 30));

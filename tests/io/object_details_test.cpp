@@ -39,5 +39,13 @@ TEST(ObjectDetails, AppendKeepsTheNumbersOfObjects) {
     EXPECT_EQ(none.words.size(), 4u);
 }
 
+TEST(ObjectDetails, LongListsOfMaterialsAreCut) {
+    EXPECT_EQ(io::joined_materials({}), "");
+    EXPECT_EQ(io::joined_materials({"b", "a"}), "a, b");
+    std::set<std::string> many;
+    for (char c = 'a'; c <= 'z'; ++c) many.insert(std::string(1, c));
+    EXPECT_EQ(io::joined_materials(many), "a, b, c, d, e, f, g, h, ...");
+}
+
 }  // namespace
 }  // namespace octopair::test

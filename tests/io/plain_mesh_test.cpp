@@ -271,5 +271,37 @@ TEST(PlainMesh, ScenesHaveTheBoxesOfUsedVertices) {
     EXPECT_EQ(std::get<Buffer<Box3f>>(triangles.boxes).data()[0].min[0], 450000.1F);
 }
 
+TEST(PlainMesh, ReadersTellTheirProgress) {
+    constexpr int points = 10'000;
+    std::string text = "OFF\n" + std::to_string(points) + " 0 0\n";
+    for (int i = 0; i < points; ++i) text += std::to_string(i) + " 0 0\n";
+    const TemporaryDirectory directory;
+    write_file(directory.file("p.off"), text);
+    std::vector<double> parts;
+    (void)io::read_scene(directory.file("p.off"),
+                         {io::MeshObjects::node, false, [&](double part) { parts.push_back(part); }});
+    ASSERT_GE(parts.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+    EXPECT_GT(parts.front(), 0);
+    EXPECT_LT(parts.front(), 0.5);
+    EXPECT_LE(parts.back(), 1);
+}
+
+TEST(PlainMesh, JointScenesHaveTheSpaceThatAllHave) {
+    const io::SceneSpace metres{io::UpAxis::y, "m"};
+    const auto joint = [&](const io::SceneSpace& other) {
+        std::vector<io::LoadedScene> scenes(2);
+        scenes[0].space = metres;
+        scenes[0].largest_rounded = 3;
+        scenes[1].space = other;
+        const io::LoadedScene joined = io::join_scenes(scenes, std::vector<std::string>{"a", "b"});
+        EXPECT_EQ(joined.largest_rounded, 3);
+        return joined.space;
+    };
+    EXPECT_EQ(joint(metres), metres);
+    EXPECT_EQ(joint({io::UpAxis::z, "m"}), (io::SceneSpace{io::UpAxis::unknown, "m"}));
+    EXPECT_EQ(joint({}), io::SceneSpace());
+}
+
 }  // namespace
 }  // namespace octopair::test

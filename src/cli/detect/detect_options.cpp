@@ -120,6 +120,18 @@ std::vector<FileOption> input_files(const DetectRequest& request) {
     return files;
 }
 
+/// Returns all files that the request reads.
+std::vector<FileOption> all_input_files(const DetectRequest& request) {
+    std::vector<FileOption> files = input_files(request);
+    const ServerChoice& server = request.engine.server;
+    for (const auto& [option, path] :
+         {std::pair("--token-file", server.token_file), std::pair("--tls-authority", server.options.authority),
+          std::pair("--tls-certificate", server.options.certificate), std::pair("--tls-key", server.options.key)}) {
+        files.push_back({option, path});
+    }
+    return files;
+}
+
 /// Ranks cannot share a stream. Other streams are read here, before signals are blocked.
 void check_streams(const DetectRequest& request) {
     for (const auto& [option, path] : input_files(request)) {
@@ -149,7 +161,7 @@ void check_detect_options(DetectRequest& request) {
     if (request.events) check_event_options(request);
     check_index_type(request);
     if (request.verify) check_verify_options(request);
-    check_outputs(input_files(request),
+    check_outputs(all_input_files(request),
                   {{"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}});
     check_pipeline_options(request);
 }

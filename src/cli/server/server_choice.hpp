@@ -17,7 +17,7 @@ struct ServerChoice {
     std::optional<double> patience;  ///< value of --patience in seconds, if given
 };
 
-/// Adds --token-file, --tls, --tls-authority, --tls-certificate, --tls-key and --patience.
+/// Adds --token-file, --token-in-clear, --server-user, --tls, --tls-authority, --tls-certificate, --tls-key and --patience.
 /// There is no option for the token itself, because other users can see the command line.
 void add_server_options(Command& command, ServerChoice& choice);
 

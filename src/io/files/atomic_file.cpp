@@ -49,7 +49,7 @@ void write_whole(const Descriptor& file, const std::string& path, std::span<cons
     }
 }
 
-/// Returns whether results go to a path at the end, as to a pipe, instead of replacing a file.
+/// Returns whether a path is standard output, a pipe, a device or a socket.
 bool is_output_stream(const std::string& path) {
     if (path == "-") return true;
     struct stat status {};

@@ -7,6 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "io/object_details.hpp"
+
 namespace octopair::io {
 
 namespace {
@@ -100,13 +102,12 @@ struct StepInstance {
     }
 };
 
-/// Reads a STEP text from its begin.
+/// Reads a STEP text from its beginning.
 class StepReader {
 public:
     explicit StepReader(std::string_view step) : rest_(step) {}
 
     bool at_end() const { return rest_.empty(); }
-    std::string_view rest() const { return rest_; }
 
     /// Skips white space and comments. Returns whether the next character is `c`, and skips that one, too.
     bool take(char c) {
@@ -189,6 +190,7 @@ std::vector<std::string_view> references_of(std::string_view attributes) {
     return references;
 }
 
+/// Returns the largest number in the attributes of a point, without its sign.
 double largest_of(std::string_view point) {
     double largest = 0;
     for (StepReader reader(point); reader.find("0123456789");) {
@@ -200,6 +202,7 @@ double largest_of(std::string_view point) {
     return largest;
 }
 
+/// Collects the facts of an IfcText.
 class IfcTextReader {
 public:
     IfcText read(std::string_view step) {
@@ -246,10 +249,9 @@ private:
     void add_materials() {
         for (const auto& references : associations_) {
             if (references.empty()) continue;
-            std::set<std::string> names;
-            std::set<std::string_view> seen;
-            collect(references.back(), names, seen);
-            const std::string joined = joined_names(names);
+            const auto [known, is_new] = joined_.try_emplace(references.back());
+            if (is_new) known->second = joined_materials(materials_below(references.back()));
+            const std::string& joined = known->second;
             for (const std::string_view element : references) {
                 const auto id = ids_.find(element);
                 if (id != ids_.end() && !joined.empty()) text_.materials.emplace(id->second, joined);
@@ -257,27 +259,30 @@ private:
         }
     }
 
-    /// Adds the names of all materials that an instance leads to. The stack is explicit, because the file controls the depth.
-    void collect(std::string_view number, std::set<std::string>& names, std::set<std::string_view>& seen) const {
+    /// Returns the names of the materials that an instance leads to. Visits a limited number of instances: a file could have many lists that
+    /// lead to one long list. The stack is explicit, because the file controls the depth.
+    std::set<std::string> materials_below(std::string_view number) const {
+        constexpr std::size_t most = 100;
+        std::set<std::string> names;
+        std::set<std::string_view> seen;
         std::vector<std::string_view> waiting = {number};
-        while (!waiting.empty()) {
+        while (!waiting.empty() && seen.size() < most) {
             const auto found = materials_.find(waiting.back());
             waiting.pop_back();
             if (found == materials_.end() || !seen.insert(found->first).second) continue;
             if (!found->second.name.empty()) names.insert(found->second.name);
-            waiting.insert(waiting.end(), found->second.references.begin(), found->second.references.end());
+            const auto& references = found->second.references;
+            waiting.insert(waiting.end(), references.begin(),
+                           references.begin() + std::ptrdiff_t(std::min(references.size(), most)));
         }
-    }
-
-    static std::string joined_names(const std::set<std::string>& names) {
-        std::string joined;
-        for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
-        return joined;
+        return names;
     }
 
     IfcText text_;
     std::unordered_map<std::string_view, std::string_view> ids_;  // GlobalIds, by the numbers of instances
     std::unordered_map<std::string_view, Material> materials_;    // by the numbers of instances
+    std::unordered_map<std::string_view, std::string>
+        joined_;  // names of materials, by the instances that lead to them
     std::vector<std::vector<std::string_view>> associations_;
 };
 

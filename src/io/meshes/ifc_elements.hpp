@@ -11,8 +11,9 @@ namespace octopair::io {
 
 /// An IFC element, as the name of its node describes it: TYPE_NAME_GLOBALID. Borrows from that name.
 struct IfcElement {
-    std::string_view type, name,
-        id;  ///< `name` is empty if the element has none; both are, if Assimp has cut the node's name
+    std::string_view type;
+    std::string_view name;  ///< empty if the element has none, or if Assimp has cut the node's name
+    std::string_view id;    ///< GlobalId; empty if Assimp has cut the node's name
 };
 
 /// Parses the name of a node of an IFC file. Returns nothing if the node is not an element.
@@ -21,7 +22,7 @@ std::optional<IfcElement> parse_ifc_element(std::string_view node_name);
 /// Maps the GlobalId of an element to a text in UTF-8.
 using IfcTexts = std::unordered_map<std::string, std::string>;
 
-/// What the text of an IFC file says besides its geometry.
+/// Facts that the text of an IFC file has and Assimp does not pass on.
 struct IfcText {
     IfcTexts names;                 ///< of elements that have one
     IfcTexts materials;             ///< names of the materials that are associated with an element, joined by ", "

@@ -1,6 +1,7 @@
 #include "io/meshes/mesh_file.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -32,7 +33,12 @@ void rethrow_bad_alloc(const Assimp::Importer& importer) {
 }
 
 /// Returns the float64 that is nearest to the shortest decimal number that rounds to `value`. For example 0.001f gives 0.001.
-double shortest_decimal(float value) { return std::stod(fmt::format("{}", value)); }
+double shortest_decimal(float value) {
+    const std::string text = fmt::format("{}", value);
+    double decimal = double(value);
+    (void)std::from_chars(text.data(), text.data() + text.size(), decimal);
+    return decimal;
+}
 
 BoundedPose pose_of(const aiNode& node) {
     const aiMatrix4x4& m = node.mTransformation;

@@ -24,8 +24,8 @@ struct MeshInstance {
     const aiNode* node;
     std::string name;  ///< node path from the root, joined by "/"
     BoundedPose pose;  ///< product of the transforms along the path
-    double translations =
-        0;  ///< sum of the largest coordinates of the translations along the path, in the unit of the world
+    /// Sum of the largest coordinates of the translations along the path, in the unit of the world.
+    double translations = 0;
 
     std::span<const unsigned> meshes() const { return {node->mMeshes, node->mNumMeshes}; }
 };

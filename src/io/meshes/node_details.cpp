@@ -1,8 +1,8 @@
 #include "io/meshes/node_details.hpp"
 
-#include <algorithm>
+#include <optional>
+#include <set>
 #include <string>
-#include <vector>
 
 #include <assimp/material.h>
 
@@ -22,19 +22,15 @@ bool is_invented(std::string_view material) {
     return material.empty() || material == AI_DEFAULT_MATERIAL_NAME || material.starts_with("<IFCDefault");
 }
 
-/// Returns the materials of an instance, each once, joined by ", ".
-std::string materials_of(const MeshFile& file, const MeshInstance& instance) {
-    std::vector<std::string> names;
-    std::string joined;
+std::set<std::string> materials_of(const MeshFile& file, const MeshInstance& instance) {
+    std::set<std::string> names;
     for (const unsigned number : instance.meshes()) {
         const unsigned material = file.mesh(number).mMaterialIndex;
         if (material >= file.scene().mNumMaterials) continue;
         const std::string name = file.scene().mMaterials[material]->GetName().C_Str();
-        if (is_invented(name) || std::find(names.begin(), names.end(), name) != names.end()) continue;
-        names.push_back(name);
-        joined += (joined.empty() ? "" : ", ") + name;
+        if (!is_invented(name)) names.insert(name);
     }
-    return joined;
+    return names;
 }
 
 /// An element of an IFC model, and its node.
@@ -97,7 +93,7 @@ ObjectDetails details_of(const MeshFile& file) {
             add_node_details(*instance.node, texts);
         }
         std::string& material = text_of(texts, Detail::material);
-        if (material.empty()) material = materials_of(file, instance);
+        if (material.empty()) material = joined_materials(materials_of(file, instance));
         builder.add(texts);
     }
     return details;

@@ -63,18 +63,6 @@ std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const st
     return names;
 }
 
-/// Returns the first materials of a mesh, joined by ", ".
-std::string joined_materials(const PlainMesh& mesh) {
-    constexpr std::size_t most = 8;
-    std::string joined;
-    std::size_t count = 0;
-    for (const std::string& material : mesh.materials) {
-        if (++count > most) return joined + ", ...";
-        joined += (joined.empty() ? "" : ", ") + material;
-    }
-    return joined;
-}
-
 /// Returns the details of all meshes. `names`: their names, after names_of().
 ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector<std::string>& names) {
     ObjectDetails details;
@@ -85,7 +73,7 @@ ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector
         DetailTexts texts;
         texts[std::size_t(Detail::label)] = is_part ? names[i].substr(slash + 1) : names[i];
         if (is_part) texts[std::size_t(Detail::parent)] = names[i].substr(0, slash);
-        texts[std::size_t(Detail::material)] = joined_materials(meshes[i]);
+        texts[std::size_t(Detail::material)] = joined_materials(meshes[i].materials);
         builder.add(texts);
     }
     return details;

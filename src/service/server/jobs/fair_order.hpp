@@ -1,7 +1,7 @@
-// FairOrder: whose job runs next, when clients have more jobs than the server can run.
+// FairOrder: decides which client's job runs next, when clients have more jobs than the server can run.
 //
 // - Each client gets the same share of the work, however many jobs it has waiting.
-// - The work of a job is an estimate: its objects. A client that was idle does not collect a claim on more than its share.
+// - The work of a job is an estimate: its objects. A client that was idle gets no more than its share afterwards.
 // - Source: Goyal, Vin, Cheng 1996, "Start-time fair queueing".
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace octopair::service {
 
-/// Not thread-safe: the caller locks.
+/// Thread safety: none; the caller locks.
 class FairOrder {
 public:
     /// Returns the time at which the next job of a client starts in the order: the smallest is next.

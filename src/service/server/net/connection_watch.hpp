@@ -1,7 +1,7 @@
 // ConnectionWatch: which connections of a TCP listener are cut before a client has shown who it is.
 //
 // A connection is known after its first call that the server admits. Until then it may be anybody's, so it is bounded:
-//   - in time: at most `greeting` from its begin;
+//   - in time: at most `greeting` from its start;
 //   - in bytes received: at most `max_bytes`. An endless header, for example, would cost the server much time (CVE-2023-33953). So the
 //     first call of a connection must be small; Describe is;
 //   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
@@ -18,7 +18,7 @@
 
 namespace octopair::service {
 
-/// Not thread-safe: the listener's thread uses it.
+/// Thread safety: none; the caller locks.
 class ConnectionWatch {
 public:
     using Clock = std::chrono::steady_clock;
@@ -30,19 +30,20 @@ public:
     };
     explicit ConnectionWatch(const Terms& terms) : terms_(terms) {}
 
-    /// A new connection. `name`: the peer as gRPC writes it, for example "ipv4:192.0.2.1:4711". `address`: its part that a client cannot
-    /// choose freely, for example "192.0.2.1".
+    /// The other end of a connection.
     struct Peer {
-        std::string name, address;
+        std::string name;  ///< as gRPC writes it, for example "ipv4:192.0.2.1:4711"
+        std::string
+            address;  ///< part that a client cannot choose freely: 192.0.2.1, or the first 64 bits of an IPv6 address
     };
-    /// Watches a connection until it is known, closed or cut. The descriptor is kept so long. Cuts others where too many are unknown.
+    /// Watches a connection until it is known, closed or cut. Keeps a copy of its descriptor until then. Cuts other connections if too many
+    /// are unknown.
     void add(const Descriptor& connection, const Peer& peer, Clock::time_point now);
     /// Stops watching the connection of a peer.
     void make_known(const std::string& name);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
     std::uint64_t check(Clock::time_point now);
 
-    bool watches() const { return !unknown_.empty(); }
     std::size_t unknown() const { return unknown_.size(); }
 
 private:
@@ -61,7 +62,7 @@ private:
     std::uint64_t cut_ = 0;
 };
 
-/// Returns the peer of a TCP connection, or nothing if it has none any more.
+/// Returns the peer of a TCP connection, or nothing if the connection has ended.
 std::optional<ConnectionWatch::Peer> peer_of(const Descriptor& connection);
 
 }  // namespace octopair::service
