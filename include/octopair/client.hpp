@@ -30,6 +30,8 @@ struct ClientOptions {
     /// True: the token is also sent to this machine's loopback addresses without encryption. Any user of this machine may listen there
     /// while the server does not.
     bool token_in_clear = false;
+    /// For a JobClient with the role operator: owner of the jobs that calls name. Empty: the only owner of a job with the id.
+    std::string owner = {};
     /// PEM file of a certificate authority. If set, the connection is encrypted and the server's certificate must be of this
     /// authority. If empty, the connection is encrypted only if `certificate` or `tls` is set.
     std::string authority = {};

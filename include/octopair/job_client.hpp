@@ -3,6 +3,9 @@
 //
 // Result    The same bytes as from every engine (engine.hpp). The server keeps a result until it is released, or until the
 //           server's retention time has passed.
+// Roles     A server can give a client another role than owner (docs/server.md). A reader sees the jobs of one owner, and reads
+//           their results. An operator sees and cancels the jobs of all owners, and can end the server. Other calls throw
+//           Error{usage}.
 // Jobs      A submitted job is on the server's disk: it completes even if the client ends or the server restarts. Only its
 //           owner sees it. All clients with the same token or certificate are one owner; so are all clients of a server that
 //           requires neither.
@@ -43,6 +46,8 @@ struct JobStatus {
     std::uint64_t objects = 0;        ///< number of objects
     Summary summary = {};             ///< valid if the job is done
     std::optional<Error> error = {};  ///< set if the job failed
+    std::string owner = {};           ///< name of the client that submitted the job; empty: this client
+    bool waits_for_room = false;      ///< the job is queued until the server's disk has room for its result
 
     bool ended() const { return state != JobState::queued && state != JobState::running; }
 };
@@ -76,8 +81,10 @@ public:
     JobStatus cancel(const std::string& id, std::stop_token stop = {});
     /// Deletes a job that has ended, and its result.
     void release(const std::string& id, std::stop_token stop = {});
-    /// Returns the status of all jobs of this owner, ascending by id. Includes jobs of direct calls.
+    /// Returns the status of all jobs that the client sees, ascending by owner and id. Includes jobs of direct calls.
     std::vector<JobStatus> list(std::stop_token stop = {});
+    /// Starts the shutdown of the server, as SIGTERM does. Requires the role operator.
+    void drain(std::stop_token stop = {});
 
     /// Receives the pairs while the server finds them, and returns the summary when the job is done. The result stays on the
     /// server. A count-only job delivers no pairs.

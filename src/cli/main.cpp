@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     add_status(program, action);
     add_result(program, action);
     add_cancel(program, action);
+    add_drain(program, action);
 #endif
     if (const auto status = line.parse(argc, argv)) return *status;
     return action();

@@ -22,7 +22,7 @@ _octopair() {
     COMPREPLY=()
 
     if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "cancel detect generate info replay result serve status submit --help --version" -- "$current")
+        mapfile -t COMPREPLY < <(compgen -W "cancel detect drain generate info replay result serve status submit --help --version" -- "$current")
         return
     fi
     case $previous in
@@ -42,10 +42,10 @@ _octopair() {
         --log) mapfile -t COMPREPLY < <(compgen -W "text json" -- "$current"); return ;;
         --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
         --margin | --limit | --threads | --workers | --seed | --frames | --patience | --listen | --metrics) return ;;
-        --grace | --stall | --rank-timeout | --max-* | --server | --id | --wait) return ;;
+        --grace | --stall | --rank-timeout | --max-* | --server | --id | --owner | --wait) return ;;
         --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # --keep of result has no value
         --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
-        --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+        --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --roles | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
     esac
     case $subcommand in
         detect)
@@ -58,8 +58,8 @@ _octopair() {
             fi ;;
         serve)
             mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --rank-timeout --grace --stall --max-objects
-                --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-seconds --max-memory
-                --max-memory-per-client --max-state --max-state-per-client --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --metrics --log --log-level --quiet
+                --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-connections-per-client --max-calls-per-client --max-seconds --max-memory
+                --max-memory-per-client --max-state --max-state-per-client --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --roles --metrics --log --log-level --quiet
                 --help" -- "$current") ;;
         generate)
             if ((COMP_CWORD == 2)); then
@@ -80,10 +80,11 @@ _octopair() {
             else
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi ;;
-        status) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --wait --json --help $asked" -- "$current") ;;
+        status) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --wait --json --owner --help $asked" -- "$current") ;;
         result)
             mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --output --keep --release --quiet --help $asked" -- "$current") ;;
-        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --release --help $asked" -- "$current") ;;
+        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --owner --release --help $asked" -- "$current") ;;
+        drain) mapfile -t COMPREPLY < <(compgen -W "--help $asked" -- "$current") ;;
         info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
     esac
 }

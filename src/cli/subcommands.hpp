@@ -8,6 +8,7 @@
 namespace octopair::cli {
 
 void add_cancel(Command& program, Action& action);
+void add_drain(Command& program, Action& action);
 void add_detect(Command& program, Action& action);
 void add_generate(Command& program, Action& action);
 void add_info(Command& program, Action& action);

@@ -24,14 +24,14 @@ void require(bool holds) {
 
 struct Limits {
     Budget memory{"memory_bytes", "bytes of memory", std::uint64_t(64) << 20};
-    JobQuota job_quota{10, 10};
+    Budget job_slots{"jobs", "job slots", 10, 10};
 };
 
 std::shared_ptr<ServerJob> begin(Limits& limits, Engine& engine, v1::JobSpec spec) {
     check(spec);
     if (object_count(spec) > 500) throw LimitError("objects", 500, "a job of more than 500 objects");
     ServerJob::Parts parts;
-    parts.slot = limits.job_quota.take_slot("local");
+    parts.slot = limits.job_slots.take(1, "local");
     parts.memory = limits.memory.take(input_bytes(spec));
     parts.input = std::make_unique<UploadedInput>(spec, engine);
     parts.pairs = std::make_unique<PairsInMemory>(limits.memory, 0);
@@ -79,7 +79,7 @@ void feed(std::string_view input, Engine& engine) {
         require(job->ended());
         read_back(job);
     }
-    require(limits.memory.taken() == 0 && limits.job_quota.count() == 0);
+    require(limits.memory.taken() == 0 && limits.job_slots.taken() == 0);
 }
 
 }  // namespace

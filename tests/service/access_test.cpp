@@ -86,7 +86,7 @@ TEST_F(Access, TokenFilesThatHoldNoneAreRefused) {
     };
     EXPECT_EQ(refused(""), file + ": the file contains no token");
     EXPECT_EQ(refused("# none\n"), file + ": the file contains no token");
-    EXPECT_EQ(refused("anna\n"), file + ": line 1: a line must be NAME TOKEN");
+    EXPECT_EQ(refused("anna\n"), file + ": line 1: a line must be NAME TOKEN, or NAME TOKEN until=TIME");
     EXPECT_EQ(refused("\nanna short\n"), file + ": line 2: a token must have at least 16 bytes");
     EXPECT_EQ(refused("a 0123456789abcdef\nb 0123456789abcdef\n"),
               file + ": line 2: an earlier line has the same name or token");

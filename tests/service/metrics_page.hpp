@@ -18,17 +18,24 @@ inline std::shared_ptr<spdlog::logger> log_to(std::ostringstream& log) {
     return service::make_log(service::LogForm::text, std::make_shared<spdlog::sinks::ostream_sink_mt>(log));
 }
 
-/// Returns the metrics page of the server with this log, or an empty text if the page cannot be read.
-inline std::string metrics_page(const std::string& log) {
+/// Connects to the metrics of the server with this log. The descriptor is not open if that fails.
+inline Descriptor connect_to_metrics(const std::string& log) {
     const std::string before = "metrics at http://localhost:";
     const std::size_t found = log.find(before);
     if (found == std::string::npos) return {};
-    const Descriptor connection(::socket(AF_INET, SOCK_STREAM, 0));
+    Descriptor connection(::socket(AF_INET, SOCK_STREAM, 0));
     sockaddr_in there{};
     there.sin_family = AF_INET;
     there.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     there.sin_port = htons(std::uint16_t(std::stoi(log.substr(found + before.size()))));
     if (::connect(connection.number(), reinterpret_cast<const sockaddr*>(&there), sizeof(there)) != 0) return {};
+    return connection;
+}
+
+/// Returns the metrics page of the server with this log, or an empty text if the page cannot be read.
+inline std::string metrics_page(const std::string& log) {
+    const Descriptor connection = connect_to_metrics(log);
+    if (!connection.open()) return {};
     const std::string request = "GET /metrics HTTP/1.0\r\n\r\n";
     if (::send(connection.number(), request.data(), request.size(), 0) < 0) return {};
     std::string answer;

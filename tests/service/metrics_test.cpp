@@ -57,6 +57,39 @@ TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
     EXPECT_EQ(client->count_pairs({std::span(crowd), {}}), crowd.size() * (crowd.size() - 1) / 2);
 }
 
+TEST_F(Metrics, CountByClient) {
+    service::ServerOptions options = options_at(socket());
+    std::string tokens;
+    for (int i = 0; i < 60; ++i)
+        tokens += "client" + std::to_string(i) + " 0123456789abcde-" + std::to_string(i) + "\n";
+    write_secret(folder_.file("tokens"), tokens);
+    options.token_file = folder_.file("tokens");
+    options.limits.objects = 10;
+    serve(options);
+    for (int i = 0; i < 60; ++i)
+        EXPECT_EQ(ask(socket(), {.token = "0123456789abcde-" + std::to_string(i)}), right_answer);
+    EXPECT_TRUE(comes("octopair_client_jobs_total{client=\"token:client0\"} 1"));
+    EXPECT_TRUE(comes("octopair_client_pairs_total{client=\"token:client49\"} 1"));
+    EXPECT_TRUE(comes("octopair_client_input_bytes_total{client=\"token:client49\"} 72"));
+    EXPECT_TRUE(comes("octopair_client_jobs_total{client=\"other\"} 10")) << "labels are bounded";
+    EXPECT_TRUE(comes("octopair_queue_seconds_count 60"));
+    const std::vector<Box3f> many(11);
+    (void)error_of(ErrorCode::resource_limit, [&] {
+        (void)connect(socket(), {.token = "0123456789abcde-0"})->count_pairs({std::span(many), {}});
+    });
+    EXPECT_TRUE(comes("octopair_client_refusals_total{client=\"token:client0\"} 1"));
+}
+
+TEST_F(Metrics, AreNotBlockedByIdleConnections) {
+    serve(options_at(socket()));
+    std::vector<Descriptor> idle;
+    for (int i = 0; i < 8; ++i) idle.push_back(connect_to_metrics(log_.str()));
+    EXPECT_TRUE(idle.back().open());
+    const auto begun = std::chrono::steady_clock::now();
+    EXPECT_NE(page().find("octopair_memory_bytes"), std::string::npos);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << "an idle connection lasts 30 s";
+}
+
 TEST_F(Metrics, CountRefusals) {
     service::ServerOptions options = options_at(socket());
     options.limits.objects = 2;

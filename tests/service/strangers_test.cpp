@@ -58,6 +58,33 @@ TEST_F(Strangers, ConnectionsWithoutACallAreCut) {
     EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u) << "a client that was admitted stays";
 }
 
+TEST_F(Strangers, AClientHasItsShareOfTheConnections) {
+    const Served served([&](service::ServerOptions& options) {
+        with(40)(options);
+        write_secret(folder_.file("tokens"), "anna 0123456789abcdef\nbert fedcba9876543210\n");
+        options.limits.connections_per_client = 3;
+    });
+    std::vector<std::unique_ptr<Engine>> engines;
+    for (int i = 0; i < 3; ++i) engines.push_back(connect(served.address(), anna()));
+    expect_refused("connections_per_client", 3, [&] { (void)connect(served.address(), anna()); });
+    ClientOptions bert = anna();
+    bert.token = "fedcba9876543210";
+    EXPECT_EQ(connect(served.address(), bert)->count_pairs(objects_of(touching_boxes)), 1u);
+    engines.pop_back();
+    std::unique_ptr<Engine> another;
+    EXPECT_TRUE(comes_true(
+        [&] {
+            try {
+                another = connect(served.address(), anna());
+                return true;
+            } catch (const Error&) {
+                return false;
+            }
+        },
+        seconds(20)));
+    for (const auto& engine : engines) EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u);
+}
+
 /// A header that never ends: HEADERS without END_HEADERS, then CONTINUATION frames.
 TEST_F(Strangers, AnEndlessHeaderIsCut) {
     const Served served(with(40));

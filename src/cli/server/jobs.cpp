@@ -1,4 +1,4 @@
-// octopair status, result, cancel: show, collect and cancel the jobs of a server.
+// octopair status, result, cancel, drain: show, collect and cancel the jobs of a server, and end the server.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -54,7 +54,9 @@ std::string line_of(const JobStatus& status) {
     line += fmt::format(", {} objects", grouped(status.objects));
     if (status.state == JobState::done) line += fmt::format(", {} pairs", grouped(status.summary.pairs));
     if (status.error) line += fmt::format(": {}", status.error->what());
+    if (status.waits_for_room) line += ", waits for room on the server's disk";
     if (!status.detached) line += " (attached)";
+    if (!status.owner.empty()) line += fmt::format(", of {}", status.owner);
     return line + '\n';
 }
 
@@ -66,6 +68,8 @@ nlohmann::ordered_json json_of(const JobStatus& status) {
                                    {"count_only", status.count_only},
                                    {"progress", status.progress},
                                    {"queued_before", status.queued_before}};
+    if (!status.owner.empty()) json["owner"] = status.owner;
+    if (status.waits_for_room) json["waits_for_room"] = true;
     if (status.state == JobState::done) {
         json["pairs"] = status.summary.pairs;
         json["truncated"] = status.summary.truncated;
@@ -116,6 +120,12 @@ int run_cancel(const JobRequest& request) {
         client.release(request.id, interrupt.token());
     }
     print(text_of(request, status), interrupt.token());
+    return 0;
+}
+
+int run_drain(const ServerChoice& server) {
+    const Interrupt interrupt;
+    JobClient(server.address, client_options(server)).drain(interrupt.token());
     return 0;
 }
 
@@ -185,6 +195,13 @@ int run_result(const JobRequest& request) {
     return 0;
 }
 
+void add_owner_option(Command& command, JobRequest& request) {
+    command
+        .add_option("--owner", request.server.options.owner,
+                    "with the role operator: owner of the job, if several owners have a job with this id")
+        .type_name("CLIENT");
+}
+
 void add_result_options(Command& command, JobRequest& request) {
     command
         .add_option(
@@ -212,6 +229,7 @@ void add_status(Command& program, Action& action) {
         .type_name("SECONDS")
         .needs(id);
     command.add_flag("--json", request->json, "print JSON");
+    add_owner_option(command, *request);
     add_server_address(command, request->server);
     command.callback([request, id, &action] {
         check_server_named(request->server);
@@ -241,10 +259,21 @@ void add_cancel(Command& program, Action& action) {
     command.add_flag("--release", request->release,
                      "delete the job and its result from the server when the job has ended");
     command.add_flag("--json", request->json, "print JSON");
+    add_owner_option(command, *request);
     add_server_address(command, request->server);
     command.callback([request, &action] {
         check_server_named(request->server);
         action = [request] { return run_cancel(*request); };
+    });
+}
+
+void add_drain(Command& program, Action& action) {
+    Command command = program.add_subcommand("drain", "end a server when its running jobs have ended; for operators");
+    const auto server = std::make_shared<ServerChoice>();
+    add_server_address(command, *server);
+    command.callback([server, &action] {
+        check_server_named(*server);
+        action = [server] { return run_drain(*server); };
     });
 }
 

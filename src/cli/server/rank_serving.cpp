@@ -43,6 +43,7 @@ public:
         // Small jobs and scenes run on threads of this process.
         options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
         options_.engine_widths.instant = options_.engine_widths.small;
+        options_.on_drain = [this] { end_.request_stop(); };
     }
 
     /// Runs the server until it stops. Throws: Error if the server cannot start.

@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <memory>
+#include <stop_token>
 
 #include "cli/command/interrupt.hpp"
 #include "cli/server/serve_options.hpp"
@@ -26,13 +27,16 @@ int run_serve(const ServeRequest& request) {
 #endif
     block_hang_up();
     const Interrupt interrupt;
+    std::stop_source end;
+    const std::stop_callback asked(interrupt.token(), [&] { end.request_stop(); });
     const auto log = make_log(request);
     service::ServerOptions options = server_options_of(request);
+    options.on_drain = [&] { end.request_stop(); };
     fit_descriptors(options.limits, *log);
     service::Server server(options, log);
     log_start(*log, server, options);
     const Reloader reloader(server, *log);
-    wait_for_stop(interrupt.token());
+    wait_for_stop(end.get_token());
     drain(*log, server);
     return 0;
 }

@@ -18,7 +18,9 @@ struct Described {
     const char* description;
 };
 
-void add_number(Command& command, const Described& option, std::uint64_t& value) {
+/// `Number` is a number, or an optional one.
+template <typename Number>
+void add_number(Command& command, const Described& option, Number& value) {
     command
         .add_option(
             option.name, [option, &value](const std::string& text) { value = parse_count(option.name, text); },
@@ -65,6 +67,13 @@ void add_limits(Command& command, service::ServerLimits& limits) {
     add_number(command, {"--max-jobs-per-client", "N", "maximum jobs and scenes of one client at a time (default 200)"},
                limits.jobs_per_client);
     add_number(command, {"--max-connections", "N", "maximum connections at a time (default 1000)"}, limits.connections);
+    add_number(command,
+               {"--max-connections-per-client", "N",
+                "maximum connections of one client over TCP (default: half of --max-connections, with tokens or client "
+                "certificates)"},
+               limits.connections_per_client);
+    add_number(command, {"--max-calls-per-client", "N", "maximum calls of one client at a time (default 1000)"},
+               limits.calls_per_client);
     command
         .add_option(
             "--max-seconds",
@@ -110,6 +119,10 @@ void add_access(Command& command, service::ServerOptions& options) {
     command
         .add_option("--tokens", options.token_file,
                     "accept only clients with a token of this file; each line is NAME TOKEN")
+        .type_name("FILE");
+    command
+        .add_option("--roles", options.role_file,
+                    "give clients of this file other roles; each line is CLIENT owner, reader OWNER, operator or none")
         .type_name("FILE");
 }
 

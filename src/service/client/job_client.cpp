@@ -48,6 +48,8 @@ JobStatus status_of(const v1::JobReport& report) {
     status.progress = report.progress();
     status.queued_before = report.queued_before();
     status.objects = report.objects();
+    status.owner = report.owner();
+    status.waits_for_room = report.waits_for_room();
     if (report.has_summary()) status.summary = service::summary_of(report.summary());
     if (!report.has_failure()) return status;
     try {
@@ -58,18 +60,20 @@ JobStatus status_of(const v1::JobReport& report) {
     return status;
 }
 
-v1::JobName name_of(const std::string& id) {
-    v1::JobName name;
-    name.set_id(id);
-    return name;
-}
-
 }  // namespace
 
 class JobClient::State {
 public:
     State(std::string_view address, const ClientOptions& options)
-        : connection_(address, options), calls_(v1::Octopair::NewStub(connection_.channel())) {}
+        : owner_(options.owner), connection_(address, options), calls_(v1::Octopair::NewStub(connection_.channel())) {}
+
+    v1::JobName name_of(const std::string& id) const {
+        v1::JobName name;
+        name.set_id(id);
+        name.set_owner(owner_);
+        return name;
+    }
+    const std::string& owner() const { return owner_; }
 
     /// Makes a unary call, with retries. call(context, stub) makes one attempt and returns its status.
     template <typename Call>
@@ -131,6 +135,7 @@ public:
     }
 
 private:
+    const std::string owner_;
     service::Connection connection_;
     std::unique_ptr<v1::Octopair::Stub> calls_;
 };
@@ -147,7 +152,7 @@ std::string JobClient::submit(const Input& input, const Options& options, const 
 
 JobStatus JobClient::status(const std::string& id, std::stop_token stop) {
     v1::JobReport report;
-    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Status(&context, name_of(id), &report); });
+    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Status(&context, state_->name_of(id), &report); });
     return status_of(report);
 }
 
@@ -160,6 +165,7 @@ JobStatus JobClient::wait(const std::string& id, std::chrono::duration<double> m
         const double left = std::max(0.0, most.count() - std::chrono::duration<double>(Clock::now() - begun).count());
         v1::WaitRequest request;
         request.set_id(id);
+        request.set_owner(state_->owner());
         request.set_seconds(std::min(left, at_once));
         state_->ask(stop, [&](auto& context, auto& calls) { return calls.Wait(&context, request, &report); });
         JobStatus status = status_of(report);
@@ -169,7 +175,7 @@ JobStatus JobClient::wait(const std::string& id, std::chrono::duration<double> m
 
 JobStatus JobClient::cancel(const std::string& id, std::stop_token stop) {
     v1::JobReport report;
-    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Cancel(&context, name_of(id), &report); });
+    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Cancel(&context, state_->name_of(id), &report); });
     return status_of(report);
 }
 
@@ -177,7 +183,7 @@ void JobClient::release(const std::string& id, std::stop_token stop) {
     v1::JobReport report;
     int attempts = 0;
     state_->ask(stop, [&](auto& context, auto& calls) {
-        const grpc::Status status = calls.Release(&context, name_of(id), &report);
+        const grpc::Status status = calls.Release(&context, state_->name_of(id), &report);
         // An earlier attempt whose answer was lost may have released the job.
         const bool again = attempts++ > 0, gone = status.error_message().find("there is no job") != std::string::npos;
         return again && gone ? grpc::Status::OK : status;
@@ -191,9 +197,17 @@ std::vector<JobStatus> JobClient::list(std::stop_token stop) {
     do {
         state_->ask(stop, [&](auto& context, auto& calls) { return calls.List(&context, request, &list); });
         for (const v1::JobReport& report : list.jobs()) jobs.push_back(status_of(report));
-        if (list.jobs_size() > 0) request.set_after(list.jobs().rbegin()->id());
+        if (list.jobs_size() > 0) {
+            request.set_after(list.jobs().rbegin()->id());
+            request.set_after_owner(list.jobs().rbegin()->owner());
+        }
     } while (list.more() && list.jobs_size() > 0);
     return jobs;
+}
+
+void JobClient::drain(std::stop_token stop) {
+    v1::DrainReport report;
+    state_->ask(stop, [&](auto& context, auto& calls) { return calls.Drain(&context, v1::DrainRequest(), &report); });
 }
 
 Summary JobClient::result(const std::string& id, PairList& pairs, const ProgressSink& progress, std::stop_token stop) {

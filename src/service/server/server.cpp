@@ -17,6 +17,7 @@
 
 #include "octopair/error.hpp"
 #include "service/protocol/grpc_lifetime.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/calls/calls.hpp"
 #include "service/server/log/event.hpp"
@@ -78,16 +79,10 @@ public:
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "cannot start the gRPC server");
         if (options.metrics) show_metrics(*options.metrics);
-        context_.admitted = [this](const grpc::ServerContextBase& call) {
-            if (listener_.awaits_calls()) listener_.make_known(call.peer());
+        context_.on_call = [this](const grpc::ServerContextBase& call, const std::string& client) {
+            if (listener_.awaits_calls()) count_connection(call, client);
         };
-        listener_.start({options.limits.connections, !options.tls.certificate.empty(),
-                         [this](Descriptor connection) { hand_over(std::move(connection)); },
-                         [this] {
-                             context_.server_log.connections_refused(context_.options.limits.connections,
-                                                                     listener_.refused());
-                         },
-                         std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall)});
+        start_listening(options);
     }
 
     ~State() {
@@ -98,7 +93,7 @@ public:
     }
 
     const Address& address() const { return listener_.address(); }
-    ServerLoad load() const { return {context_.job_quota.count(), context_.memory.taken(), listener_.connections()}; }
+    ServerLoad load() const { return {context_.job_slots.taken(), context_.memory.taken(), listener_.connections()}; }
 
     void reload() { context_.access.reload(); }
 
@@ -115,6 +110,38 @@ public:
     }
 
 private:
+    void start_listening(const ServerOptions& options) {
+        Listener::Terms terms;
+        terms.max_connections = options.limits.connections;
+        terms.max_per_client =
+            share_of_client(options, options.limits.connections, options.limits.connections_per_client);
+        terms.encrypted = !options.tls.certificate.empty();
+        terms.accept = [this](Descriptor connection) { hand_over(std::move(connection)); };
+        terms.refused = [this] {
+            context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused());
+        };
+        terms.connected = [this](const std::string& peer) { context_.server_log.connected(peer, {}); };
+        terms.greeting = std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall);
+        listener_.start(std::move(terms));
+    }
+
+    /// Throws: LimitError if the client has too many connections.
+    void count_connection(const grpc::ServerContextBase& call, const std::string& client) {
+        const std::string peer = call.peer();
+        switch (listener_.make_known(peer, client)) {
+            case ConnectionWatch::Admission::known_before:
+                return;
+            case ConnectionWatch::Admission::known_now:
+                return context_.server_log.connected(peer, client);
+            case ConnectionWatch::Admission::too_many:
+                break;
+        }
+        const std::uint64_t most = share_of_client(context_.options, context_.options.limits.connections,
+                                                   context_.options.limits.connections_per_client);
+        throw LimitError("connections_per_client", most,
+                         "connections_per_client: a client may have " + std::to_string(most) + " connections");
+    }
+
     void show_metrics(const Address& address) {
         Address shown = address;
         shown.port = std::to_string(context_.server_log.metrics().show(address, [this] { return levels(); }));

@@ -25,12 +25,6 @@ std::uint64_t buffer_of(const v1::JobSpec& spec, std::uint64_t memory_bytes) {
     return memory_bytes == 0 ? most : std::min(most, memory_bytes / 8);
 }
 
-/// Returns how much of a limited amount one client may take: what the options say, or half, if the server can tell clients apart.
-std::uint64_t share_of(const ServerOptions& options, std::uint64_t all, std::optional<std::uint64_t> each) {
-    const bool tells_apart = !options.token_file.empty() || !options.tls.client_authority.empty();
-    return each.value_or(tells_apart ? all / 2 : 0);
-}
-
 void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
     if (allowed == 0 || asked <= allowed) return;
     throw LimitError(name, allowed,
@@ -42,17 +36,18 @@ void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
 ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog::logger> logger)
     : options(given),
       log(std::move(logger)),
-      access(given.token_file),
+      access(given.token_file, given.role_file),
       server_log(log),
       memory("memory_bytes", "bytes of memory", given.limits.memory_bytes,
-             share_of(given, given.limits.memory_bytes, given.limits.memory_bytes_per_client)),
-      job_quota(given.limits.jobs, given.limits.jobs_per_client),
+             share_of_client(given, given.limits.memory_bytes, given.limits.memory_bytes_per_client)),
+      job_slots("jobs", "job slots", given.limits.jobs, given.limits.jobs_per_client),
+      calls("calls", "calls", 0, given.limits.calls_per_client),
       state(given.state_folder.empty()
                 ? nullptr
                 : std::make_unique<StateFolder>(
                       given.state_folder,
-                      StateFolder::Room{given.limits.state_bytes,
-                                        share_of(given, given.limits.state_bytes, given.limits.state_bytes_per_client)},
+                      StateFolder::Room{given.limits.state_bytes, share_of_client(given, given.limits.state_bytes,
+                                                                                  given.limits.state_bytes_per_client)},
                       log)),
       attached("", "", 0),
       scheduler({given.engine, given.small_engine ? given.small_engine : given.engine}, given.engine_widths) {
@@ -66,15 +61,32 @@ ServerContext::~ServerContext() {
     if (detached) detached->abandon();
 }
 
-grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, std::string& owner) {
+grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, Right right, Admission& admission) {
     grpc::Status status = draining ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is going down")
-                                   : access.identify(context, owner);
+                                   : access.identify(context, admission.caller);
+    if (status.ok() && !admission.caller.may(right)) {
+        status = {grpc::StatusCode::PERMISSION_DENIED,
+                  "the role " + std::string(name_of(admission.caller.role)) + " does not permit this call"};
+    }
     if (!status.ok()) {
         server_log.call_refused(context.peer(), status);
-    } else if (admitted) {
-        admitted(context);
+        return status;
+    }
+    try {
+        within_limits(admission.client(), [&] {
+            if (on_call) on_call(context, admission.client());
+            admission.call = calls.take(1, admission.client());
+        });
+    } catch (const LimitError& error) {
+        return status_of(error);
     }
     return status;
+}
+
+std::shared_ptr<ServerJob> ServerContext::find(const Caller& caller, const std::string& owner,
+                                               const std::string& id) const {
+    if (!caller.sees_all()) return jobs.find(caller.owner(), id);
+    return owner.empty() ? jobs.find_only(id) : jobs.find(owner, id);
 }
 
 void ServerContext::check_limits(const v1::JobSpec& spec) const {
@@ -87,9 +99,10 @@ std::uint64_t ServerContext::memory_of(const v1::JobSpec& spec) {
     return input_bytes(spec) + object_count(spec) * working_bytes;
 }
 
-v1::JobReport ServerContext::report(const ServerJob& job) const {
+v1::JobReport ServerContext::report(const ServerJob& job, const Caller& caller) const {
     v1::JobReport report = job.report();
     if (report.state() == v1::QUEUED) report.set_queued_before(scheduler.queued_before(job));
+    if (caller.name != job.owner()) report.set_owner(job.owner());
     return report;
 }
 
@@ -106,7 +119,7 @@ std::shared_ptr<ServerJob> ServerContext::begin(const std::string& owner, v1::Jo
         check_limits(spec);
         ServerJob::Parts parts;
         parts.owner = owner;
-        parts.slot = job_quota.take_slot(owner);
+        parts.slot = job_slots.take(1, owner);
         parts.memory = memory.take(memory_of(spec), owner);
         parts.input = std::make_unique<UploadedInput>(spec, scheduler.engine_for(object_count(spec)), &array_pool);
         parts.pairs = std::make_unique<PairsInMemory>(memory, options.limits.pairs, owner);

@@ -25,6 +25,14 @@ namespace octopair::service {
 class DetachedJobs;
 class StateFolder;
 
+/// A caller whose call was admitted. It counts as a call of the client while it exists.
+struct Admission {
+    Caller caller;
+    Budget::Reservation call;
+
+    const std::string& client() const { return caller.name; }
+};
+
 class ServerContext {
 public:
     explicit ServerContext(const ServerOptions& options, std::shared_ptr<spdlog::logger> log);
@@ -38,7 +46,8 @@ public:
     ServerLog server_log;
     Budget memory;
     ArrayPool array_pool;
-    JobQuota job_quota;
+    Budget job_slots;                          // of unfinished jobs, and of scenes
+    Budget calls;                              // at a time
     const std::unique_ptr<StateFolder> state;  // null: the server takes no detached jobs
     JobTable jobs;
     Watchdog watchdog;
@@ -49,12 +58,15 @@ public:
     /// the end of its call.
     Budget attached;
 
-    /// Called with each admitted call; may be empty. Set before the first call.
-    std::function<void(const grpc::ServerContextBase&)> admitted;
+    /// Called with each call before it is admitted, and the name of its client; may be empty. Set before the first call. Throws:
+    /// LimitError to refuse the call.
+    std::function<void(const grpc::ServerContextBase&, const std::string& client)> on_call;
 
-    /// Authenticates the caller and sets `owner` to its name. Returns an error for a refused caller, and while the server shuts
-    /// down.
-    grpc::Status admit(const grpc::ServerContextBase& context, std::string& owner);
+    /// Authenticates the caller, checks that its role has `right`, and sets `admission`. Returns why a call is refused.
+    grpc::Status admit(const grpc::ServerContextBase& context, Right right, Admission& admission);
+    /// Returns the job that the caller names. `owner`: owner of the job, for callers that see the jobs of all. Throws:
+    /// Error{bad_input} if the caller sees no such job.
+    std::shared_ptr<ServerJob> find(const Caller& caller, const std::string& owner, const std::string& id) const;
 
     /// Creates an attached job and reserves memory for it. Throws: LimitError, Error{bad_input}.
     std::shared_ptr<ServerJob> begin(const std::string& owner, v1::JobSpec spec);
@@ -76,8 +88,8 @@ public:
     grpc::Status refuse_stalled(const std::string& owner);
     /// Returns the memory in bytes that a job needs while it runs, without its result.
     static std::uint64_t memory_of(const v1::JobSpec& spec);
-    /// Returns the job's report, with the number of jobs queued before it.
-    v1::JobReport report(const ServerJob& job) const;
+    /// Returns the job's report for a caller, with the number of jobs queued before it.
+    v1::JobReport report(const ServerJob& job, const Caller& caller) const;
     /// Adds `job` to the scheduler and the watchdog. Requires: the input is complete.
     void queue(const std::shared_ptr<ServerJob>& job);
     /// Returns whether no attached job is queued, running or sending its result, and no detached job is running.

@@ -21,11 +21,14 @@ struct ServerLimits {
     std::uint64_t jobs = 1000;  ///< jobs that are uploading, queued or running, and open scenes
     std::uint64_t jobs_per_client = 200;
     std::uint64_t connections = 1000;
+    std::uint64_t calls_per_client = 1000;                ///< calls of one client at a time
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
     std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder
-    /// Parts of the two amounts above that one client may take. Default: half, on a server with tokens or client certificates; otherwise all.
+    /// Parts of the last two amounts that one client may take. Default: half, on a server with tokens or client certificates; otherwise all.
     std::optional<std::uint64_t> memory_bytes_per_client = {}, state_bytes_per_client = {};
+    /// Connections of one client over TCP. Default as above.
+    std::optional<std::uint64_t> connections_per_client = {};
 };
 
 /// Paths of PEM files. Without a certificate connections are not encrypted.
@@ -44,12 +47,22 @@ struct ServerOptions {
     JobScheduler::Widths engine_widths;
     ServerLimits limits;
     ServerTls tls;
-    std::string token_file;    ///< lines "NAME TOKEN"; clients must send one of the tokens; empty: no tokens
-    std::string state_folder;  ///< path of the folder of detached jobs; empty: the server refuses such jobs
+    std::string
+        token_file;  ///< path of a file of tokens, one of which clients must send (token_file.hpp); empty: no tokens
+    std::string role_file;           ///< path of a file of roles (role_file.hpp); empty: all clients are owners
+    std::function<void()> on_drain;  ///< called when a client asks the server to end; null: such calls are refused
+    std::string state_folder;        ///< path of the folder of detached jobs; empty: the server refuses such jobs
     std::chrono::seconds keep{24 * 3600};  ///< how long a running server keeps the result of a detached job
     std::chrono::seconds grace{30};        ///< how long a shutdown waits for running jobs
     std::optional<Address> metrics;        ///< address at which metrics are served over HTTP; empty: not served
     std::chrono::seconds stall{60};        ///< maximum time between two messages of a client, sent or read
 };
+
+/// Returns how much of a limited amount one client may take: `each`, or else half, if the server can tell clients apart; 0: no limit.
+inline std::uint64_t share_of_client(const ServerOptions& options, std::uint64_t all,
+                                     std::optional<std::uint64_t> each) {
+    const bool tells_apart = !options.token_file.empty() || !options.tls.client_authority.empty();
+    return each.value_or(tells_apart ? all - all / 2 : 0);
+}
 
 }  // namespace octopair::service

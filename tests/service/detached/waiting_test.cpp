@@ -56,6 +56,34 @@ TEST(Waiting, CanBeCancelled) {
     EXPECT_EQ(server.files().size(), 2u);
 }
 
+TEST(Waiting, HoldsACallOfItsClient) {
+    const DetachedServer server([](service::ServerOptions& options) { options.limits.calls_per_client = 4; });
+    const auto client = server.client();
+    const std::vector<Box3f> same(1'000'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    const std::string id = client->submit({std::span(same), {}}, {}, {.count_only = true});
+    std::vector<std::jthread> waits;
+    for (int i = 0; i < 4; ++i)
+        waits.emplace_back([&](const std::stop_token& stop) {
+            try {
+                (void)client->wait(id, std::chrono::minutes(2), stop);
+            } catch (const Error& error) {
+                EXPECT_EQ(int(error.code()), int(ErrorCode::cancelled)) << error.what();
+            }
+        });
+    const auto is_refused = [&] {
+        try {
+            (void)client->status(id);
+            return false;
+        } catch (const Error& error) {
+            return std::string(error.what()).starts_with("calls_per_client: a client may have 4 calls");
+        }
+    };
+    EXPECT_TRUE(comes_true(is_refused));
+    waits.clear();
+    EXPECT_TRUE(comes_true([&] { return !is_refused(); }));
+    (void)client->cancel(id);
+}
+
 TEST(Waiting, GoesOnWithTheNextServer) {
     DetachedServer server;
     const auto client = server.client();

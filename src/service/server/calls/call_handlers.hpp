@@ -1,4 +1,4 @@
-// Functions that start the calls of octopair.proto. calls.cpp forwards each call to its function, and answers Describe itself.
+// Functions that start the calls of octopair.proto. calls.cpp forwards each call to its function.
 // Each function returns gRPC's reactor of the call; the reactor deletes itself when the call is done. The calls about jobs find
 // only jobs of the caller.
 //
@@ -8,14 +8,6 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
-
-namespace octopair::v1 {
-class JobList;
-class JobName;
-class JobReport;
-class ListRequest;
-class WaitRequest;
-}  // namespace octopair::v1
 
 namespace octopair::service {
 
@@ -50,16 +42,22 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* start_result(ServerContext& server, 
 
 // job_calls.cpp
 
+/// Returns version, engine and limits of the server.
+grpc::ServerUnaryReactor* start_describe(ServerContext& server, grpc::CallbackServerContext& context,
+                                         const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context,
-                                       const v1::JobName& request, v1::JobReport& response);
+                                       const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context,
-                                     const v1::WaitRequest& request, v1::JobReport& response);
+                                     const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 /// Cancels the job, and answers when the job has ended, after at most 10 s.
 grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context,
-                                       const v1::JobName& request, v1::JobReport& response);
+                                       const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context,
-                                        const v1::JobName& request, v1::JobReport& response);
+                                        const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context,
-                                     const v1::ListRequest& request, v1::JobList& response);
+                                     const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
+/// Asks the server to end (ServerOptions::on_drain).
+grpc::ServerUnaryReactor* start_drain(ServerContext& server, grpc::CallbackServerContext& context,
+                                      const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
 
 }  // namespace octopair::service

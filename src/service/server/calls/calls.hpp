@@ -1,5 +1,4 @@
-// The gRPC service of octopair.proto. The service answers Describe, and forwards the other calls
-// (call_handlers.hpp).
+// The gRPC service of octopair.proto. It forwards each call to its function (call_handlers.hpp).
 #pragma once
 
 #include <memory>

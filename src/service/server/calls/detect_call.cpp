@@ -26,14 +26,14 @@ public:
     DetectCall(ServerContext& server, grpc::CallbackServerContext& context)
         : DownloadCall(server, context), upload_([this](v1::JobSpec spec) -> InputTarget& {
               check_id(spec.id());
-              const auto job = this->server().begin(owner(), std::move(spec));
+              const auto job = this->server().begin(caller().name, std::move(spec));
               const std::lock_guard lock(job_mutex_);
               job_ = job;
               return job->input();
           }) {}
 
     void start() {
-        if (begin(shared_from_this())) StartRead(&in_);
+        if (begin(shared_from_this(), Right::submit)) StartRead(&in_);
     }
 
     void OnReadDone(bool ok) override {
@@ -65,6 +65,7 @@ private:
             before->cancel();
             server().jobs.remove(*before);
         }
+        server().server_log.job_submitted(*job, context());
         send(job, job->spec().offset());
         server().queue(job);
     }
@@ -81,7 +82,7 @@ private:
     }
 
     void handle_stall(bool downloading) override {
-        if (!downloading) refuse(server().refuse_stalled(owner()));
+        if (!downloading) refuse(server().refuse_stalled(caller().name));
     }
 
     std::shared_ptr<ServerJob> job() const {
@@ -109,13 +110,12 @@ public:
 
     void start(grpc::ByteBuffer request) {
         self_ = shared_from_this();
-        std::string owner;
-        const grpc::Status status = server_.admit(context_, owner);
+        const grpc::Status status = server_.admit(context_, Right::submit, admission_);
         if (!status.ok()) return answer({}, status);
         server_.server_log.received(request.Length());
         Upload upload([&](v1::JobSpec spec) -> InputTarget& {
             if (!spec.id().empty()) check_id(spec.id());
-            job_ = server_.begin(owner, std::move(spec));
+            job_ = server_.begin(admission_.client(), std::move(spec));
             return job_->input();
         });
         try {
@@ -124,6 +124,7 @@ public:
             attached_ = server_.attached.take(1);
             job_->queue();
             job_->watch(self_);
+            server_.server_log.job_submitted(*job_, context_);
             server_.queue(job_);
         } catch (...) {
             if (job_) job_->cancel();
@@ -170,6 +171,7 @@ private:
     grpc::CallbackServerContext& context_;
     grpc::ByteBuffer& response_;
     std::shared_ptr<SmallCall> self_;  // keeps the object alive until OnDone
+    Admission admission_;
     std::shared_ptr<ServerJob> job_;
     Budget::Reservation attached_;
     std::mutex mutex_;

@@ -66,16 +66,20 @@ public:
 protected:
     /// Starts the call and admits the caller. Returns false if the caller is refused. The call keeps `self` until done().
     /// Requires: `self` points to this object.
-    bool begin(std::shared_ptr<DownloadCall> self) {
+    bool begin(std::shared_ptr<DownloadCall> self, Right right) {
         self_ = std::move(self);
-        const grpc::Status status = server_.admit(context_, owner_);
+        const grpc::Status status = server_.admit(context_, right, admission_);
         if (!status.ok()) refuse(status);
         if (status.ok()) server_.watchdog.watch(self_);
         return status.ok();
     }
 
-    const std::string& owner() const { return owner_; }
+    const Caller& caller() const { return admission_.caller; }
+    const grpc::ServerContextBase& context() const { return context_; }
     ServerContext& server() { return server_; }
+
+    /// Returns what was sent until the call ended. Requires: called in done().
+    Sent sent() const { return {download_ ? first_pair_ : 0, sent_bytes_, outcome_}; }
 
     /// Restarts the stall timeout: the client has sent enough data.
     void note_progress() {
@@ -88,6 +92,7 @@ protected:
         {
             const std::lock_guard lock(mutex_);
             download_.emplace(job, offset);
+            first_pair_ = offset;
         }
         job->watch(self_);
         pump();
@@ -121,6 +126,8 @@ private:
             (next.kind == Download::Next::Kind::last ? finished_ : writing_) = true;
             last_progress_ = std::chrono::steady_clock::now();
             out_ = next.message;
+            sent_bytes_ += out_.Length();
+            if (finished_) outcome_ = next.status.ok() ? "complete" : next.status.error_message();
         }
         server_.server_log.sent(out_.Length());
         if (next.kind == Download::Next::Kind::message) return this->StartWrite(&out_);
@@ -131,7 +138,7 @@ private:
     ServerContext& server_;
     grpc::CallbackServerContext& context_;
     std::shared_ptr<DownloadCall> self_;  // keeps the object alive until OnDone
-    std::string owner_;
+    Admission admission_;
 
     std::mutex mutex_;
     std::optional<Download> download_;
@@ -139,6 +146,8 @@ private:
     grpc::ByteBuffer out_;
     /// Time of the last progress of the upload, or of the start of a write.
     std::chrono::steady_clock::time_point last_progress_ = std::chrono::steady_clock::now();
+    std::uint64_t first_pair_ = 0, sent_bytes_ = 0;
+    std::string outcome_;
     bool writing_ = false;
     bool finished_ = false;
 };

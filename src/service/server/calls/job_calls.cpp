@@ -1,4 +1,4 @@
-// The calls about existing jobs: Status, Wait, Cancel, Release, List.
+// The calls about existing jobs, Status, Wait, Cancel, Release and List, and those about the server, Describe and Drain.
 #include "service/server/calls/call_handlers.hpp"
 
 #include <algorithm>
@@ -9,6 +9,9 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "octopair/version.hpp"
+#include "service/protocol/job_hash.hpp"
+#include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/server_context.hpp"
@@ -21,14 +24,31 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls `answer` with the caller's name, and finishes the call. An exception of `answer` becomes the status of the call.
-template <typename Answer>
-grpc::ServerUnaryReactor* answer_at_once(ServerContext& server, grpc::CallbackServerContext& context, Answer&& answer) {
-    grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
-    std::string owner;
-    grpc::Status status = server.admit(context, owner);
+/// Parses a request. Throws: Error{bad_input}, which becomes INVALID_ARGUMENT.
+template <typename Request>
+Request parsed(grpc::ByteBuffer bytes) {
+    Request request;
+    if (!unpack(bytes, request)) throw Error(ErrorCode::bad_input, "the message cannot be parsed");
+    return request;
+}
+
+/// A unary call that is answered at once.
+struct Unary {
+    ServerContext& server;
+    grpc::CallbackServerContext& context;
+    const grpc::ByteBuffer& request;
+    grpc::ByteBuffer& response;
+};
+
+/// Admits the caller, sends the message that `answer(caller, request)` returns, and finishes the call. An exception of `answer` becomes
+/// the status of the call.
+template <typename Request, typename Answer>
+grpc::ServerUnaryReactor* answer_at_once(const Unary& call, Right right, Answer&& answer) {
+    grpc::ServerUnaryReactor* const reactor = call.context.DefaultReactor();
+    Admission admission;
+    grpc::Status status = call.server.admit(call.context, right, admission);
     try {
-        if (status.ok()) answer(owner);
+        if (status.ok()) call.response = pack(answer(std::as_const(admission.caller), parsed<Request>(call.request)));
     } catch (...) {
         status = status_of_exception();
     }
@@ -42,32 +62,23 @@ class WaitCall final : public grpc::ServerUnaryReactor,
                        public Watched,
                        public std::enable_shared_from_this<WaitCall> {
 public:
-    WaitCall(ServerContext& server, v1::JobReport& response) : server_(server), response_(response) {}
+    WaitCall(ServerContext& server, grpc::ByteBuffer& response) : server_(server), response_(response) {}
 
-    struct Terms {
-        std::string id;
-        double seconds = 0;
-        bool cancel = false;
-    };
-
-    void start(const grpc::CallbackServerContext& context, const Terms& terms) {
+    /// `terms` returns the request's terms. It may throw.
+    template <typename Terms>
+    void start(const grpc::CallbackServerContext& context, Right right, Terms&& terms) {
         self_ = shared_from_this();
-        std::string owner;
-        const grpc::Status status = server_.admit(context, owner);
+        const grpc::Status status = server_.admit(context, right, admission_);
         if (!status.ok()) return end(status);
         try {
-            job_ = server_.jobs.find(owner, terms.id);
+            const v1::WaitRequest asked = terms();
+            job_ = server_.find(admission_.caller, asked.owner(), asked.id());
+            if (right == Right::cancel)
+                server_.server_log.job_asked("cancel", *job_, {admission_.client(), context.peer()});
+            start_waiting(asked.seconds(), right == Right::cancel);
         } catch (...) {
-            return end(status_of_exception());
+            end(status_of_exception());
         }
-        constexpr double hour = 3600;
-        const double seconds = terms.seconds > 0 ? std::min(terms.seconds, hour) : 0;
-        until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-        job_->watch(self_);
-        if (terms.cancel) job_->cancel();
-        server_.watchdog.watch(self_);
-        if (seconds == 0) return answer();
-        job_changed();
     }
 
     void job_changed() override {
@@ -83,6 +94,17 @@ public:
     void OnDone() override { self_.reset(); }
 
 private:
+    void start_waiting(double asked_seconds, bool cancel) {
+        constexpr double hour = 3600;
+        const double seconds = asked_seconds > 0 ? std::min(asked_seconds, hour) : 0;
+        until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+        job_->watch(self_);
+        if (cancel) job_->cancel();
+        server_.watchdog.watch(self_);
+        if (seconds == 0) return answer();
+        job_changed();
+    }
+
     bool is_first() {
         const std::lock_guard lock(mutex_);
         return !std::exchange(ended_, true);
@@ -90,7 +112,7 @@ private:
 
     void answer() {
         if (!is_first()) return;
-        response_ = server_.report(*job_);
+        response_ = pack(server_.report(*job_, admission_.caller));
         Finish(grpc::Status::OK);
     }
 
@@ -99,7 +121,8 @@ private:
     }
 
     ServerContext& server_;
-    v1::JobReport& response_;
+    grpc::ByteBuffer& response_;
+    Admission admission_;
     std::shared_ptr<WaitCall> self_;  // keeps the object alive until OnDone
     std::shared_ptr<ServerJob> job_;
     Clock::time_point until_{};
@@ -107,40 +130,99 @@ private:
     bool ended_ = false;
 };
 
+v1::ServerDescription describe(const ServerContext& server) {
+    const ServerLimits& limits = server.options.limits;
+    v1::ServerDescription description;
+    description.set_version(OCTOPAIR_VERSION);
+    description.set_algorithm(algorithm_version);
+    description.set_engine(server.options.engine_name);
+    description.set_detached(!server.options.state_folder.empty());
+    v1::Limits& described = *description.mutable_limits();
+    described.set_objects(limits.objects);
+    described.set_input_bytes(limits.input_bytes);
+    described.set_pairs(limits.pairs);
+    described.set_jobs(limits.jobs);
+    described.set_jobs_per_client(limits.jobs_per_client);
+    described.set_connections(limits.connections);
+    described.set_connections_per_client(
+        share_of_client(server.options, limits.connections, limits.connections_per_client));
+    described.set_calls_per_client(limits.calls_per_client);
+    described.set_job_seconds(limits.job_seconds);
+    described.set_memory_bytes(limits.memory_bytes);
+    described.set_memory_bytes_per_client(server.memory.each());
+    described.set_state_bytes(limits.state_bytes);
+    described.set_state_bytes_per_client(
+        share_of_client(server.options, limits.state_bytes, limits.state_bytes_per_client));
+    described.set_message_bytes(max_message_bytes);
+    return description;
+}
+
+/// Throws: Error{bad_input} if the caller has no such job, or if it cannot be released.
+std::shared_ptr<ServerJob> releasable(const ServerContext& server, const Caller& caller, const std::string& id) {
+    std::shared_ptr<ServerJob> job = server.find(caller, {}, id);
+    if (!job->detached()) throw Error(ErrorCode::bad_input, "job " + id + " is not detached");
+    if (!job->ended()) throw Error(ErrorCode::bad_input, "job " + id + " has not ended");
+    return job;
+}
+
+v1::JobList list(const ServerContext& server, const Caller& caller, const v1::ListRequest& asked) {
+    constexpr std::size_t most = 1000;  // reports of so many jobs fit into one message
+    auto jobs = caller.sees_all() ? server.jobs.of_all(asked.after_owner(), asked.after(), most + 1)
+                                  : server.jobs.of(caller.owner(), asked.after(), most + 1);
+    v1::JobList list;
+    list.set_more(jobs.size() > most);
+    jobs.resize(std::min(jobs.size(), most));
+    for (const auto& job : jobs) *list.add_jobs() = server.report(*job, caller);
+    return list;
+}
+
 }  // namespace
 
+grpc::ServerUnaryReactor* start_describe(ServerContext& server, grpc::CallbackServerContext& context,
+                                         const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    return answer_at_once<v1::DescribeRequest>(
+        {server, context, request, response}, Right::describe,
+        [&](const Caller&, const v1::DescribeRequest&) { return describe(server); });
+}
+
 grpc::ServerUnaryReactor* start_status(ServerContext& server, grpc::CallbackServerContext& context,
-                                       const v1::JobName& request, v1::JobReport& response) {
-    return answer_at_once(server, context, [&](const std::string& owner) {
-        response = server.report(*server.jobs.find(owner, request.id()));
-    });
+                                       const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    return answer_at_once<v1::JobName>({server, context, request, response}, Right::see,
+                                       [&](const Caller& caller, const v1::JobName& name) {
+                                           return server.report(*server.find(caller, name.owner(), name.id()), caller);
+                                       });
 }
 
 grpc::ServerUnaryReactor* start_wait(ServerContext& server, grpc::CallbackServerContext& context,
-                                     const v1::WaitRequest& request, v1::JobReport& response) {
+                                     const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
     const auto call = std::make_shared<WaitCall>(server, response);
-    call->start(context, {request.id(), request.seconds()});
+    call->start(context, Right::see, [&] { return parsed<v1::WaitRequest>(request); });
     return call.get();
 }
 
 grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServerContext& context,
-                                       const v1::JobName& request, v1::JobReport& response) {
+                                       const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
     constexpr double seconds = 10;
     const auto call = std::make_shared<WaitCall>(server, response);
-    call->start(context, {request.id(), seconds, true});
+    call->start(context, Right::cancel, [&] {
+        const auto name = parsed<v1::JobName>(request);
+        v1::WaitRequest terms;
+        terms.set_id(name.id());
+        terms.set_owner(name.owner());
+        terms.set_seconds(seconds);
+        return terms;
+    });
     return call.get();
 }
 
 grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackServerContext& context,
-                                        const v1::JobName& request, v1::JobReport& response) {
+                                        const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
     grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
-    std::string owner;
-    const grpc::Status status = server.admit(context, owner);
+    auto admission = std::make_shared<Admission>();
+    const grpc::Status status = server.admit(context, Right::release, *admission);
     std::shared_ptr<ServerJob> job;
     try {
-        if (status.ok()) job = server.jobs.find(owner, request.id());
-        if (job && !job->detached()) throw Error(ErrorCode::bad_input, "job " + request.id() + " is not detached");
-        if (job && !job->ended()) throw Error(ErrorCode::bad_input, "job " + request.id() + " has not ended");
+        if (status.ok()) job = releasable(server, admission->caller, parsed<v1::JobName>(request).id());
     } catch (...) {
         reactor->Finish(status_of_exception());
         return reactor;
@@ -149,8 +231,9 @@ grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackSer
         reactor->Finish(status);
         return reactor;
     }
-    server.state->disk_queue().add([&server, &response, job, reactor] {
-        response = server.report(*job);
+    server.server_log.job_asked("release", *job, {admission->client(), context.peer()});
+    server.state->disk_queue().add([&server, &response, admission, job, reactor] {
+        response = pack(server.report(*job, admission->caller));
         server.detached->release(*job);
         reactor->Finish(grpc::Status::OK);
     });
@@ -158,14 +241,22 @@ grpc::ServerUnaryReactor* start_release(ServerContext& server, grpc::CallbackSer
 }
 
 grpc::ServerUnaryReactor* start_list(ServerContext& server, grpc::CallbackServerContext& context,
-                                     const v1::ListRequest& request, v1::JobList& response) {
-    constexpr std::size_t most = 1000;  // reports of so many jobs fit into one message
-    return answer_at_once(server, context, [&](const std::string& owner) {
-        auto jobs = server.jobs.of(owner, request.after(), most + 1);
-        response.set_more(jobs.size() > most);
-        jobs.resize(std::min(jobs.size(), most));
-        for (const auto& job : jobs) *response.add_jobs() = server.report(*job);
-    });
+                                     const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    return answer_at_once<v1::ListRequest>(
+        {server, context, request, response}, Right::see,
+        [&](const Caller& caller, const v1::ListRequest& asked) { return list(server, caller, asked); });
+}
+
+grpc::ServerUnaryReactor* start_drain(ServerContext& server, grpc::CallbackServerContext& context,
+                                      const grpc::ByteBuffer& request, grpc::ByteBuffer& response) {
+    return answer_at_once<v1::DrainRequest>({server, context, request, response}, Right::drain,
+                                            [&](const Caller& caller, const v1::DrainRequest&) {
+                                                if (!server.options.on_drain)
+                                                    throw Error(ErrorCode::usage, "this server ends only by a signal");
+                                                server.server_log.drain_asked({caller.name, context.peer()});
+                                                server.options.on_drain();
+                                                return v1::DrainReport();
+                                            });
 }
 
 }  // namespace octopair::service

@@ -18,15 +18,15 @@ public:
     using DownloadCall::DownloadCall;
 
     void start(grpc::ByteBuffer request) {
-        if (!begin(shared_from_this())) return;
+        if (!begin(shared_from_this(), Right::read)) return;
         try {
             server().server_log.received(request.Length());
             v1::ResultRequest asked;
             if (!unpack(request, asked)) throw Error(ErrorCode::bad_input, "the message cannot be parsed");
-            job_ = server().jobs.find(owner(), asked.id());
+            job_ = server().find(caller(), {}, asked.id());
             check(asked);
             // A piece stays in memory until the client has read it.
-            piece_ = server().memory.take(piece_bytes, owner());
+            piece_ = server().memory.take(piece_bytes, caller().name);
             send(job_, asked.offset());
         } catch (...) {
             refuse(status_of_exception());
@@ -44,6 +44,10 @@ private:
                         "job " + asked.id() +
                             " has another hash than the job of the earlier pieces; read its result from the start");
         }
+    }
+
+    void done() override {
+        if (job_) server().server_log.result_sent(*job_, {caller().name, context().peer()}, sent());
     }
 
     void handle_stall(bool) override {

@@ -50,10 +50,10 @@ public:
 
     void start() {
         self_ = shared_from_this();
-        const grpc::Status status = server_.admit(context_, owner_);
+        const grpc::Status status = server_.admit(context_, Right::submit, admission_);
         if (!status.ok()) return Finish(status);
         try {
-            slot_ = server_.job_quota.take_slot(owner_);
+            slot_ = server_.job_slots.take(1, admission_.client());
             server_.threads.start([call = self_] { call->work(); });
         } catch (const LimitError& error) {
             return Finish(refused(error));
@@ -131,7 +131,7 @@ private:
         }
         message_.Clear();
         for (RecordedCall call; calls_.next(call);) {
-            if (!scene_) scene_.emplace(server_, owner_, calls_.options());
+            if (!scene_) scene_.emplace(server_, admission_.client(), calls_.options());
             call.kind == RecordKind::step ? step() : scene_->make(call);
             in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
         }
@@ -240,7 +240,7 @@ private:
     }
 
     grpc::Status refused(const LimitError& error) {
-        server_.server_log.limit_refused(owner_, error);
+        server_.server_log.limit_refused(admission_.client(), error);
         return status_of(error);
     }
 
@@ -256,8 +256,8 @@ private:
     ServerContext& server_;
     grpc::CallbackServerContext& context_;
     std::shared_ptr<SceneCall> self_;  // keeps the object alive until OnDone
-    std::string owner_;
-    JobQuota::Slot slot_;
+    Admission admission_;
+    Budget::Reservation slot_;
     std::stop_source stop_;
     // Used by the call's thread; gRPC fills in_ during a read.
     grpc::ByteBuffer in_, message_, out_;

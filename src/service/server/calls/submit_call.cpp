@@ -26,15 +26,15 @@ class SubmitCall final : public grpc::ServerReadReactor<grpc::ByteBuffer>,
                          public Watched,
                          public std::enable_shared_from_this<SubmitCall> {
 public:
-    SubmitCall(ServerContext& server, grpc::ByteBuffer& response)
-        : server_(server), response_(response), upload_([this](v1::JobSpec spec) -> InputTarget& {
-              submission_ = server_.detached->begin(owner_, std::move(spec));
+    SubmitCall(ServerContext& server, const grpc::CallbackServerContext& context, grpc::ByteBuffer& response)
+        : server_(server), context_(context), response_(response), upload_([this](v1::JobSpec spec) -> InputTarget& {
+              submission_ = server_.detached->begin(admission_.client(), std::move(spec));
               return *submission_.upload;
           }) {}
 
-    void start(const grpc::CallbackServerContext& context) {
+    void start() {
         self_ = shared_from_this();
-        const grpc::Status status = server_.admit(context, owner_);
+        const grpc::Status status = server_.admit(context_, Right::submit, admission_);
         if (!status.ok()) return end(status);
         if (!server_.detached) {
             return end(status_of(Error(ErrorCode::usage, "the server has no state folder: it takes no detached jobs")));
@@ -69,7 +69,7 @@ public:
             const std::lock_guard lock(mutex_);
             if (ended_ || committing_ || now - last_progress_ < server_.options.stall) return;
         }
-        end_unless_committing(server_.refuse_stalled(owner_));
+        end_unless_committing(server_.refuse_stalled(admission_.client()));
     }
 
 private:
@@ -88,7 +88,8 @@ private:
             // The job existed at the start of this upload, and was released since. The client submits it again.
             if (!job)
                 return end({grpc::StatusCode::UNAVAILABLE, "the job was released during its upload; submit it again"});
-            response_ = pack(server_.report(*job));
+            server_.server_log.job_submitted(*job, context_);
+            response_ = pack(server_.report(*job, admission_.caller));
             server_.server_log.sent(response_.Length());
             end(grpc::Status::OK);
         } catch (...) {
@@ -109,13 +110,16 @@ private:
             const std::lock_guard lock(mutex_);
             if (std::exchange(ended_, true)) return;
         }
+        if (!status.ok() && status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED && admission_.call.amount() > 0)
+            server_.server_log.call_failed({admission_.client(), context_.peer()}, status);
         Finish(status);
     }
 
     ServerContext& server_;
+    const grpc::CallbackServerContext& context_;
     grpc::ByteBuffer& response_;
     std::shared_ptr<SubmitCall> self_;  // keeps the object alive until OnDone
-    std::string owner_;
+    Admission admission_;
     // Used by the reading side, then by the task of the disk queue.
     grpc::ByteBuffer in_;
     Submission submission_;
@@ -131,8 +135,8 @@ private:
 
 grpc::ServerReadReactor<grpc::ByteBuffer>* start_submit(ServerContext& server, grpc::CallbackServerContext& context,
                                                         grpc::ByteBuffer& response) {
-    const auto call = std::make_shared<SubmitCall>(server, response);
-    call->start(context);
+    const auto call = std::make_shared<SubmitCall>(server, context, response);
+    call->start();
     return call.get();
 }
 

@@ -56,7 +56,8 @@ public:
     /// Throws: LimitError if `amount` is more than a client or the whole budget may have, so that take() can never succeed.
     void check(std::uint64_t amount) const;
     std::uint64_t taken() const;
-    std::uint64_t total() const { return total_; }
+    /// Returns the limit of each client; 0: none.
+    std::uint64_t each() const { return each_; }
 
 private:
     void add(std::uint64_t amount, const std::string& client);

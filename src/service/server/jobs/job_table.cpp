@@ -1,35 +1,17 @@
 #include "service/server/jobs/job_table.hpp"
 
-#include "service/protocol/limit_error.hpp"
+#include <utility>
+
+#include "octopair/error.hpp"
 #include "service/server/jobs/server_job.hpp"
 
 namespace octopair::service {
 
-JobQuota::JobQuota(std::uint64_t most, std::uint64_t max_each) : all_("jobs", "job slots", most), max_each_(max_each) {}
+namespace {
 
-JobQuota::Slot JobQuota::take_slot(const std::string& owner) {
-    auto reservation = std::make_shared<Budget::Reservation>(all_.take(1));
-    add_client_slot(owner);
-    // The deleter locks mutex_. It also runs when this constructor throws std::bad_alloc, so the lock must not be held here.
-    Slot slot;
-    slot.counted_ = std::shared_ptr<void>(reservation.get(), [this, reservation, owner](void*) {
-        const std::lock_guard lock(mutex_);
-        const auto found = each_.find(owner);
-        if (--found->second == 0) each_.erase(found);
-    });
-    return slot;
-}
+Error no_job(const std::string& id) { return {ErrorCode::bad_input, "there is no job " + id.substr(0, 36)}; }
 
-void JobQuota::add_client_slot(const std::string& owner) {
-    const std::lock_guard lock(mutex_);
-    std::uint64_t& count = each_[owner];
-    if (max_each_ > 0 && count >= max_each_) {
-        throw LimitError("jobs_per_client", max_each_,
-                         "jobs_per_client: the client has " + std::to_string(count) + " jobs on the server; at most " +
-                             std::to_string(max_each_) + " each");
-    }
-    ++count;
-}
+}  // namespace
 
 std::shared_ptr<ServerJob> JobTable::enter(const std::shared_ptr<ServerJob>& job) {
     const std::lock_guard lock(mutex_);
@@ -44,7 +26,7 @@ std::shared_ptr<ServerJob> JobTable::enter(const std::shared_ptr<ServerJob>& job
 
 std::shared_ptr<ServerJob> JobTable::find(const std::string& owner, const std::string& id) const {
     std::shared_ptr<ServerJob> found = look_up(owner, id);
-    if (!found) throw Error(ErrorCode::bad_input, "there is no job " + id.substr(0, 36));
+    if (!found) throw no_job(id);
     return found;
 }
 
@@ -54,12 +36,32 @@ std::shared_ptr<ServerJob> JobTable::look_up(const std::string& owner, const std
     return found == jobs_.end() ? nullptr : found->second;
 }
 
+std::shared_ptr<ServerJob> JobTable::find_only(const std::string& id) const {
+    std::shared_ptr<ServerJob> found;
+    for (auto& job : all()) {
+        if (job->spec().id() != id) continue;
+        if (found) throw Error(ErrorCode::bad_input, "several owners have a job " + id + "; name the owner");
+        found = std::move(job);
+    }
+    if (!found) throw no_job(id);
+    return found;
+}
+
 std::vector<std::shared_ptr<ServerJob>> JobTable::of(const std::string& owner, const std::string& after,
                                                      std::size_t most) const {
+    return this->after({owner, after}, true, most);
+}
+
+std::vector<std::shared_ptr<ServerJob>> JobTable::of_all(const std::string& owner, const std::string& after,
+                                                         std::size_t most) const {
+    return this->after({owner, after}, false, most);
+}
+
+std::vector<std::shared_ptr<ServerJob>> JobTable::after(const Key& key, bool only_owner, std::size_t most) const {
     const std::lock_guard lock(mutex_);
     std::vector<std::shared_ptr<ServerJob>> jobs;
-    for (auto at = jobs_.upper_bound({owner, after}); at != jobs_.end() && jobs.size() < most; ++at) {
-        if (at->first.first != owner) break;
+    for (auto at = jobs_.upper_bound(key); at != jobs_.end() && jobs.size() < most; ++at) {
+        if (only_owner && at->first.first != key.first) break;
         jobs.push_back(at->second);
     }
     return jobs;

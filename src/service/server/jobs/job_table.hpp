@@ -1,4 +1,4 @@
-// JobTable: the jobs of a server, by owner and id. JobQuota: limits the number of jobs and scenes.
+// JobTable: the jobs of a server, by owner and id.
 #pragma once
 
 #include <cstdint>
@@ -9,43 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "service/server/jobs/budget.hpp"
-
 namespace octopair::service {
 
 class ServerJob;
-
-/// Limits the number of unfinished jobs and scenes, in total and for each client.
-class JobQuota {
-public:
-    /// A job or scene that counts against the quota until the slot is destroyed. Requires: the quota outlives the slot.
-    class Slot {
-    public:
-        Slot() = default;
-        Slot(Slot&& other) noexcept = default;
-        Slot& operator=(Slot&& other) noexcept = default;
-
-    private:
-        friend class JobQuota;
-        std::shared_ptr<void> counted_;
-    };
-
-    /// `most`: limit of all clients together. `max_each`: limit of each client. 0: no limit.
-    JobQuota(std::uint64_t most, std::uint64_t max_each);
-
-    /// Throws: LimitError if no slot is free. Thread safety: safe.
-    Slot take_slot(const std::string& owner);
-    /// Returns the number of slots in use.
-    std::uint64_t count() const { return all_.taken(); }
-
-private:
-    void add_client_slot(const std::string& owner);
-
-    Budget all_;
-    const std::uint64_t max_each_;
-    std::mutex mutex_;
-    std::map<std::string, std::uint64_t> each_;
-};
 
 /// Thread safety: safe.
 class JobTable {
@@ -57,15 +23,22 @@ public:
     std::shared_ptr<ServerJob> find(const std::string& owner, const std::string& id) const;
     /// Returns null if `owner` has no job `id`.
     std::shared_ptr<ServerJob> look_up(const std::string& owner, const std::string& id) const;
+    /// Returns the only job with this id, whoever owns it. Throws: Error{bad_input} if there is none, or if several owners have one.
+    std::shared_ptr<ServerJob> find_only(const std::string& id) const;
     /// Returns the jobs of `owner` with ids greater than `after`, ascending by id, at most `most` of them.
     std::vector<std::shared_ptr<ServerJob>> of(const std::string& owner, const std::string& after,
                                                std::size_t most) const;
+    /// Returns the jobs of all owners after the job `after` of `owner`, ascending by owner and id, at most `most` of them.
+    std::vector<std::shared_ptr<ServerJob>> of_all(const std::string& owner, const std::string& after,
+                                                   std::size_t most) const;
     std::vector<std::shared_ptr<ServerJob>> all() const;
     /// Removes `job`, but not another job with its owner and id.
     void remove(const ServerJob& job);
 
 private:
     using Key = std::pair<std::string, std::string>;
+
+    std::vector<std::shared_ptr<ServerJob>> after(const Key& key, bool only_owner, std::size_t most) const;
 
     mutable std::mutex mutex_;
     std::map<Key, std::shared_ptr<ServerJob>> jobs_;

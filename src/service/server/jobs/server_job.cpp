@@ -37,6 +37,7 @@ void ServerJob::queue() {
         if (state_ != v1::UPLOADING || early_) return;
         hash_ = detached() ? parts_.record->hash() : parts_.input->hash();
         state_ = v1::QUEUED;
+        queued_ = Clock::now();
     }
     notify_watchers();
 }
@@ -249,6 +250,13 @@ std::optional<ServerJob::Clock::time_point> ServerJob::ended_at() const {
     const std::lock_guard lock(mutex_);
     if (!is_terminal()) return {};
     return ended_;
+}
+
+double ServerJob::queue_seconds() const {
+    const std::lock_guard lock(mutex_);
+    if (queued_ == Clock::time_point()) return 0;
+    const bool has_run = began_ != Clock::time_point();
+    return std::chrono::duration<double>((has_run ? began_ : is_terminal() ? ended_ : Clock::now()) - queued_).count();
 }
 
 double ServerJob::seconds() const {

@@ -25,7 +25,6 @@
 #include "service/protocol/octopair.pb.h"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/job_record.hpp"
-#include "service/server/jobs/job_table.hpp"
 #include "service/server/jobs/kept_pairs.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
 #include "service/server/jobs/watchdog.hpp"
@@ -50,7 +49,7 @@ public:
         std::shared_ptr<JobRecord> record;     ///< null for an attached job
         std::shared_ptr<KeptPairs> pairs;
         Budget::Reservation memory;                            ///< for the input and the search
-        JobQuota::Slot slot;                                   ///< held until the job ends
+        Budget::Reservation slot;                              ///< slot of a job, held until the job ends
         double max_seconds = 0;                                ///< maximum run time; 0: no limit
         std::uint64_t buffer_bytes = std::uint64_t(64) << 20;  ///< Options::buffer_bytes of the search
         /// Called after each change of state, with no lock held; may be null.
@@ -93,6 +92,8 @@ public:
     void check_deadline(Clock::time_point now) override;
     bool is_over() const override { return ended(); }
     std::optional<Clock::time_point> ended_at() const;
+    /// Returns how long the job waited for an engine before it ran, or has waited so far, in seconds.
+    double queue_seconds() const;
     /// Returns the run time so far, or of the whole run, in seconds.
     double seconds() const;
     const KeptPairs& pairs() const { return *parts_.pairs; }
@@ -132,7 +133,7 @@ private:
     std::uint32_t algorithm_ = algorithm_version;
     v1::Summary summary_;
     v1::Failure failure_;
-    Clock::time_point began_{}, ended_{};
+    Clock::time_point queued_{}, began_{}, ended_{};
     std::vector<std::weak_ptr<JobWatcher>> watchers_;
 };
 

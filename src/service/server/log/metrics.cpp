@@ -10,6 +10,7 @@
 
 #include <array>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -58,12 +59,36 @@ struct Metrics::Store {
             .Help("Seconds that jobs ran")
             .Register(registry)
             .Add({}, std::vector<double>{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100, 300});
+    prometheus::Histogram& queue_seconds =
+        prometheus::BuildHistogram()
+            .Name("octopair_queue_seconds")
+            .Help("Seconds that jobs waited for an engine")
+            .Register(registry)
+            .Add({}, std::vector<double>{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100, 300});
     std::array<Counter*, 4> step_seconds =
         all(counters("octopair_step_seconds_total", "Seconds that jobs took, by step"), "step", steps);
     Counter& received = counters("octopair_received_bytes_total", "Bytes of jobs received").Add({});
     Counter& sent = counters("octopair_sent_bytes_total", "Bytes of results sent").Add({});
     Family<Counter>& refusals = counters("octopair_refusals_total", "Refusals, by limit");
     Family<Counter>& call_refusals = counters("octopair_calls_refused_total", "Calls refused, by reason");
+
+    /// Counters of one client.
+    struct Client {
+        Counter &jobs, &seconds, &bytes, &pairs, &refusals;
+    };
+    Client& client(const std::string& name) {
+        constexpr std::size_t most_clients = 50;
+        const std::lock_guard lock(clients_mutex_);
+        const bool named = clients_.contains(name) || clients_.size() < most_clients;
+        const std::string label = named ? name : "other";
+        const auto known = clients_.find(label);
+        if (known != clients_.end()) return known->second;
+        const auto add = [&](Family<Counter>& family) -> Counter& { return family.Add({{"client", label}}); };
+        return clients_
+            .emplace(label, Client{add(client_jobs_), add(client_seconds_), add(client_bytes_), add(client_pairs_),
+                                   add(client_refusals_)})
+            .first->second;
+    }
 
     Gauge& queue = gauges("octopair_queue_length", "Jobs that wait for an engine").Add({});
     Gauge& connections = gauges("octopair_connections", "Open connections").Add({});
@@ -81,6 +106,16 @@ private:
     Family<Counter>& counters(const char* name, const char* help) {
         return prometheus::BuildCounter().Name(name).Help(help).Register(registry);
     }
+    Family<Counter>& client_jobs_ = counters("octopair_client_jobs_total", "Jobs that have ended, by client");
+    Family<Counter>& client_seconds_ =
+        counters("octopair_client_job_seconds_total", "Seconds that jobs ran, by client");
+    Family<Counter>& client_bytes_ = counters("octopair_client_input_bytes_total", "Bytes of ended jobs, by client");
+    Family<Counter>& client_pairs_ = counters("octopair_client_pairs_total", "Pairs of ended jobs, by client");
+    Family<Counter>& client_refusals_ =
+        counters("octopair_client_refusals_total", "Requests beyond a limit, by client");
+    std::mutex clients_mutex_;
+    std::map<std::string, Client> clients_;
+
     template <typename Metric, std::size_t n>
     static std::array<Metric*, n> all(Family<Metric>& family, const char* label,
                                       const std::array<const char*, n>& values) {
@@ -135,6 +170,17 @@ void Metrics::job_ended(const v1::JobReport& report, double seconds) {
     for (std::size_t i = 0; i < taken.size(); ++i) store_->step_seconds.at(i)->Increment(taken.at(i));
 }
 
+void Metrics::job_started(double queue_seconds) { store_->queue_seconds.Observe(queue_seconds); }
+
+void Metrics::client_job_ended(const std::string& client, const ClientJob& job) {
+    Store::Client& counters = store_->client(client);
+    counters.jobs.Increment();
+    counters.seconds.Increment(job.seconds);
+    counters.bytes.Increment(double(job.bytes));
+    counters.pairs.Increment(double(job.pairs));
+}
+
+void Metrics::client_refused(const std::string& client) { store_->client(client).refusals.Increment(); }
 void Metrics::refused(const std::string& limit) { store_->refusals.Add({{"limit", limit}}).Increment(); }
 void Metrics::call_refused(const std::string& reason) { store_->call_refusals.Add({{"reason", reason}}).Increment(); }
 void Metrics::received(std::uint64_t bytes) { store_->received.Increment(double(bytes)); }
@@ -143,7 +189,9 @@ void Metrics::sent(std::uint64_t bytes) { store_->sent.Increment(double(bytes));
 int Metrics::show(const Address& address, std::function<Levels()> levels) {
     const std::string where = numeric(address);
     try {
-        store_->exposer = std::make_unique<prometheus::Exposer>(where);
+        // With these numbers, connections that send nothing do not keep others waiting: each has a thread, for at most 2 s.
+        store_->exposer = std::make_unique<prometheus::Exposer>(
+            std::vector<std::string>{"listening_ports", where, "num_threads", "16", "request_timeout_ms", "2000"});
     } catch (const std::exception&) {  // an exception of civetweb, which gives no reason
         throw Error(ErrorCode::io_failed, address.text() + ": cannot show metrics there; the address may be taken");
     }

@@ -31,11 +31,22 @@ public:
 
     /// Counts a change of state of a job. `from`: empty for a new job.
     void job_state_changed(std::optional<v1::JobState> from, v1::JobState to);
+    /// Counts a job that starts to run, after it has waited for an engine.
+    void job_started(double queue_seconds);
     /// Counts an ended job. `seconds`: run time of the job; 0: it did not run.
     void job_ended(const v1::JobReport& report, double seconds);
     /// Counts a refusal. `limit`: name of the limit that was exceeded.
     void refused(const std::string& limit);
-    /// Counts a refused call. `reason`: "unauthenticated" or "going down".
+    struct ClientJob {
+        double seconds = 0;
+        std::uint64_t bytes = 0;  ///< size of the input
+        std::uint64_t pairs = 0;
+    };
+    /// Counts an ended job of a client. The first 50 clients are counted each, further ones together, as "other".
+    void client_job_ended(const std::string& client, const ClientJob& job);
+    /// Counts a refusal of a client beyond a limit.
+    void client_refused(const std::string& client);
+    /// Counts a refused call. `reason`: "unauthenticated", "not permitted" or "going down".
     void call_refused(const std::string& reason);
     void received(std::uint64_t bytes);
     void sent(std::uint64_t bytes);

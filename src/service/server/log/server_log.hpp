@@ -4,16 +4,16 @@
 
 #include <spdlog/fwd.h>
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "service/server/log/metrics.hpp"
+#include "service/server/log/throttle.hpp"
 
 namespace grpc {
+class ServerContextBase;
 class Status;
 }  // namespace grpc
 
@@ -22,6 +22,18 @@ namespace octopair::service {
 class LimitError;
 class ServerJob;
 
+/// Client that makes a call, and its address as gRPC writes it.
+struct Asker {
+    const std::string& client;
+    std::string peer;
+};
+
+/// What a call sent of a result.
+struct Sent {
+    std::uint64_t offset = 0, bytes = 0;
+    std::string outcome;  ///< "complete", or why the call ended before
+};
+
 /// Thread safety: safe.
 class ServerLog {
 public:
@@ -29,13 +41,25 @@ public:
 
     /// Records a change of state of a job. `from`: empty for a new job.
     void job_state_changed(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to);
-    /// Records a request that exceeded a limit.
-    void limit_refused(const std::string& owner, const LimitError& error);
+    /// Records that an attached job was received by `call`, or that a detached one is on the disk.
+    void job_submitted(const ServerJob& job, const grpc::ServerContextBase& call);
+    /// Records a call about a job. `call`: "cancel" or "release".
+    void job_asked(const char* call, const ServerJob& job, const Asker& asker);
+    /// Records the end of a call that sent the result of a detached job, from pair `offset` on. `bytes`: size of its messages.
+    void result_sent(const ServerJob& job, const Asker& asker, const Sent& sent);
+    /// Records a request that exceeded a limit. At most one line a second for each client; the next line says how many were left out.
+    void limit_refused(const std::string& client, const LimitError& error);
     /// Records refused connections. `allowed`: limit of connections. `refused`: number of connections refused since the start.
     void connections_refused(std::uint64_t allowed, std::uint64_t refused);
-    /// Records a call that was not admitted. `peer`: the caller's address as gRPC writes it. At most one line a second: the next line says how
-    /// many were left out.
+    /// Records a connection. `client`: client of its first call; empty: not known yet.
+    void connected(const std::string& peer, const std::string& client);
+    /// Records a call that was not admitted. `peer`: the caller's address as gRPC writes it. At most one line a second; the next line says
+    /// how many were left out.
     void call_refused(const std::string& peer, const grpc::Status& why);
+    /// Records a call that was admitted, but made no job. At most one line a second for each client.
+    void call_failed(const Asker& asker, const grpc::Status& why);
+    /// Records that a client asked the server to end.
+    void drain_asked(const Asker& asker);
     void received(std::uint64_t bytes) { metrics_.received(bytes); }
     void sent(std::uint64_t bytes) { metrics_.sent(bytes); }
 
@@ -44,9 +68,7 @@ public:
 private:
     const std::shared_ptr<spdlog::logger> log_;
     Metrics metrics_;
-    std::mutex mutex_;
-    std::chrono::steady_clock::time_point last_refusal_{};  // time of the last line about a refused call
-    std::uint64_t unreported_ = 0;                          // refused calls since that line
+    Throttle refused_calls_, refused_clients_, failed_clients_;
 };
 
 }  // namespace octopair::service

@@ -4,25 +4,16 @@
 #include <grpcpp/security/auth_context.h>
 #include <grpcpp/server_context.h>
 #include <openssl/crypto.h>
-#include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
-#include <sstream>
+#include <chrono>
+#include <string_view>
 #include <utility>
-
-#include "octopair/error.hpp"
-#include "service/protocol/private_file.hpp"
 
 namespace octopair::service {
 
 namespace {
-
-std::array<unsigned char, 32> digest_of(std::string_view token) {
-    std::array<unsigned char, 32> digest{};
-    SHA256(reinterpret_cast<const unsigned char*>(token.data()), token.size(), digest.data());
-    return digest;
-}
 
 constexpr std::string_view bearer = "bearer ";
 
@@ -50,75 +41,58 @@ std::string name_of(const grpc::AuthContext& peer) {
     return {};
 }
 
-[[noreturn]] void refuse(const std::string& file, std::size_t line, const char* why) {
-    throw Error(ErrorCode::bad_input, file + ": line " + std::to_string(line) + ": " + why);
+/// Sets `name` to the caller's name, or returns why its token is refused.
+grpc::Status check_token(const grpc::ServerContextBase& context, const std::vector<Token>& known, std::string& name) {
+    const auto& metadata = context.client_metadata();
+    const auto given = metadata.find("authorization");
+    if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server requires a token"};
+    const std::string_view value(given->second.data(), given->second.size());
+    const TokenDigest digest = digest_of(value.substr(std::min(bearer.size(), value.size())));
+    const Token* token = nullptr;
+    // All tokens are compared, each in constant time, so that the time reveals nothing about a token.
+    for (const Token& one : known) {
+        if (CRYPTO_memcmp(one.digest.data(), digest.data(), digest.size()) == 0) token = &one;
+    }
+    if (token == nullptr || !is_bearer(value))
+        return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
+    if (token->until && std::chrono::system_clock::now() >= *token->until)
+        return {grpc::StatusCode::UNAUTHENTICATED, "the token has expired"};
+    name = "token:" + token->name;
+    return grpc::Status::OK;
 }
 
 }  // namespace
 
-Access::Access(std::string token_file) : token_file_(std::move(token_file)) { reload(); }
+Access::Access(std::string token_file, std::string role_file)
+    : token_file_(std::move(token_file)), role_file_(std::move(role_file)) {
+    reload();
+}
 
 void Access::reload() {
-    if (token_file_.empty()) return;
-    auto tokens = std::make_shared<const Tokens>(read(token_file_));
+    auto files = std::make_shared<Files>();
+    if (!token_file_.empty()) files->tokens = read_token_file(token_file_);
+    if (!role_file_.empty()) files->roles = Roles(role_file_);
     const std::lock_guard lock(mutex_);
-    tokens_ = std::move(tokens);
+    files_ = std::move(files);
 }
 
-std::shared_ptr<const Access::Tokens> Access::tokens() const {
+std::shared_ptr<const Access::Files> Access::files() const {
     const std::lock_guard lock(mutex_);
-    return tokens_;
+    return files_;
 }
 
-Access::Tokens Access::read(const std::string& token_file) {
-    constexpr std::size_t shortest = 16;
-    Tokens tokens;
-    std::istringstream in(read_private_file(token_file));
-    std::size_t number = 0;
-    for (std::string line; std::getline(in, line);) {
-        ++number;
-        std::istringstream words(line);
-        std::string name, token, rest;
-        if (!(words >> name) || name.front() == '#') continue;
-        if (!(words >> token) || words >> rest) refuse(token_file, number, "a line must be NAME TOKEN");
-        if (!std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; }))
-            refuse(token_file, number, "a token must consist of printable ASCII characters");
-        if (token.size() < shortest) refuse(token_file, number, "a token must have at least 16 bytes");
-        const Digest digest = digest_of(token);
-        const auto same = [&](const Token& known) { return known.name == name || known.digest == digest; };
-        if (std::any_of(tokens.begin(), tokens.end(), same))
-            refuse(token_file, number, "an earlier line has the same name or token");
-        tokens.push_back({name, digest});
-    }
-    if (tokens.empty()) throw Error(ErrorCode::bad_input, token_file + ": the file contains no token");
-    return tokens;
-}
-
-grpc::Status Access::identify(const grpc::ServerContextBase& context, std::string& owner) const {
+grpc::Status Access::identify(const grpc::ServerContextBase& context, Caller& caller) const {
+    const std::shared_ptr<const Files> files = this->files();
+    std::string name = "local";
     if (has_tokens()) {
-        const auto& metadata = context.client_metadata();
-        const auto given = metadata.find("authorization");
-        if (given == metadata.end()) return {grpc::StatusCode::UNAUTHENTICATED, "the server requires a token"};
-        const std::string_view value(given->second.data(), given->second.size());
-        const std::shared_ptr<const Tokens> known = tokens();
-        const Digest digest = digest_of(value.substr(std::min(bearer.size(), value.size())));
-        const Token* token = nullptr;
-        // All tokens are compared, each in constant time, so that the time reveals nothing about a token.
-        for (const Token& one : *known) {
-            if (CRYPTO_memcmp(one.digest.data(), digest.data(), digest.size()) == 0) token = &one;
-        }
-        if (token == nullptr || !is_bearer(value))
-            return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
-        owner = "token:" + token->name;
-        return grpc::Status::OK;
+        const grpc::Status status = check_token(context, files->tokens, name);
+        if (!status.ok()) return status;
+    } else if (const auto peer = context.auth_context(); peer && peer->IsPeerAuthenticated()) {
+        name = name_of(*peer);
+        if (name.empty()) return {grpc::StatusCode::UNAUTHENTICATED, "the certificate names nobody"};
     }
-    const auto caller = context.auth_context();
-    if (caller && caller->IsPeerAuthenticated()) {
-        owner = name_of(*caller);
-        if (owner.empty()) return {grpc::StatusCode::UNAUTHENTICATED, "the certificate names nobody"};
-        return grpc::Status::OK;
-    }
-    owner = "local";
+    caller = files->roles.caller(name);
+    if (caller.role == Role::none) return {grpc::StatusCode::UNAUTHENTICATED, "the client has no access any more"};
     return grpc::Status::OK;
 }
 

@@ -1,4 +1,4 @@
-// Access: authenticates callers and names them.
+// Access: authenticates callers, names them, and finds their roles.
 //
 // Name of a caller, which owns its jobs:
 //   with tokens                "token:" and the name of its token
@@ -8,12 +8,14 @@
 //   else                       "local" for all callers; the address limits them (private Unix socket, or loopback)
 #pragma once
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "service/server/net/caller.hpp"
+#include "service/server/net/role_file.hpp"
+#include "service/server/net/token_file.hpp"
 
 namespace grpc {
 class ServerContextBase;
@@ -24,34 +26,28 @@ namespace octopair::service {
 
 class Access {
 public:
-    /// `token_file`: path of a file with lines "NAME TOKEN", in which lines that begin with # are comments; empty: no tokens.
-    /// Throws: as read_private_file; Error{bad_input} for an invalid line, a token of less than 16 bytes, a duplicate name or
-    /// token, or a file without tokens.
-    explicit Access(std::string token_file);
+    /// Paths of a token file and a role file (token_file.hpp, role_file.hpp); empty: none. Throws: as reading them.
+    Access(std::string token_file, std::string role_file);
 
-    /// Reads the token file again. Calls that are admitted later need one of its tokens. Throws: as the constructor; the tokens then stay.
+    /// Reads the files again. They hold for calls that are admitted later. Throws: as the constructor; then nothing changes.
     /// Thread safety: safe.
     void reload();
     bool has_tokens() const { return !token_file_.empty(); }
-    /// Sets `owner` to the caller's name, or returns why the caller is refused. Takes the same time for every wrong token.
+    /// Sets `caller` to the authenticated caller, or returns why the caller is refused. Takes the same time for every wrong token.
     /// Thread safety: safe.
-    grpc::Status identify(const grpc::ServerContextBase& context, std::string& owner) const;
+    grpc::Status identify(const grpc::ServerContextBase& context, Caller& caller) const;
 
 private:
-    using Digest = std::array<unsigned char, 32>;
-    struct Token {
-        std::string name;
-        Digest digest;
+    struct Files {
+        std::vector<Token> tokens;
+        Roles roles;
     };
 
-    using Tokens = std::vector<Token>;
+    std::shared_ptr<const Files> files() const;
 
-    static Tokens read(const std::string& token_file);
-    std::shared_ptr<const Tokens> tokens() const;
-
-    const std::string token_file_;
+    const std::string token_file_, role_file_;
     mutable std::mutex mutex_;
-    std::shared_ptr<const Tokens> tokens_;
+    std::shared_ptr<const Files> files_;
 };
 
 }  // namespace octopair::service

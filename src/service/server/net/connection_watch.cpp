@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -39,7 +40,7 @@ void ConnectionWatch::add(const Descriptor& connection, const Peer& peer, Clock:
     Descriptor copy(::fcntl(connection.number(), F_DUPFD_CLOEXEC, 0));
     if (!copy.open()) return;  // without descriptors nothing can be watched; the limit on connections still holds
     while (is_full(peer.address)) cut_oldest();
-    unknown_.push_back({std::move(copy), peer, now});
+    unknown_.push_back({std::move(copy), connection.number(), peer, now});
 }
 
 bool ConnectionWatch::is_full(const std::string& address) const {
@@ -68,8 +69,22 @@ void ConnectionWatch::cut(std::vector<Unknown>::iterator connection) {
     ++cut_;
 }
 
-void ConnectionWatch::make_known(const std::string& name) {
-    std::erase_if(unknown_, [&](const Unknown& connection) { return connection.peer.name == name; });
+ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, const std::string& client) {
+    const auto found = std::find_if(unknown_.begin(), unknown_.end(),
+                                    [&](const Unknown& connection) { return connection.peer.name == name; });
+    if (found == unknown_.end()) return Admission::known_before;
+    if (terms_.max_per_client > 0) {
+        if (open_connections(client) >= terms_.max_per_client) return Admission::too_many;
+        known_.push_back({found->number, socket_of(found->connection.number()), client});
+    }
+    unknown_.erase(found);
+    return Admission::known_now;
+}
+
+std::uint64_t ConnectionWatch::open_connections(const std::string& client) {
+    std::erase_if(known_, [](const Known& connection) { return socket_of(connection.number) != connection.socket; });
+    return std::uint64_t(std::count_if(known_.begin(), known_.end(),
+                                       [&](const Known& connection) { return connection.client == client; }));
 }
 
 std::uint64_t ConnectionWatch::check(Clock::time_point now) {
@@ -83,6 +98,11 @@ std::uint64_t ConnectionWatch::check(Clock::time_point now) {
         }
     }
     return std::exchange(cut_, 0);
+}
+
+ino_t socket_of(int descriptor) {
+    struct stat found {};
+    return ::fstat(descriptor, &found) == 0 && S_ISSOCK(found.st_mode) ? found.st_ino : 0;
 }
 
 std::optional<ConnectionWatch::Peer> peer_of(const Descriptor& connection) {

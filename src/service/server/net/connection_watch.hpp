@@ -1,4 +1,4 @@
-// ConnectionWatch: which connections of a TCP listener are cut before a client has shown who it is.
+// ConnectionWatch: which connections of a TCP listener are cut before a client has shown who it is, and how many each client has.
 //
 // A connection is known after its first call that the server admits. Until then it may be anybody's, so it is bounded:
 //   - in time: at most `greeting` from its start;
@@ -6,7 +6,10 @@
 //     first call of a connection must be small; Describe is;
 //   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
 //     oldest unknown connection of the address that has most of them is cut. So known clients always find slots.
+// A known connection counts for the client of its first call, until it is closed.
 #pragma once
+
+#include <sys/types.h>
 
 #include <chrono>
 #include <cstdint>
@@ -25,6 +28,7 @@ public:
 
     struct Terms {
         std::uint64_t max_connections = 0;  ///< 0: no limit on the number of unknown connections
+        std::uint64_t max_per_client = 0;   ///< known connections of one client; 0: no limit
         std::chrono::milliseconds greeting{10'000};
         std::uint64_t max_bytes = 512 << 10;
     };
@@ -39,8 +43,10 @@ public:
     /// Watches a connection until it is known, closed or cut. Keeps a copy of its descriptor until then. Cuts other connections if too many
     /// are unknown.
     void add(const Descriptor& connection, const Peer& peer, Clock::time_point now);
-    /// Stops watching the connection of a peer.
-    void make_known(const std::string& name);
+    enum class Admission : std::uint8_t { known_before, known_now, too_many };
+    /// Notes that `client` makes a call on the connection of a peer. A connection that is not known yet becomes known and is not watched
+    /// any longer, unless the client has too many already.
+    Admission make_known(const std::string& name, const std::string& client);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
     std::uint64_t check(Clock::time_point now);
 
@@ -49,18 +55,31 @@ public:
 private:
     struct Unknown {
         Descriptor connection;  // a copy: its number cannot be reused for another connection
+        int number;             // gRPC's descriptor
         Peer peer;
         Clock::time_point since;
     };
 
+    struct Known {
+        int number;    // gRPC's descriptor
+        ino_t socket;  // shows whether the descriptor is still of this connection
+        std::string client;
+    };
+
     bool is_full(const std::string& address) const;
+    std::uint64_t open_connections(const std::string& client);
     void cut_oldest();
     void cut(std::vector<Unknown>::iterator connection);
 
     const Terms terms_;
     std::vector<Unknown> unknown_;  // oldest first
+    std::vector<Known> known_;      // closed ones are removed when open ones are counted
     std::uint64_t cut_ = 0;
 };
+
+/// Returns the inode of a socket, or 0 if the descriptor is not of a socket. The system reuses numbers of closed descriptors, but not
+/// inodes of open sockets.
+ino_t socket_of(int descriptor);
 
 /// Returns the peer of a TCP connection, or nothing if the connection has ended.
 std::optional<ConnectionWatch::Peer> peer_of(const Descriptor& connection);

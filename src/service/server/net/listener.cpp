@@ -34,11 +34,6 @@ constexpr std::chrono::milliseconds refusal_delay(250);  // to sending the reaso
 constexpr std::size_t max_refused_open = 64;             // refused connections that are not closed yet
 constexpr std::size_t max_spares = 8;                    // descriptors reserved for refusing connections
 
-ino_t socket_of(int descriptor) {
-    struct stat found {};
-    return ::fstat(descriptor, &found) == 0 && S_ISSOCK(found.st_mode) ? found.st_ino : 0;
-}
-
 void send(const Descriptor& connection, std::string_view bytes) {
     (void)::send(connection.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
@@ -137,7 +132,9 @@ void Listener::bind_tcp(const std::string& unprotected) {
 void Listener::start(Terms terms) {
     terms_ = std::move(terms);
     if (!address_.is_unix())
-        watch_.emplace(ConnectionWatch::Terms{.max_connections = terms_.max_connections, .greeting = terms_.greeting});
+        watch_.emplace(ConnectionWatch::Terms{.max_connections = terms_.max_connections,
+                                              .max_per_client = terms_.max_per_client,
+                                              .greeting = terms_.greeting});
     thread_ = std::thread([this] { accept_connections(); });
 }
 
@@ -210,6 +207,7 @@ void Listener::take(Descriptor connection) {
         (void)::setsockopt(connection.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
     }
     if (!watch(connection)) return;
+    report_process(connection);
     accepted_.push_back({connection.number(), socket_of(connection.number())});
     connections_ = accepted_.size();
     terms_.accept(std::move(connection));
@@ -226,11 +224,12 @@ bool Listener::watch(const Descriptor& connection) {
     return true;
 }
 
-void Listener::make_known(const std::string& peer) {
-    if (!watch_) return;
+ConnectionWatch::Admission Listener::make_known(const std::string& peer, const std::string& client) {
+    if (!watch_) return ConnectionWatch::Admission::known_before;
     const std::lock_guard lock(watch_mutex_);
-    watch_->make_known(peer);
+    const auto admission = watch_->make_known(peer, client);
     unknown_ = watch_->unknown();
+    return admission;
 }
 
 void Listener::check_watched() {
@@ -260,6 +259,14 @@ bool Listener::is_ours(const Descriptor& connection) const {
     socklen_t size = sizeof(peer);
     return ::getsockopt(connection.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
            (peer.uid == ::geteuid() || peer.uid == 0);
+}
+
+void Listener::report_process(const Descriptor& connection) const {
+    if (!address_.is_unix() || !terms_.connected) return;
+    ucred peer{};
+    socklen_t size = sizeof(peer);
+    if (::getsockopt(connection.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return;
+    terms_.connected("unix:user=" + std::to_string(peer.uid) + ",process=" + std::to_string(peer.pid));
 }
 
 /// Removes closed connections from the list. gRPC does not report closing, so the inodes of the descriptors are compared.

@@ -40,18 +40,21 @@ public:
     const Address& address() const { return address_; }
 
     struct Terms {
-        std::uint64_t max_connections = 0;           ///< 0: no limit
-        bool encrypted = false;                      ///< connections use TLS; a refused connection then gets no reason
-        std::function<void(Descriptor)> accept;      ///< receives each accepted connection
-        std::function<void()> refused;               ///< called after refusals and cuts, at most once a second
+        std::uint64_t max_connections = 0;       ///< 0: no limit
+        std::uint64_t max_per_client = 0;        ///< over TCP; 0: no limit
+        bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
+        std::function<void(Descriptor)> accept;  ///< receives each accepted connection
+        std::function<void()> refused;           ///< called after refusals and cuts, at most once a second
+        /// Receives the process at the other end of each accepted connection of a Unix socket, for the log.
+        std::function<void(const std::string&)> connected;
         std::chrono::milliseconds greeting{10'000};  ///< time in which a TCP client must make a call that is admitted
     };
     /// Starts a thread that accepts connections. The functions of `terms` are called on this thread.
     void start(Terms terms);
     /// Stops accepting connections.
     void stop();
-    /// Notes that a call of this peer was admitted (ConnectionWatch::Peer::name). Thread safety: safe.
-    void make_known(const std::string& peer);
+    /// Notes that `client` makes a call from this peer (ConnectionWatch::Peer::name). Thread safety: safe.
+    ConnectionWatch::Admission make_known(const std::string& peer, const std::string& client);
     /// Returns whether connections wait for that. Thread safety: safe.
     bool awaits_calls() const { return unknown_ > 0; }
     std::uint64_t connections() const { return connections_; }
@@ -80,6 +83,7 @@ private:
     void accept_connections();
     void take(Descriptor connection);
     bool is_ours(const Descriptor& connection) const;
+    void report_process(const Descriptor& connection) const;
     void forget_closed();
     void refuse_one_more();
     void refill_spares();

@@ -51,7 +51,7 @@ PairsInFile::Target DetachedJobs::result_target(const std::string& base, const S
     return {base + ".result", stored.hash, server_.state->disk(), server_.options.limits.pairs, stored.owner};
 }
 
-std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, JobQuota::Slot slot) const {
+std::shared_ptr<ServerJob> DetachedJobs::make_job(StoredJob::Parts parts, Budget::Reservation slot) const {
     ServerJob::Parts job;
     job.owner = parts.stored.owner;
     job.spec = parts.stored.spec;
@@ -101,10 +101,10 @@ void DetachedJobs::restore(StateFolder::Found found) {
     auto pairs = found.result ? std::make_shared<PairsInFile>(result_target(found.base, found.stored), *found.result,
                                                               std::move(found.result_disk))
                               : std::make_shared<PairsInFile>(result_target(found.base, found.stored));
-    JobQuota::Slot slot;
+    Budget::Reservation slot;
     if (!found.result && !damage) {
         try {
-            slot = server_.job_quota.take_slot(found.stored.owner);
+            slot = server_.job_slots.take(1, found.stored.owner);
         } catch (const LimitError&) {
             log_text(*server_.log, LogLevel::warning,
                      name + ": accepted, although the server now has more jobs than its limits allow");
@@ -139,7 +139,7 @@ Submission DetachedJobs::begin_job(const std::string& owner, v1::JobSpec spec) {
         submission.upload = std::make_unique<StoredUpload>(std::move(stored));
         return submission;
     }
-    submission.slot = server_.job_quota.take_slot(owner);
+    submission.slot = server_.job_slots.take(1, owner);
     submission.upload = std::make_unique<StoredUpload>(*server_.state, std::move(stored));
     return submission;
 }

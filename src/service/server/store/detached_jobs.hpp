@@ -13,7 +13,7 @@ namespace octopair::service {
 
 /// A detached job whose input is being uploaded.
 struct Submission {
-    JobQuota::Slot slot;
+    Budget::Reservation slot;
     std::unique_ptr<StoredUpload> upload;
 };
 
@@ -43,7 +43,7 @@ private:
     void restore(StateFolder::Found found);
     std::shared_ptr<ServerJob> find_same(const StoredUpload& upload) const;
     Submission begin_job(const std::string& owner, v1::JobSpec spec);
-    std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, JobQuota::Slot slot) const;
+    std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, Budget::Reservation slot) const;
     void set_queued(ServerJob& job) const;
     PairsInFile::Target result_target(const std::string& base, const StoredSpec& stored) const;
 

@@ -1,0 +1,32 @@
+// Role file: the roles of clients that are not owners (caller.hpp).
+//
+// Each line is CLIENT ROLE. CLIENT is a client's name as in the log (access.hpp), in quotes if it contains spaces. ROLE is one of
+//   owner            the role of all clients that the file does not name
+//   reader OWNER     sees the jobs of this owner, and reads their results
+//   operator         sees and cancels the jobs of all owners, and drains the server
+//   none             has no access
+// Lines that begin with # are comments.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "service/server/net/caller.hpp"
+
+namespace octopair::service {
+
+class Roles {
+public:
+    /// All clients are owners.
+    Roles() = default;
+    /// Throws: as read_private_file; Error{bad_input} for an invalid line or a client with two lines.
+    explicit Roles(const std::string& path);
+
+    /// Returns the caller with this name and its role.
+    Caller caller(const std::string& name) const;
+
+private:
+    std::map<std::string, Caller> callers_;
+};
+
+}  // namespace octopair::service

@@ -1,0 +1,211 @@
+// Tests roles of clients, hashed and expiring tokens, and the revocation of access without a restart.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+#include <functional>
+#include <tuple>
+
+#include "octopair/job_client.hpp"
+#include "service/guarded.hpp"
+#include "support/kinds.hpp"
+
+namespace octopair::test {
+namespace {
+
+class Roles : public ::testing::Test {
+protected:
+    Roles() {
+        write_secret(
+            folder_.file("tokens"),
+            "anna anna-0123456789ab\nbert bert-0123456789ab\nruth ruth-0123456789ab\noleg oleg-0123456789ab\n");
+        write_secret(folder_.file("roles"), "# watches anna\ntoken:ruth reader token:anna\n\"token:oleg\" operator\n");
+        options_ = options_at("unix:" + folder_.file("socket"));
+        options_.token_file = folder_.file("tokens");
+        options_.role_file = folder_.file("roles");
+        options_.state_folder = folder_.file("state");
+        options_.on_drain = [this] { drained_ = true; };
+        server_ = std::make_unique<service::Server>(options_, silent());
+    }
+
+    std::unique_ptr<JobClient> client(const std::string& name, const std::string& owner = {}) const {
+        ClientOptions options;
+        options.token = name + "-0123456789ab";
+        options.owner = owner;
+        options.patience = std::chrono::milliseconds(300);
+        return std::make_unique<JobClient>(server_->address().text(), options);
+    }
+    std::string submit(const std::string& name, const std::string& id = {}) const {
+        return client(name)->submit({std::span(boxes_), {}}, {}, {.id = id});
+    }
+    std::string refusal_of(const std::string& roles) const {
+        write_secret(folder_.file("roles"), roles);
+        return error_of(ErrorCode::bad_input, [&] { server_->reload(); });
+    }
+    std::string not_permitted(const std::string& role) const {
+        return server_->address().text() + ": the role " + role + " does not permit this call";
+    }
+
+    TemporaryDirectory folder_;
+    service::ServerOptions options_;
+    std::atomic<bool> drained_ = false;
+    std::unique_ptr<service::Server> server_;
+    std::vector<Box3f> boxes_ = make_boxes("uniform", 1000, 1);
+};
+
+TEST_F(Roles, AReaderSeesTheJobsOfOneOwner) {
+    const std::string of_anna = submit("anna"), of_bert = submit("bert");
+    const auto ruth = client("ruth");
+    PairList expected, read;
+    (void)client("anna")->result(of_anna, expected);
+    (void)ruth->result(of_anna, read);
+    EXPECT_EQ(read.to_vector(), expected.to_vector());
+    EXPECT_GT(read.size(), 0u);
+    const std::vector<JobStatus> list = ruth->list();
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].id, of_anna);
+    EXPECT_EQ(list[0].owner, "token:anna");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { ruth->status(of_bert); }), "there is no job " + of_bert);
+    for (const auto& call : std::vector<std::function<void()>>{
+             [&] { submit("ruth"); }, [&] { ruth->cancel(of_anna); }, [&] { ruth->release(of_anna); },
+             [&] { ruth->drain(); }, [&] { (void)ask(server_->address().text(), {.token = "ruth-0123456789ab"}); }})
+        EXPECT_EQ(error_of(ErrorCode::usage, call), not_permitted("reader"));
+    EXPECT_EQ(client("anna")->list().at(0).owner, "") << "an owner's own jobs";
+}
+
+TEST_F(Roles, AnOperatorSeesAndCancelsTheJobsOfAll) {
+    const std::string id = "01234567-89ab-cdef-0123-456789abcdef";
+    submit("anna", id);
+    submit("bert", id);
+    const std::string of_bert = submit("bert");
+    const auto oleg = client("oleg");
+    const std::vector<JobStatus> list = oleg->list();
+    ASSERT_EQ(list.size(), 3u);
+    EXPECT_EQ(list[0].owner, "token:anna");
+    EXPECT_EQ(list[2].owner, "token:bert");
+    EXPECT_EQ(oleg->status(of_bert).owner, "token:bert");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { oleg->status(id); }),
+              "several owners have a job " + id + "; name the owner");
+    EXPECT_EQ(client("oleg", "token:anna")->cancel(id).owner, "token:anna");
+    PairList pairs;
+    for (const auto& call :
+         std::vector<std::function<void()>>{[&] { submit("oleg"); }, [&] { (void)oleg->release(of_bert); }})
+        EXPECT_EQ(error_of(ErrorCode::usage, call), not_permitted("operator"));
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)oleg->result(of_bert, pairs); }), not_permitted("operator"));
+    EXPECT_FALSE(drained_);
+    oleg->drain();
+    EXPECT_TRUE(drained_);
+}
+
+TEST_F(Roles, AnOwnerNamesNobodyElsesJobs) {
+    const std::string of_bert = submit("bert");
+    const auto anna = client("anna", "token:bert");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { anna->status(of_bert); }), "there is no job " + of_bert);
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { anna->cancel(of_bert); }), "there is no job " + of_bert);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { anna->drain(); }), not_permitted("owner"));
+    EXPECT_FALSE(drained_);
+}
+
+TEST_F(Roles, OperatorsListManyJobsOfManyOwners) {
+    options_.limits.jobs_per_client = 2000;
+    server_.reset();
+    server_ = std::make_unique<service::Server>(options_, silent());
+    const std::vector<Box3f> few = make_boxes("uniform", 10, 1);
+    for (const char* name : {"anna", "bert"}) {
+        const auto owner = client(name);
+        for (int i = 0; i < 600; ++i) (void)owner->submit({std::span(few), {}});
+    }
+    const std::vector<JobStatus> list = client("oleg")->list();
+    EXPECT_EQ(list.size(), 1200u);
+    EXPECT_TRUE(std::is_sorted(list.begin(), list.end(), [](const JobStatus& a, const JobStatus& b) {
+        return std::tie(a.owner, a.id) < std::tie(b.owner, b.id);
+    }));
+}
+
+TEST_F(Roles, AccessEndsWithoutARestart) {
+    EXPECT_NO_THROW((void)client("bert")->list());
+    write_secret(folder_.file("roles"), "token:bert none\n");
+    server_->reload();
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)client("bert")->list(); }),
+              server_->address().text() + ": the client has no access any more");
+    EXPECT_NO_THROW(submit("ruth")) << "an owner again";
+}
+
+TEST_F(Roles, InvalidLinesAreRefusedAndChangeNothing) {
+    const std::string file = folder_.file("roles");
+    EXPECT_EQ(refusal_of("token:anna\n"),
+              file + ": line 1: a line must be CLIENT ROLE; roles are owner, reader OWNER, operator and none");
+    EXPECT_EQ(refusal_of("\nanna operator\n"),
+              file + ": line 2: a client's name begins with token: or certificate:, as in the server's log");
+    EXPECT_EQ(refusal_of("token:anna reader bert\n"),
+              file + ": line 1: the owner's name begins with token: or certificate:");
+    for (const char* wrong : {"token:anna reader\n", "token:anna operator token:bert\n", "token:a reader token:b c\n"})
+        EXPECT_EQ(refusal_of(wrong),
+                  file + ": line 1: the role reader needs the name of one owner; other roles have none");
+    EXPECT_EQ(refusal_of("token:anna none\ntoken:anna owner\n"),
+              file + ": line 2: an earlier line has the same client");
+    EXPECT_EQ(client("oleg")->list().size(), 0u) << "still an operator";
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { submit("oleg"); }), not_permitted("operator"));
+}
+
+class TokenLines : public Roles {
+protected:
+    /// Returns whether the server accepts anna's token with this line.
+    bool accepts(const std::string& line) const {
+        write_secret(folder_.file("tokens"), line + "\n");
+        server_->reload();
+        try {
+            (void)client("anna")->list();
+            return true;
+        } catch (const Error&) {
+            return false;
+        }
+    }
+    std::string wrong(const std::string& line) const {
+        write_secret(folder_.file("tokens"), line + "\n");
+        return error_of(ErrorCode::bad_input, [&] { server_->reload(); });
+    }
+};
+
+TEST_F(TokenLines, MayHoldHashes) {
+    // printf anna-0123456789ab | sha256sum
+    const std::string hash = "ec5f5bd74fe6158aa9084539e49b1dc8564f45d7cb2fb548090013acd3b643eb";
+    EXPECT_TRUE(accepts("anna anna-0123456789ab"));
+    EXPECT_TRUE(accepts("anna sha256:" + hash));
+    EXPECT_FALSE(accepts("anna sha256:" + std::string(hash.rbegin(), hash.rend())));
+    const std::string file = folder_.file("tokens");
+    EXPECT_EQ(wrong("anna sha256:12"), file + ": line 1: sha256: must be followed by 64 hexadecimal digits");
+    EXPECT_EQ(wrong("anna sha256:" + std::string(64, 'x')),
+              file + ": line 1: sha256: must be followed by 64 hexadecimal digits");
+}
+
+TEST_F(TokenLines, MayExpire) {
+    EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31"));
+    EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31T23:59:59Z"));
+    EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29"));
+    EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29T12:00:00Z"));
+    const std::string file = folder_.file("tokens");
+    for (const char* time : {"tomorrow", "2099-13-01", "2099-01-01T12:00", "2099-01-01 12:00"})
+        EXPECT_NE(wrong("anna anna-0123456789ab until=" + std::string(time)).find(file + ": line 1: "),
+                  std::string::npos);
+}
+
+TEST_F(TokenLines, ExpireWhenTheirDayEnds) {
+    const std::time_t now = std::time(nullptr);
+    const auto day = [&](int from_today) {
+        const std::time_t time = now + from_today * 24 * 3600;
+        std::tm parts{};
+        ::gmtime_r(&time, &parts);
+        char text[32];
+        (void)std::strftime(text, sizeof text, "%Y-%m-%d", &parts);
+        return std::string(text);
+    };
+    EXPECT_FALSE(accepts("anna anna-0123456789ab until=" + day(-1)));
+    EXPECT_TRUE(accepts("anna anna-0123456789ab until=" + day(1)));
+    const bool today = accepts("anna anna-0123456789ab until=" + day(0));
+    EXPECT_TRUE(today || std::time(nullptr) / (24 * 3600) > now / (24 * 3600));
+}
+
+}  // namespace
+}  // namespace octopair::test
