@@ -31,9 +31,9 @@ void add_set(JobHash& hash, bool there, const v1::ObjectSet& set) {
 
 }  // namespace
 
-JobHash::JobHash(const v1::JobSpec& spec) : state_(std::make_unique<State>()) {
+JobHash::JobHash(const v1::JobSpec& spec, std::uint32_t algorithm) : state_(std::make_unique<State>()) {
     XXH3_128bits_reset(&state_->xxh);
-    add_number(*this, algorithm_version);
+    add_number(*this, algorithm);
     add_number(*this, std::uint32_t(spec.order()));
     add_number(*this, spec.margin());
     const std::array<std::uint64_t, 3> numbers = {spec.has_limit(), spec.limit(), spec.count_only()};

@@ -25,7 +25,8 @@ inline constexpr std::uint32_t algorithm_version = 1;
 /// The hash detects mistakes. It is not secure against a client that constructs collisions for itself.
 class JobHash {
 public:
-    explicit JobHash(const v1::JobSpec& spec);
+    /// `algorithm`: version of results.
+    explicit JobHash(const v1::JobSpec& spec, std::uint32_t algorithm = algorithm_version);
     ~JobHash();
     JobHash(const JobHash&) = delete;
     JobHash& operator=(const JobHash&) = delete;

@@ -21,13 +21,19 @@ protected:
         test::write_file(file_, bytes);
     }
 
+    /// Expects that a message for the client names the damaged file, without its folder.
+    void expect_names_file(const std::string& message) const {
+        const std::string name = std::filesystem::path(file_).filename().string();
+        EXPECT_TRUE(message.starts_with(name + ": damaged: ")) << message;
+        EXPECT_EQ(message.find(server_.state()), std::string::npos) << message;
+    }
+
     void expect_failed() {
         server_.start();
         const JobStatus status = client_->wait(id_, std::chrono::minutes(1));
         ASSERT_EQ(int(status.state), int(JobState::failed));
         EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed));
-        EXPECT_NE(std::string(status.error.value().what()).find(file_), std::string::npos)
-            << status.error.value().what();
+        expect_names_file(status.error.value().what());
         expect_served();
         client_->release(id_);
         EXPECT_TRUE(comes_true([&] { return server_.files(".job").size() == 1; }));
@@ -94,7 +100,7 @@ TEST_F(Damage, OfPairs) {
     EXPECT_EQ(int(client_->status(id_).state), int(JobState::done));
     PairList pairs;
     const std::string words = test::error_of(ErrorCode::io_failed, [&] { client_->result(id_, pairs); });
-    EXPECT_NE(words.find(file_), std::string::npos) << words;
+    expect_names_file(words);
     EXPECT_EQ(pairs.size(), 0u);
     expect_served();
 }

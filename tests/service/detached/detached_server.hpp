@@ -62,12 +62,12 @@ public:
         return std::make_unique<JobClient>(address(), options);
     }
 
-    /// Returns the files in the state folder whose names end with `ending`, except the lock.
+    /// Returns the files of jobs in the state folder whose names end with `ending`.
     std::vector<std::string> files(const std::string& ending = {}) const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(state())) {
             const std::string name = entry.path().filename().string();
-            if (name != "lock" && name.ends_with(ending)) names.push_back(entry.path().string());
+            if (name != "lock" && name != "version" && name.ends_with(ending)) names.push_back(entry.path().string());
         }
         return names;
     }

@@ -45,6 +45,8 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
         const JobStatus status = client->wait(too_large, std::chrono::minutes(1));
         ASSERT_EQ(int(status.state), int(JobState::failed));
         EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed)) << status.error->what();
+        EXPECT_EQ(std::string(status.error->what()),
+                  "the result does not fit on the server's disk, which has 3145728 bytes in all");
         refused(many);
         EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
         client->release(id);
@@ -52,6 +54,87 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
         EXPECT_TRUE(same_bytes(pairs_there(*client, again), pairs_here(work)));
     }
     EXPECT_EQ(::umount(disk.c_str()), 0);
+}
+
+/// A job whose result finds no room runs again when there is. Its readers receive each pair once.
+TEST(FullDisk, WaitsForRoomForAResult) {
+    const test::TemporaryDirectory folder;
+    const std::string disk = folder.file("disk");
+    if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
+    {
+        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
+        const auto client = server.client();
+        const std::string filler = disk + "/filler";
+        test::write_file(filler, std::string(2'000'000, 'x'));
+        const std::vector<Box3f> heap(600);  // its result has 1.4 MB
+        const Work work(Objects{std::span(heap), {}});
+        const std::string id = submit(*client, work);
+        ASSERT_TRUE(comes_true([&] { return client->status(id).waits_for_room; }));
+        EXPECT_EQ(int(client->status(id).state), int(JobState::queued));
+        std::vector<Pair> read;
+        std::jthread reader([&] { read = pairs_there(*client, id); });
+        const Work small(Objects{std::span(heap).first(30), {}});
+        const std::string other = submit(*client, small);
+        EXPECT_TRUE(same_bytes(pairs_there(*client, other), pairs_here(small))) << "later jobs do not wait";
+        std::filesystem::remove(filler);
+        reader.join();
+        EXPECT_TRUE(same_bytes(read, pairs_here(work)));
+        EXPECT_FALSE(client->status(id).waits_for_room);
+        EXPECT_NE(server.log().find("job " + id + ": waits for room for its result: "), std::string::npos) << server.log();
+        EXPECT_NE(server.log().find("No space left"), std::string::npos);
+        EXPECT_EQ(server.log().find(disk), std::string::npos) << "messages do not name the server's folders";
+    }
+    EXPECT_EQ(::umount(disk.c_str()), 0);
+}
+
+class FullState : public ::testing::Test {
+protected:
+    static constexpr std::uint64_t most = 4'000'000;
+    DetachedServer server_{[](service::ServerOptions& options) { options.limits.state_bytes = most; }};
+    std::unique_ptr<JobClient> client_ = server_.client();
+    std::vector<Box3f> heap_ = std::vector<Box3f>(900);  // its result has 3.2 MB
+};
+
+TEST_F(FullState, MakesAResultWaitUntilOthersAreReleased) {
+    const Work work(Objects{std::span(heap_), {}});
+    const std::string first = submit(*client_, work);
+    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
+    const std::string second = submit(*client_, work);
+    ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
+    client_->release(first);
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, second), pairs_here(work)));
+}
+
+TEST_F(FullState, EndsAJobThatCanNeverHaveRoom) {
+    heap_.resize(1100);  // 4.8 MB
+    const std::string id = client_->submit({std::span(heap_), {}});
+    const JobStatus status = client_->wait(id, std::chrono::minutes(1));
+    ASSERT_EQ(int(status.state), int(JobState::failed));
+    EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::resource_limit));
+    EXPECT_NE(std::string(status.error->what()).find("state_bytes: the server has 4000000"), std::string::npos)
+        << status.error->what();
+}
+
+TEST_F(FullState, LetsAWaitingJobBeCancelled) {
+    const std::string first = client_->submit({std::span(heap_), {}});
+    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
+    const std::string second = client_->submit({std::span(heap_), {}});
+    ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
+    EXPECT_EQ(int(client_->cancel(second).state), int(JobState::cancelled));
+    client_->release(second);
+    EXPECT_EQ(client_->list().size(), 1u);
+}
+
+TEST_F(FullState, LeavesAWaitingJobToTheNextServer) {
+    const Work work(Objects{std::span(heap_), {}});
+    const std::string first = submit(*client_, work);
+    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
+    const std::string second = submit(*client_, work);
+    ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
+    server_.restart();
+    ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
+    client_->release(first);
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, second), pairs_here(work)));
 }
 
 }  // namespace

@@ -38,6 +38,20 @@ std::uint64_t Budget::taken() const {
     return taken_;
 }
 
+bool Budget::has(std::uint64_t amount, const std::string& client) const {
+    const std::lock_guard lock(mutex_);
+    const auto fits = [&](std::uint64_t most, std::uint64_t taken) {
+        return most == 0 || (taken <= most && amount <= most - taken);
+    };
+    return fits(total_, taken_) && (client.empty() || fits(each_, of_client(client)));
+}
+
+/// Requires: mutex_ is held.
+std::uint64_t Budget::of_client(const std::string& client) const {
+    const auto known = of_clients_.find(client);
+    return known == of_clients_.end() ? 0 : known->second;
+}
+
 void Budget::add(std::uint64_t amount, const std::string& client) {
     const std::lock_guard lock(mutex_);
     if (total_ > 0 && (taken_ > total_ || amount > total_ - taken_)) {
@@ -46,8 +60,7 @@ void Budget::add(std::uint64_t amount, const std::string& client) {
                              std::to_string(taken_) + " are taken; " + std::to_string(amount) + " more are too many");
     }
     if (each_ > 0 && !client.empty()) {
-        const auto known = of_clients_.find(client);
-        const std::uint64_t own = known == of_clients_.end() ? 0 : known->second;
+        const std::uint64_t own = of_client(client);
         if (own > each_ || amount > each_ - own) {
             throw LimitError(limit_ + "_per_client", each_,
                              limit_ + "_per_client: a client may have " + std::to_string(each_) + " " + unit_ +

@@ -55,11 +55,14 @@ public:
     Reservation take_unchecked(std::uint64_t amount, const std::string& client = {});
     /// Throws: LimitError if `amount` is more than a client or the whole budget may have, so that take() can never succeed.
     void check(std::uint64_t amount) const;
+    /// Returns whether take() would succeed now.
+    bool has(std::uint64_t amount, const std::string& client) const;
     std::uint64_t taken() const;
     /// Returns the limit of each client; 0: none.
     std::uint64_t each() const { return each_; }
 
 private:
+    std::uint64_t of_client(const std::string& client) const;
     void add(std::uint64_t amount, const std::string& client);
     void add_unchecked(std::uint64_t amount, const std::string& client);
     void give(std::uint64_t amount, const std::string& client) noexcept;

@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <string>
 
+#include "octopair/error.hpp"
 #include "service/server/jobs/budget.hpp"
 
 namespace octopair {
@@ -22,6 +23,12 @@ namespace octopair::service {
 
 class UploadedInput;
 
+/// The server's disk, or its limit on state, has no room now for something that a job stores.
+class NoRoomError : public Error {
+public:
+    explicit NoRoomError(const std::string& message) : Error(ErrorCode::io_failed, message) {}
+};
+
 class JobRecord {
 public:
     virtual ~JobRecord() = default;
@@ -33,8 +40,13 @@ public:
     /// Reads the input into memory of `engine`. Throws: Error{io_failed} for a damaged file, Error{cancelled} after a stop
     /// request.
     virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
-    /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}.
+    /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}, NoRoomError.
     virtual void end(const v1::JobReport& ending) = 0;
+    /// Deletes what was stored of the result, because there was no room for more. The job must then wait until has_room().
+    /// Throws: Error if there can never be enough room.
+    virtual void wait_for_room(const NoRoomError& why) = 0;
+    /// Returns whether the job may run, as far as room for its result is concerned.
+    virtual bool has_room() = 0;
     /// Runs `task` soon on the thread of the disk queue, where it may wait for disks.
     virtual void run_on_disk_queue(std::function<void()> task) = 0;
 };

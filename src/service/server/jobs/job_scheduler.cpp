@@ -44,12 +44,14 @@ void JobScheduler::start(Lane& lane, const EngineMaker& maker, unsigned width) {
     engines_.push_back(maker(width));
     threads_.emplace_back([this, &lane, &engine = *engines_.back()] {
         lane.queue.run([this, &lane](Queue::Items& jobs) { return next_ready(jobs, lane.order); }, ask_again,
-                       [&engine](const std::shared_ptr<ServerJob>& job) { job->run(engine); });
+                       [&lane, &engine](const std::shared_ptr<ServerJob>& job) {
+                           if (job->run(engine) == ServerJob::Ran::queued_again) lane.queue.add(job);
+                       });
     });
 }
 
 /// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
-/// job of each client.
+/// job of each client. Jobs that wait for room for their results let all others pass.
 JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs, FairOrder& order) const {
     struct Candidate {
         double start;
@@ -58,6 +60,7 @@ JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs
     std::vector<Candidate> candidates;
     std::set<std::pair<std::string_view, bool>> seen;
     for (auto job = jobs.begin(); job != jobs.end(); ++job) {
+        if ((*job)->waits_for_room()) continue;
         if (seen.emplace((*job)->owner(), (*job)->detached()).second)
             candidates.push_back({order.start_of((*job)->owner()), job});
     }
@@ -80,7 +83,7 @@ bool JobScheduler::run_at_once(ServerJob& job) {
     for (Instant& instant : instant_) {
         const std::unique_lock lock(instant.mutex, std::try_to_lock);
         if (!lock.owns_lock()) continue;
-        job.run(*instant.engine);
+        (void)job.run(*instant.engine);
         return true;
     }
     return false;

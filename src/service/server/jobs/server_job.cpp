@@ -60,14 +60,23 @@ bool ServerJob::ask_memory() {
     return memory.has_value();
 }
 
-void ServerJob::run(Engine& engine) noexcept {
+bool ServerJob::waits_for_room() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (!needs_room_ || state_ != v1::QUEUED || early_) return false;
+    }
+    return !parts_.record->has_room();
+}
+
+ServerJob::Ran ServerJob::run(Engine& engine) noexcept {
     {
         const std::lock_guard lock(mutex_);
         if (state_ != v1::QUEUED || early_ || abandoned_) {
             parts_.memory.give_back();
-            return;
+            return Ran::ended;
         }
         state_ = v1::RUNNING;
+        needs_room_ = false;
         began_ = Clock::now();
     }
     notify_watchers();
@@ -76,10 +85,36 @@ void ServerJob::run(Engine& engine) noexcept {
         const Summary summary = find(engine, options());
         parts_.pairs->finish();
         end_done(summary);
+    } catch (const NoRoomError& why) {
+        if (queue_again(why)) {
+            notify_watchers();
+            return Ran::queued_again;
+        }
     } catch (...) {
         end_failed(failure_of_exception());
     }
     notify_watchers();
+    return Ran::ended;
+}
+
+/// Puts the running job back into the state queued. Returns false if it has ended instead: there can never be room for its result, or it
+/// was ended early.
+bool ServerJob::queue_again(const NoRoomError& why) noexcept {
+    try {
+        {
+            const std::lock_guard lock(mutex_);
+            if (early_ || abandoned_) throw Error(ErrorCode::cancelled, "cancelled");
+        }
+        parts_.record->wait_for_room(why);
+    } catch (...) {
+        end_failed(failure_of_exception());
+        return false;
+    }
+    progress_ = 0;
+    const std::lock_guard lock(mutex_);
+    needs_room_ = true;
+    requeue();
+    return true;
 }
 
 void ServerJob::end_done(const Summary& summary) {
@@ -186,7 +221,7 @@ void ServerJob::abandon() {
     stop_.request_stop();
 }
 
-/// Puts an abandoned job back into the state queued; the next server runs it. Requires: mutex_ is locked.
+/// Puts the job back into the state queued. Requires: mutex_ is locked.
 void ServerJob::requeue() noexcept {
     state_ = v1::QUEUED;
     parts_.input.reset();
@@ -223,6 +258,7 @@ v1::JobReport ServerJob::report() const {
     report.set_state(state_);
     report.set_progress(state_ == v1::DONE ? 1 : progress_.load(std::memory_order_relaxed));
     report.set_objects(object_count(parts_.spec));
+    report.set_waits_for_room(needs_room_ && state_ == v1::QUEUED);
     if (!hash_.empty()) {
         report.mutable_head()->set_hash(hash_);
         report.mutable_head()->set_algorithm(algorithm_);

@@ -2,6 +2,8 @@
 //
 //   uploading → queued → running → done | failed | cancelled
 //
+// A running detached job becomes queued again if there is no room for its result. It runs again from its input when there is.
+//
 // Invariants:
 //  - done, failed and cancelled are terminal states.
 //  - Every watcher is called after every change of state, and after new pairs or progress. A watcher reads the job's state
@@ -72,8 +74,11 @@ public:
     void set_ended(const v1::JobReport& ending);
     /// Returns whether the job can run now, and reserves the memory of a detached job. False: the memory is not free yet.
     bool ask_memory();
-    /// Runs the job on the calling thread and ends it.
-    void run(Engine& engine) noexcept;
+    /// Returns whether the job is queued and there is no room for its result.
+    bool waits_for_room();
+    enum class Ran : std::uint8_t { ended, queued_again };
+    /// Runs the job on the calling thread and ends it, or puts it back into the state queued if there is no room for its result.
+    Ran run(Engine& engine) noexcept;
     /// Stops the job without an ending, so that the next server runs it. Has no effect on a job that was cancelled or failed
     /// before.
     void abandon();
@@ -110,6 +115,7 @@ private:
     Options options();
     void report_progress(double done);
     void end_done(const Summary& summary);
+    bool queue_again(const NoRoomError& why) noexcept;
     void end_failed(v1::Failure failure) noexcept;
     v1::JobReport ending(v1::JobState state, const v1::Failure& failure) const;
     void store_ending(const v1::JobReport& ending) noexcept;
@@ -129,6 +135,7 @@ private:
     v1::JobState reported_state_ = v1::UPLOADING;  // state that on_state_change was last called with
     std::optional<Ending> early_;
     bool abandoned_ = false;
+    bool needs_room_ = false;  // it has no room for its result, and is queued again
     std::string hash_;
     std::uint32_t algorithm_ = algorithm_version;
     v1::Summary summary_;

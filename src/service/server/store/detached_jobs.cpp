@@ -11,6 +11,7 @@
 #include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
 #include "service/server/log/event.hpp"
+#include "service/server/store/job_upgrade.hpp"
 
 namespace octopair::service {
 
@@ -80,13 +81,22 @@ void DetachedJobs::restore() {
              "detached jobs: " + std::to_string(queued) + " queued again, " + std::to_string(ended) + " have ended");
 }
 
+/// Lets a job that an older server did not run be run by this one. Returns why that fails.
+std::optional<Error> DetachedJobs::upgrade(StateFolder::Found& found) const {
+    try {
+        const std::uint32_t before = found.stored.algorithm;
+        found.stored = upgrade_job(found.base, found.stored);
+        log_text(*server_.log, LogLevel::info,
+                 "job " + found.stored.spec.id() + ": converted from algorithm version " + std::to_string(before));
+        return {};
+    } catch (const Error& error) {
+        return error;
+    }
+}
+
 void DetachedJobs::restore(StateFolder::Found found) {
     std::optional<Error> damage = std::move(found.damage);
-    if (!found.result && !damage && found.stored.algorithm != algorithm_version) {
-        damage =
-            Error(ErrorCode::engine_failed,
-                  found.base + ".job: submitted to another version of octopair, which did not run it; submit it again");
-    }
+    if (!found.result && !damage && found.stored.algorithm != algorithm_version) damage = upgrade(found);
     const std::uint64_t memory_bytes = server_.memory_of(found.stored.spec);
     if (!found.result && !damage) {
         try {

@@ -41,6 +41,7 @@ public:
 
 private:
     void restore(StateFolder::Found found);
+    std::optional<Error> upgrade(StateFolder::Found& found) const;
     std::shared_ptr<ServerJob> find_same(const StoredUpload& upload) const;
     Submission begin_job(const std::string& owner, v1::JobSpec spec);
     std::shared_ptr<ServerJob> make_job(StoredJob::Parts parts, Budget::Reservation slot) const;

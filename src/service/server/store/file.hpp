@@ -10,7 +10,11 @@
 
 namespace octopair::service {
 
-/// Throws: Error{io_failed} from all members. Thread safety: read() and write() are safe, as each takes its offset.
+/// Returns the last part of a path.
+std::string name_of_file(const std::string& path);
+
+/// Throws: Error{io_failed} from all members; NoRoomError if the disk is full. Messages name the file without its folder, because
+/// clients receive them. Thread safety: read() and write() are safe, as each takes its offset.
 class File {
 public:
     enum class Mode : std::uint8_t { read, create };
@@ -21,6 +25,8 @@ public:
 
     bool open() const { return descriptor_.open(); }
     const std::string& path() const { return path_; }
+    /// Returns the name without the folder.
+    std::string name() const { return name_of_file(path_); }
     std::uint64_t size() const;
     void read(std::uint64_t offset, std::span<std::byte> bytes) const;
     void write(std::uint64_t offset, std::span<const std::byte> bytes) const;

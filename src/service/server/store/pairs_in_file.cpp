@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/server/jobs/job_record.hpp"
 
 namespace octopair::service {
 
@@ -38,16 +40,28 @@ void PairsInFile::finish() {
 void PairsInFile::write_piece() {
     open();
     const auto bytes = std::as_bytes(std::as_const(piece_).span().first(used_));
-    {
-        const std::lock_guard lock(mutex_);
-        reservation_.grow(bytes.size() + sizeof(std::uint64_t));
-    }
+    take_room(bytes.size() + sizeof(std::uint64_t));
     part_->write(result_head_bytes + ready_ * sizeof(Pair), bytes);
     const std::uint64_t sum = checksum_of(bytes);
     const std::lock_guard lock(mutex_);
     sums_.push_back(sum);
     ready_ += used_;
     used_ = 0;
+}
+
+void PairsInFile::take_room(std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    try {
+        reservation_.grow(bytes);
+    } catch (const LimitError& full) {
+        target_.disk.check(reservation_.amount() + bytes);
+        throw NoRoomError(full.what());
+    }
+}
+
+std::uint64_t PairsInFile::bytes() const {
+    const std::lock_guard lock(mutex_);
+    return reservation_.amount();
 }
 
 void PairsInFile::open() {
@@ -80,7 +94,7 @@ std::optional<grpc::Slice> PairsInFile::piece(std::uint64_t offset) const {
     const std::span bytes = room_in(piece);
     file->read(result_head_bytes + first * sizeof(Pair), bytes);
     if (checksum_of(bytes) != sum) {
-        fail_damaged(target_.path, "wrong checksum of the piece that begins with pair " + std::to_string(first));
+        fail_damaged(name_of_file(target_.path), "wrong checksum of the piece that begins with pair " + std::to_string(first));
     }
     const std::size_t begin = std::size_t(offset - first) * sizeof(Pair);
     return begin == 0 ? piece : piece.sub(begin, piece.size());
@@ -95,6 +109,7 @@ void PairsInFile::discard() noexcept {
     const std::lock_guard lock(mutex_);
     piece_.clear();
     used_ = 0;
+    size_ = 0;
     if (!part_) return;
     remove_file(target_.path + ".part");
     part_.reset();

@@ -40,11 +40,14 @@ public:
     /// Removes the file if it was not sealed.
     ~PairsInFile() override;
 
+    /// Throws: NoRoomError as well, if there may be room later.
     void append(std::span<const Pair> pairs) override;
     void finish() override;
     std::optional<grpc::Slice> piece(std::uint64_t offset) const override;
     std::uint64_t ready() const override;
 
+    /// Returns the bytes of disk space that the pairs take.
+    std::uint64_t bytes() const;
     /// Deletes all pairs. Does nothing after seal().
     void discard() noexcept;
     /// Completes the file with `ending`. Throws: Error{io_failed}.
@@ -55,6 +58,7 @@ public:
 private:
     void open();
     void write_piece();
+    void take_room(std::uint64_t bytes);
 
     const Target target_;
     Buffer<Pair> piece_;      // piece being filled; used by the appending thread only

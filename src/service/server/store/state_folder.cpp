@@ -3,12 +3,17 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "base/io_failure.hpp"
@@ -32,7 +37,7 @@ std::optional<std::uint64_t> number_of(const std::string& name, std::string_view
 }
 
 FileBytes bytes_of(const File& file) {
-    return {file.path(), file.size(),
+    return {file.name(), file.size(),
             [&file](std::uint64_t offset, std::span<std::byte> bytes) { file.read(offset, bytes); }};
 }
 
@@ -53,6 +58,19 @@ StateFolder::StateFolder(std::string path, const Room& room, std::shared_ptr<spd
         throw Error(ErrorCode::usage, path_ + ": other users may access the state folder; make it private (chmod 700)");
     }
     lock();
+    check_version();
+}
+
+std::uint64_t StateFolder::disk_bytes() const {
+    struct statvfs status {};
+    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0) return std::numeric_limits<std::uint64_t>::max();
+    return std::uint64_t(status.f_blocks) * status.f_frsize;
+}
+
+std::uint64_t StateFolder::free_bytes() const {
+    struct statvfs status {};
+    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0) return std::numeric_limits<std::uint64_t>::max();
+    return std::uint64_t(status.f_bavail) * status.f_frsize;
 }
 
 void StateFolder::lock() {
@@ -62,6 +80,34 @@ void StateFolder::lock() {
     if (::flock(lock_.number(), LOCK_EX | LOCK_NB) == 0) return;
     if (errno == EWOULDBLOCK) throw Error(ErrorCode::io_failed, path_ + ": another server uses this state folder");
     fail_io(path, "cannot lock", errno);
+}
+
+/// Version 1 has no file `version`, and is otherwise as version 2.
+void StateFolder::check_version() const {
+    constexpr std::uint64_t newest = 2;
+    constexpr std::string_view before = "octopair state ";
+    const std::string path = path_ + "/version", part = path + ".part";
+    if (fs::exists(path)) {
+        const File file(path, File::Mode::read);
+        std::string text(std::size_t(std::min<std::uint64_t>(file.size(), 64)), '\0');
+        file.read(0, std::as_writable_bytes(std::span(text)));
+        std::uint64_t version = 0;
+        const char* const end = text.data() + text.size();
+        const bool valid = text.starts_with(before) && text.ends_with('\n') &&
+                           std::from_chars(text.data() + before.size(), end, version).ptr == end - 1 && version > 0;
+        if (!valid) throw Error(ErrorCode::io_failed, path + ": damaged: it is not a version of a state folder");
+        if (version > newest) {
+            throw Error(ErrorCode::io_failed, path_ + ": the state folder has version " + std::to_string(version) +
+                                                  "; this program uses version " + std::to_string(newest) +
+                                                  " or older. Nothing was changed");
+        }
+        if (version == newest) return;
+    }
+    remove_file(part);
+    const File fresh(part, File::Mode::create);
+    const std::string text = std::string(before) + std::to_string(newest) + "\n";
+    fresh.write(0, std::as_bytes(std::span(text)));
+    fresh.finish(path);
 }
 
 std::string StateFolder::base_of(std::uint64_t number) const {
@@ -109,12 +155,12 @@ std::optional<StateFolder::Found> StateFolder::find_job(const std::string& base)
         found.stored = read_job(bytes_of(file));
         found.disk = disk_.take_unchecked(file.size() + overhead_bytes, found.stored.owner);
         if (found.stored.hash.empty()) {
-            found.damage = Error(ErrorCode::io_failed, file.path() + ": damaged: the end of the file is invalid");
+            found.damage = Error(ErrorCode::io_failed, file.name() + ": damaged: the end of the file is invalid");
         }
         find_result(found);
         return found;
     } catch (const Error& error) {
-        log_text(*log_, LogLevel::error, std::string(error.what()) + "; the file is skipped and kept");
+        log_text(*log_, LogLevel::error, path_ + "/" + error.what() + "; the file is skipped and kept");
         return {};
     }
 }
@@ -127,7 +173,7 @@ void StateFolder::find_result(Found& found) {
         found.result_disk = disk_.take_unchecked(file.size(), found.stored.owner);
         found.result = read_result(bytes_of(file));
         if (found.result->hash != found.stored.hash && !found.damage) {
-            fail_damaged(path, "it is the result of another job");
+            fail_damaged(file.name(), "it is the result of another job");
         }
     } catch (const Error& error) {
         found.result.reset();

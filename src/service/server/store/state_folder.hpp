@@ -2,6 +2,8 @@
 //
 // Invariants:
 //  - One server uses a folder at a time.
+//  - The file `version` has the version of the folder. A folder of an older version is converted before its jobs are read, one of a newer
+//    version is not touched.
 //  - N.job exists from the acknowledgement of a submission until the job is removed.
 //  - N.result exists from the end of the job until the job is removed.
 //  - N increases with every submission. Jobs run in the order of N.
@@ -37,7 +39,7 @@ public:
     };
 
     /// Creates the folder, private to its owner, if it does not exist, and locks it. Throws: Error{usage} if other users may
-    /// access it; Error{io_failed} on failure, or if another server uses it.
+    /// access it; Error{io_failed} on failure, if another server uses it, or if it has a newer version.
     StateFolder(std::string path, const Room& room, std::shared_ptr<spdlog::logger> log);
 
     /// A job that was found in the folder.
@@ -54,11 +56,16 @@ public:
     /// Returns the base path of a new job. Thread safety: this and all members below are safe.
     std::string new_base();
     Budget& disk() { return disk_; }
+    /// Returns the size of the folder's disk, and the part that this program may still use, in bytes. If the system does not say it, the
+    /// greatest number.
+    std::uint64_t disk_bytes() const;
+    std::uint64_t free_bytes() const;
     DiskQueue& disk_queue() { return disk_queue_; }
     spdlog::logger& log() { return *log_; }
 
 private:
     void lock();
+    void check_version() const;
     std::vector<std::uint64_t> clean_up();
     std::optional<Found> find_job(const std::string& base);
     void find_result(Found& found);

@@ -34,7 +34,7 @@ std::unique_ptr<UploadedInput> StoredJob::load(Engine& engine, const std::stop_t
         at += bytes.size();
     }
     if (input->hash() != parts_.stored.hash)
-        fail_damaged(file.path(), "the hash of the input does not match the submitted job");
+        fail_damaged(file.name(), "the hash of the input does not match the submitted job");
     return input;
 }
 
@@ -43,10 +43,37 @@ void StoredJob::end(const v1::JobReport& ending) {
     try {
         parts_.pairs->seal(ending);
     } catch (const std::exception& error) {
+        if (ending.state() == v1::DONE && dynamic_cast<const NoRoomError*>(&error) != nullptr) throw;
         log_text(parts_.folder.log(), LogLevel::error,
                  "job " + parts_.stored.spec.id() + ": cannot store how the job ended: " + error.what());
         throw;
     }
+}
+
+void StoredJob::wait_for_room(const NoRoomError& why) {
+    constexpr std::chrono::seconds first(1), longest(60);
+    needed_bytes_ = parts_.pairs->bytes() + piece_bytes;
+    parts_.pairs->discard();
+    parts_.folder.disk().check(parts_.disk.amount() + needed_bytes_);
+    const std::uint64_t most = parts_.folder.disk_bytes();
+    if (parts_.disk.amount() + needed_bytes_ > most) {
+        throw Error(ErrorCode::io_failed, "the result does not fit on the server's disk, which has " +
+                                              std::to_string(most) + " bytes in all");
+    }
+    if (pause_.count() == 0) {
+        log_text(parts_.folder.log(), LogLevel::warning,
+                 "job " + parts_.stored.spec.id() + ": waits for room for its result: " + why.what());
+    }
+    pause_ = std::clamp<std::chrono::seconds>(2 * pause_, first, longest);
+    next_check_ = std::chrono::steady_clock::now() + pause_;
+}
+
+bool StoredJob::has_room() {
+    constexpr std::chrono::milliseconds apart(500);
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_check_) return false;
+    next_check_ = now + apart;
+    return parts_.folder.free_bytes() >= needed_bytes_ && parts_.folder.disk().has(needed_bytes_, parts_.stored.owner);
 }
 
 /// Deletes N.job first: after a crash a server removes a result without a job, but would run a job without a result.

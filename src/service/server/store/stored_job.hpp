@@ -1,6 +1,7 @@
 // StoredJob: the files of one detached job, N.job and N.result. StoredUpload: writes N.job while the input arrives.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -36,6 +37,8 @@ public:
     std::optional<Budget::Reservation> ask_memory() override;
     std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
+    void wait_for_room(const NoRoomError& why) override;
+    bool has_room() override;
     void run_on_disk_queue(std::function<void()> task) override { parts_.folder.disk_queue().add(std::move(task)); }
 
     /// Deletes the files.
@@ -43,6 +46,11 @@ public:
 
 private:
     Parts parts_;
+    // The job's result found no room: how much it needs at least, and when to look again. Each time, the pause is twice as long: the job
+    // may need much more, and a run that ends without room is lost work.
+    std::uint64_t needed_bytes_ = 0;
+    std::chrono::seconds pause_{0};
+    std::chrono::steady_clock::time_point next_check_{};
 };
 
 /// Receives the input of a job and computes its hash. Writes the input to a file, or discards it.
