@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <string>
-#include <thread>
 
+#include "base/control_group.hpp"
 #include "cli/command/command.hpp"
 #include "cli/command/option_values.hpp"
 #include "octopair/client.hpp"
@@ -66,7 +66,7 @@ void parse_engine(const std::string& word, EngineChoice& choice) {
 
 unsigned count_or_cores(const std::optional<unsigned>& asked, unsigned most) {
     if (asked.value_or(0) > 0) return *asked;
-    return std::clamp(std::thread::hardware_concurrency(), 1u, most);
+    return std::min(available_cores(), most);
 }
 
 /// An option whose value is a whole number from 0 to `most`.

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <thread>
 
+#include "base/control_group.hpp"
 #include "parallel/tbb_threads.hpp"
 
 namespace octopair {
 
 namespace {
 
-unsigned thread_count(unsigned requested) {
-    return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
-}
+unsigned thread_count(unsigned requested) { return requested > 0 ? requested : available_cores(); }
 
 }  // namespace
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
-#include <thread>
 #include <utility>
 
+#include "base/control_group.hpp"
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "octopair/error.hpp"
@@ -256,8 +256,7 @@ private:
     }
 };
 
-Pipeline::Pipeline(unsigned threads)
-    : state_(std::make_unique<State>(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency()))) {}
+Pipeline::Pipeline(unsigned threads) : state_(std::make_unique<State>(threads > 0 ? threads : available_cores())) {}
 
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;

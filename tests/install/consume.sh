@@ -56,10 +56,14 @@ with_server() {
     server=
 }
 
-# Verifies the systemd unit, with /bin/true in place of the server: the prefix was moved away from the unit's path.
+# Verifies the systemd units, with /bin/true in place of the server: the prefix was moved away from the unit's path. The service must be
+# exposed to at most 2.0 of 10 points.
 check_unit() {
+    cp "$prefix/lib/systemd/system/octopair.socket" "$work"
     sed 's|^ExecStart=[^ ]*|ExecStart=/bin/true|' "$prefix/lib/systemd/system/octopair.service" > "$work/octopair.service"
-    ! type systemd-analyze > /dev/null 2>&1 || systemd-analyze verify --man=no "$work/octopair.service"
+    systemd-analyze verify --man=no "$work/octopair.service" "$work/octopair.socket"
+    systemd-analyze security --offline=true --threshold=20 "$work/octopair.service" > "$work/security.log" ||
+        { tail -1 "$work/security.log"; return 1; }
 }
 
 # NAME TARGET OPTION...: builds a target of the consumer in the folder NAME.

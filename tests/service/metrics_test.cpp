@@ -1,4 +1,8 @@
 // Tests the metrics that a server exports to Prometheus.
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
 #include "service/metrics_page.hpp"
 #include "support/scale.hpp"
 
@@ -78,6 +82,25 @@ TEST_F(Metrics, CountByClient) {
         (void)connect(socket(), {.token = "0123456789abcde-0"})->count_pairs({std::span(many), {}});
     });
     EXPECT_TRUE(comes("octopair_client_refusals_total{client=\"token:client0\"} 1"));
+}
+
+/// The dashboard shows each metric, and no other.
+TEST_F(Metrics, AreAllOnTheDashboard) {
+    service::ServerOptions options = options_at(socket());
+    write_secret(folder_.file("tokens"), "anna 0123456789abcdef\n");
+    options.token_file = folder_.file("tokens");
+    serve(options);
+    EXPECT_EQ(ask(socket(), {.token = "0123456789abcdef"}), right_answer);
+    (void)error_of(ErrorCode::usage, [&] { ask(socket(), {}); });
+    EXPECT_TRUE(comes("octopair_client_jobs_total{client=\"token:anna\"} 1"));
+    const std::string dashboard = read_file(OCTOPAIR_SOURCE "/packaging/grafana.json"), page = this->page();
+    EXPECT_FALSE(nlohmann::json::parse(dashboard, nullptr, false).is_discarded());
+    std::set<std::string> shown, served;
+    const std::regex name("octopair_[a-z_]+"), described("# TYPE (octopair_[a-z_]+)");
+    for (std::sregex_iterator at(dashboard.begin(), dashboard.end(), name), end; at != end; ++at)
+        shown.insert(std::regex_replace(at->str(), std::regex("_bucket$"), ""));
+    for (std::sregex_iterator at(page.begin(), page.end(), described), end; at != end; ++at) served.insert((*at)[1]);
+    EXPECT_EQ(shown, served);
 }
 
 TEST_F(Metrics, AreNotBlockedByIdleConnections) {

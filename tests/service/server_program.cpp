@@ -25,7 +25,9 @@ ServerProgram::~ServerProgram() {
 
 void ServerProgram::start() {
     const std::string line = setting_.before + " exec env " + setting_.environment + " '" OCTOPAIR_PROGRAM "' serve " +
-                             setting_.arguments + " --listen '" + address() + "' >>'" + folder_.file("log") + "' 2>&1";
+                             setting_.arguments + " --listen '" +
+                             (setting_.listen.empty() ? address() : setting_.listen) + "' >>'" + folder_.file("log") +
+                             "' 2>&1";
     std::string shell = "sh", option = "-c", command = line;
     char* const words[] = {shell.data(), option.data(), command.data(), nullptr};
     if (::posix_spawn(&id_, "/bin/sh", nullptr, nullptr, words, environ) != 0)

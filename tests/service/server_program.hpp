@@ -17,6 +17,7 @@ public:
         std::string arguments = "--engine local --threads 2";
         std::string before = {};       ///< shell commands to run first, for example "ulimit -n 40;"
         std::string environment = {};  ///< "NAME=VALUE ..."
+        std::string listen = {};       ///< value of --listen; empty: a socket in the folder
     };
 
     /// Starts the server on a Unix socket in a temporary folder.

@@ -131,6 +131,51 @@ TEST_F(Tls, FilesOfAClientThatDoNotFitAreRefused) {
     EXPECT_EQ(refusal(options), files().key("client") + ": holds no certificate (PEM)");
 }
 
+/// A server that is told so uses new certificates for new connections. Connections that exist stay.
+TEST_F(Tls, CertificatesAreReadAgain) {
+    const TemporaryDirectory folder;
+    service::ServerOptions options = secured("server", true);
+    const auto use = [&](const std::string& certificate, const std::string& key, const std::string& authority) {
+        options.tls = {folder.file("certificate"), folder.file("key"), folder.file("authority")};
+        write_file(options.tls.certificate, read_file(certificate));
+        write_secret(options.tls.key, read_file(key));
+        write_file(options.tls.client_authority, read_file(authority));
+    };
+    use(files().pem("server"), files().key("server"), files().pem("authority"));
+    service::Server server(options, silent());
+    const std::string address = server.address().text();
+    ClientOptions other = trusting("stranger");
+    other.authority = files().pem("other");
+    const auto earlier = connect(address, trusting("client"));
+    const auto gives = [&](const ClientOptions& client) {
+        try {
+            return ask(address, client) == right_answer;
+        } catch (const Error&) {
+            return false;
+        }
+    };
+    EXPECT_TRUE(gives(trusting("client")));
+    EXPECT_FALSE(gives(other));
+
+    use(files().pem("stranger"), files().key("server"), files().pem("other"));
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { server.reload(); }),
+              options.tls.key + ": is not the key of " + options.tls.certificate);
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_TRUE(gives(trusting("client"))) << "the old files stay";
+
+    use(files().pem("stranger"), files().key("stranger"), files().pem("other"));
+    server.reload();
+    bool changed = false;
+    for (int tries = 0; tries < 3000 && !changed; ++tries) {
+        changed = gives(other);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_TRUE(changed);
+    EXPECT_FALSE(gives(trusting("client")));
+    const std::vector<Box3f> boxes(3);
+    EXPECT_EQ(earlier->count_pairs({boxes}), 3u);
+}
+
 TEST_F(Tls, KeysOthersMayReadAreRefused) {
     const TemporaryDirectory folder;
     service::ServerOptions options = secured("server");

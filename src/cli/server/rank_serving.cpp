@@ -36,6 +36,7 @@ public:
     FirstRank(const ServeRequest& request, unsigned ranks)
         : log_(make_log(request)), options_(server_options_of(request)), ranks_(ranks) {
         fit_descriptors(options_.limits, *log_);
+        fit_memory(options_.limits, *log_);
         LeadingOptions leading = leading_options_of(request);
         leading.on_silent_rank = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);

@@ -7,6 +7,7 @@
 #include "cli/command/interrupt.hpp"
 #include "cli/server/serve_options.hpp"
 #include "cli/server/serving.hpp"
+#include "cli/server/supervisor.hpp"
 #include "cli/subcommands.hpp"
 
 namespace octopair::cli {
@@ -33,10 +34,13 @@ int run_serve(const ServeRequest& request) {
     service::ServerOptions options = server_options_of(request);
     options.on_drain = [&] { end.request_stop(); };
     fit_descriptors(options.limits, *log);
+    fit_memory(options.limits, *log);
     service::Server server(options, log);
     log_start(*log, server, options);
     const Reloader reloader(server, *log);
+    const Supervisor supervisor(server);
     wait_for_stop(end.get_token());
+    Supervisor::report_stopping();
     drain(*log, server);
     return 0;
 }

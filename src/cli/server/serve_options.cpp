@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 
 #include "cli/command/command.hpp"
 #include "cli/command/config_file.hpp"
 #include "cli/command/option_values.hpp"
+#include "cli/server/supervisor.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -156,7 +158,10 @@ void add_watching(Command& command, ServeRequest& request) {
 void add_serve_options(Command& command, ServeRequest& request) {
     command.add_option("--config", request.config, "read options from a file with lines NAME = VALUE (TOML)")
         .type_name("FILE");
-    command.add_option("--listen", request.listen, "address to listen on: unix:PATH or HOST:PORT").type_name("ADDRESS");
+    command
+        .add_option("--listen", request.listen,
+                    "address to listen on: unix:PATH or HOST:PORT; systemd: the socket that systemd passes")
+        .type_name("ADDRESS");
     add_engine_options(command, request.engine);
     command.find_option("--engine")->description("engine of the server: one of those that `octopair info` lists");
     add_seconds(
@@ -177,7 +182,11 @@ void add_serve_options(Command& command, ServeRequest& request) {
 void complete_serve_request(const Command& command, ServeRequest& request) {
     if (!request.config.empty()) apply_config(command, request.config);
     if (request.listen.empty()) throw Error(ErrorCode::usage, "serve: --listen is missing: unix:PATH or HOST:PORT");
-    request.options.listen = service::parse_address(request.listen);
+    if (request.listen == "systemd") {
+        request.options.listen_socket = std::make_shared<Descriptor>(passed_socket());
+    } else {
+        request.options.listen = service::parse_address(request.listen);
+    }
     if (!request.metrics.empty()) request.options.metrics = service::parse_address(request.metrics);
     check_engine_choice(request.engine);
     if (request.engine.is_server()) {

@@ -3,7 +3,9 @@
 #include <pthread.h>
 #include <spdlog/logger.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/control_group.hpp"
 #include "octopair/version.hpp"
 
 #ifdef OCTOPAIR_WITH_PROCESSES
@@ -73,6 +76,19 @@ void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log) {
                  std::to_string(files.rlim_cur) + " open files");
 }
 
+void fit_memory(service::ServerLimits& limits, spdlog::logger& log) {
+    // The server takes more than the limit says (docs/server.md): fixed amounts, and a part of the limit.
+    constexpr std::uint64_t fixed = std::uint64_t(384) << 20, least = std::uint64_t(64) << 20;
+    const std::uint64_t machine = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
+    const std::uint64_t memory = std::min(machine, control_group_limits().memory_bytes.value_or(machine));
+    const std::uint64_t fits = std::max(least, (memory - std::min(memory, fixed)) / 4 * 3);
+    if (limits.memory_bytes == 0 || limits.memory_bytes <= fits) return;
+    limits.memory_bytes = fits;
+    service::log_text(log, service::LogLevel::warning,
+                      "at most " + std::to_string(fits) + " bytes for jobs: the machine or the control group has " +
+                          std::to_string(memory) + " bytes of memory");
+}
+
 namespace {
 
 sigset_t hang_up() {
@@ -85,9 +101,10 @@ sigset_t hang_up() {
 void reload(service::Server& server, spdlog::logger& log) {
     try {
         server.reload();
-        log_text(log, service::LogLevel::info, "read the tokens again");
+        log_text(log, service::LogLevel::info, "read tokens, roles and certificates again");
     } catch (const std::exception& error) {
-        log_text(log, service::LogLevel::error, "the tokens stay as they are: " + std::string(error.what()));
+        log_text(log, service::LogLevel::error,
+                 "reading tokens, roles and certificates again: " + std::string(error.what()));
     }
 }
 

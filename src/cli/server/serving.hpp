@@ -32,6 +32,10 @@ int serve_on_ranks(const ServeRequest& request);
 /// logs it.
 void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log);
 
+/// Lowers ServerLimits::memory_bytes to what fits into the memory of the machine and of the control group, and logs it. No limit stays
+/// none.
+void fit_memory(service::ServerLimits& limits, spdlog::logger& log);
+
 /// Blocks SIGHUP in this thread and those that it starts, for a Reloader. Call it before the first thread starts.
 void block_hang_up();
 

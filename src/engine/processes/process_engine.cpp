@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 
+#include "base/control_group.hpp"
 #include "base/floating_point_scope.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/processes/client/process_passes.hpp"
@@ -23,7 +23,7 @@ unsigned worker_count(unsigned requested) {
     if (requested > max_workers) {
         throw Error(ErrorCode::usage, std::to_string(requested) + " workers; at most " + std::to_string(max_workers));
     }
-    return requested > 0 ? requested : std::clamp(std::thread::hardware_concurrency(), 1u, max_workers);
+    return requested > 0 ? requested : std::min(available_cores(), max_workers);
 }
 
 std::unique_ptr<Passes> make_passes(Arrangement arrangement, WorkerPool& pool, const SharedArrays& arrays) {

@@ -63,8 +63,9 @@ class WithoutReflection final : public grpc::ServerBuilderOption {
 class Server::State {
 public:
     State(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
-        : listener_(options.listen, missing_protection(options)),
+        : listener_(options.listen, options.listen_socket, missing_protection(options)),
           context_(options, std::move(log)),
+          credentials_(options.tls, *context_.log),
           calls_(make_calls(context_)) {
         keep_grpc();
         grpc::EnableDefaultHealthCheckService(true);
@@ -74,8 +75,7 @@ public:
         builder.RegisterService(calls_.get());
         if (context_.access.has_tokens()) builder.SetOption(std::make_unique<WithoutReflection>());
         using Type = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
-        acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD,
-                                                                         credentials_of(options.tls, *context_.log));
+        acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD, credentials_.make());
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "cannot start the gRPC server");
         if (options.metrics) show_metrics(*options.metrics);
@@ -95,7 +95,12 @@ public:
     const Address& address() const { return listener_.address(); }
     ServerLoad load() const { return {context_.job_slots.taken(), context_.memory.taken(), listener_.connections()}; }
 
-    void reload() { context_.access.reload(); }
+    std::uint64_t beats() const { return context_.watchdog.beats(); }
+
+    void reload() {
+        context_.access.reload();
+        credentials_.reload();
+    }
 
     void drain(std::optional<std::chrono::milliseconds> grace) {
         constexpr std::chrono::milliseconds apart(20);
@@ -167,6 +172,7 @@ private:
 
     Listener listener_;
     ServerContext context_;
+    Credentials credentials_;
     const std::unique_ptr<grpc::Service> calls_;
     std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
     std::unique_ptr<grpc::Server> server_;
@@ -180,6 +186,8 @@ Server::~Server() = default;
 const Address& Server::address() const { return state_->address(); }
 
 ServerLoad Server::load() const { return state_->load(); }
+
+std::uint64_t Server::beats() const { return state_->beats(); }
 
 void Server::reload() { state_->reload(); }
 

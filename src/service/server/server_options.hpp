@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/descriptor.hpp"
 #include "service/protocol/address.hpp"
 #include "service/server/jobs/job_scheduler.hpp"
 
@@ -39,6 +41,9 @@ struct ServerTls {
 
 struct ServerOptions {
     Address listen;
+    /// Listening socket that the server takes over from another program, for the first server with these options; its address replaces
+    /// `listen`. Null: the server listens at `listen`.
+    std::shared_ptr<Descriptor> listen_socket;
     EngineMaker engine;
     EngineMaker small_engine;  ///< maker of engines for small jobs; null: `engine`
     std::string engine_name;   ///< value of the option --engine

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <thread>
 #include <utility>
 
+#include "base/control_group.hpp"
 #include "engine/processes/worker_limits.hpp"
 #include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
@@ -82,7 +82,8 @@ void WorkerPool::start(unsigned slot) {
 }
 
 void WorkerPool::throw_cannot_start(const std::string& how) const {
-    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
+    throw Error(ErrorCode::engine_failed,
+                "worker processes end at their start, " + how + ": " + program_.substr(program_.rfind('/') + 1));
 }
 
 /// Replaces workers that ended between passes or could not be started before.
@@ -135,7 +136,7 @@ std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<
     last_pass_ = pass;
     active_workers_ = pass.workers;
     // A polling client would take processor time from the workers if there are no more cores than workers.
-    max_spins_ = active_workers_ < std::thread::hardware_concurrency() ? worker_limits::max_spins_for_pass_end : 0;
+    max_spins_ = active_workers_ < available_cores() ? worker_limits::max_spins_for_pass_end : 0;
     needed_ = regions;
     failure_ = nullptr;
     forget_regions();

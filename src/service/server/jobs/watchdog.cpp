@@ -39,6 +39,7 @@ void Watchdog::poll_watched() {
         for (const auto& weak : checked) {
             if (const auto one = weak.lock()) one->check_deadline(now);
         }
+        ++beats_;
         lock.lock();
     }
 }

@@ -1,8 +1,10 @@
 // Watchdog: a thread that checks the deadlines of jobs and calls ten times a second, by the monotonic clock.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -33,8 +35,13 @@ public:
     /// Checks `watched` until it is destroyed or is_over().
     void watch(const std::shared_ptr<Watched>& watched);
 
+    /// Returns how often the objects were checked.
+    std::uint64_t beats() const { return beats_; }
+
 private:
     void poll_watched();
+
+    std::atomic<std::uint64_t> beats_ = 0;
 
     std::mutex mutex_;
     std::condition_variable changed_;

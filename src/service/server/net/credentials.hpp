@@ -4,8 +4,10 @@
 #include <spdlog/fwd.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/descriptor.hpp"
 #include "service/server/server_options.hpp"
 
 namespace grpc {
@@ -14,10 +16,40 @@ class ServerCredentials;
 
 namespace octopair::service {
 
-/// Returns the TLS credentials, or insecure ones without a certificate. Logs a warning if the certificate has expired.
-/// Throws: Error{usage} for files that do not fit together, Error{bad_input} for a file without a certificate or key; errors of
-/// reading.
-std::shared_ptr<grpc::ServerCredentials> credentials_of(const ServerTls& tls, spdlog::logger& log);
+class Credentials {
+public:
+    /// Reads the files of `tls`. Logs a warning if the certificate has expired. Borrows the log.
+    /// Throws: Error{usage} for files that do not fit together, Error{bad_input} for a file without a certificate or key; errors of
+    /// reading.
+    Credentials(const ServerTls& tls, spdlog::logger& log);
+
+    /// Returns gRPC's credentials: TLS, or insecure ones without a certificate. Requires: this object outlives them.
+    std::shared_ptr<grpc::ServerCredentials> make() const;
+    /// Reads the files again. Connections that are made more than two seconds later use them. Throws: as the constructor; then nothing
+    /// changes.
+    void reload();
+
+private:
+    /// A file in memory, which gRPC reads again each second.
+    class Copy {
+    public:
+        Copy();
+        std::string path() const;
+        void write(const std::string& text) const;
+
+    private:
+        Descriptor file_;
+    };
+    struct Copies {
+        Copy certificate, key, client_authority;
+    };
+
+    void read() const;
+
+    const ServerTls tls_;
+    spdlog::logger& log_;
+    std::optional<Copies> copies_;  // empty without a certificate
+};
 
 /// Returns, in words, the protection that `options` lack for a server that other machines can reach. Empty: nothing is missing.
 std::string missing_protection(const ServerOptions& options);

@@ -57,19 +57,49 @@ bool socket_exists(const Address& address) {
     return true;
 }
 
+[[noreturn]] void fail_unprotected(const Address& address, const std::string& unprotected) {
+    throw Error(ErrorCode::usage, address.text() + ": other machines can reach it; that needs " + unprotected);
+}
+
+/// Returns the address of a listening socket. Throws: Error{usage} if it is neither of TCP nor a Unix socket with a path.
+Address bound_address(const Descriptor& socket) {
+    sockaddr_storage bound{};
+    socklen_t size = sizeof(bound);
+    if (::getsockname(socket.number(), reinterpret_cast<sockaddr*>(&bound), &size) != 0)
+        fail_io("the socket", "cannot listen", errno);
+    Address address;
+    if (bound.ss_family == AF_UNIX) address.path = reinterpret_cast<const sockaddr_un&>(bound).sun_path;
+    if (bound.ss_family == AF_INET || bound.ss_family == AF_INET6) {
+        std::array<char, NI_MAXHOST> host{};
+        std::array<char, NI_MAXSERV> port{};
+        if (::getnameinfo(reinterpret_cast<const sockaddr*>(&bound), size, host.data(), host.size(), port.data(),
+                          port.size(), NI_NUMERICHOST | NI_NUMERICSERV) == 0) {
+            address.host = host.data();
+            address.port = port.data();
+        }
+    }
+    if (address.path.empty() && address.host.empty())
+        throw Error(ErrorCode::usage, "the passed socket is neither of TCP nor a Unix socket with a path");
+    return address;
+}
+
 }  // namespace
 
-Listener::Listener(const Address& address, const std::string& unprotected) : address_(address) {
+Listener::Listener(const Address& address, const std::shared_ptr<Descriptor>& passed, const std::string& unprotected)
+    : address_(address) {
     wake_ = Descriptor(::eventfd(0, EFD_CLOEXEC));
     if (!wake_.open()) fail_io(address_.text(), "cannot listen", errno);
-    address_.is_unix() ? bind_unix() : bind_tcp(unprotected);
+    if (passed)
+        take_over(std::move(*passed), unprotected);
+    else
+        address_.is_unix() ? bind_unix() : bind_tcp(unprotected);
     if (::listen(socket_.number(), backlog) != 0) fail_io(address_.text(), "cannot listen", errno);
 }
 
 Listener::~Listener() {
     stop();
     struct stat found {};
-    const bool is_own = address_.is_unix() && ::lstat(address_.path.c_str(), &found) == 0 && found.st_ino == bound_;
+    const bool is_own = bound_ != 0 && ::lstat(address_.path.c_str(), &found) == 0 && found.st_ino == bound_;
     if (is_own) ::unlink(address_.path.c_str());
 }
 
@@ -110,7 +140,7 @@ void Listener::bind_tcp(const std::string& unprotected) {
     const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(list, &::freeaddrinfo);
     for (const addrinfo* one = list; one != nullptr && !unprotected.empty(); one = one->ai_next) {
         if (is_loopback(*one->ai_addr)) continue;
-        throw Error(ErrorCode::usage, address_.text() + ": other machines can reach it; that needs " + unprotected);
+        fail_unprotected(address_, unprotected);
     }
     socket_ = Descriptor(::socket(list->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int on = 1;
@@ -119,14 +149,19 @@ void Listener::bind_tcp(const std::string& unprotected) {
         ::bind(socket_.number(), list->ai_addr, list->ai_addrlen) != 0) {
         fail_io(address_.text(), "cannot listen", errno);
     }
-    sockaddr_storage bound{};
-    socklen_t size = sizeof(bound);
-    if (::getsockname(socket_.number(), reinterpret_cast<sockaddr*>(&bound), &size) != 0) {
-        fail_io(address_.text(), "cannot listen", errno);
+    address_.port = bound_address(socket_).port;
+}
+
+void Listener::take_over(Descriptor passed, const std::string& unprotected) {
+    socket_ = std::move(passed);
+    const int flags = ::fcntl(socket_.number(), F_GETFL);
+    if (flags < 0 || ::fcntl(socket_.number(), F_SETFL, flags | O_NONBLOCK) != 0 ||
+        ::fcntl(socket_.number(), F_SETFD, FD_CLOEXEC) != 0) {
+        fail_io("the passed socket", "cannot listen", errno);
     }
-    const bool six = bound.ss_family == AF_INET6;
-    address_.port = std::to_string(ntohs(six ? reinterpret_cast<const sockaddr_in6&>(bound).sin6_port
-                                             : reinterpret_cast<const sockaddr_in&>(bound).sin_port));
+    address_ = bound_address(socket_);
+    if (!address_.is_unix() && !is_this_machine(address_) && !unprotected.empty())
+        fail_unprotected(address_, unprotected);
 }
 
 void Listener::start(Terms terms) {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,10 +28,12 @@ class Listener {
 public:
     /// Binds to `address`. Only its owner may use a Unix socket; a lock file lies beside it, and the socket of a dead server is
     /// replaced.
+    /// `passed`: a listening socket that is used instead, or null. Its maker keeps a copy: it is not removed at the end, and clients that
+    /// connect before the next server starts wait.
     /// `unprotected`: result of missing_protection().
     /// Throws: Error{usage} with `unprotected`, unless empty, for an address that is not loopback; Error{io_failed} if binding
     /// fails.
-    Listener(const Address& address, const std::string& unprotected);
+    Listener(const Address& address, const std::shared_ptr<Descriptor>& passed, const std::string& unprotected);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
     /// Stops, and removes the Unix socket, unless another one has taken its place.
@@ -80,6 +83,7 @@ private:
 
     void bind_unix();
     void bind_tcp(const std::string& unprotected);
+    void take_over(Descriptor passed, const std::string& unprotected);
     void accept_connections();
     void take(Descriptor connection);
     bool is_ours(const Descriptor& connection) const;

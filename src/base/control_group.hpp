@@ -1,0 +1,23 @@
+// Control group: limits that the system sets on the processes of a container or a service (cgroups(7), versions 1 and 2).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace octopair {
+
+/// Empty: no limit, or none that can be read.
+struct ControlGroupLimits {
+    std::optional<std::uint64_t> memory_bytes;
+    std::optional<double> cores;  ///< processor time for each second, in seconds
+};
+
+/// Returns the strictest limits on the control group of this process and its parents. `root`: folder that contains proc and sys.
+ControlGroupLimits control_group_limits(const std::string& root = "");
+
+/// Returns how many threads can run at a time: the cores of the machine, or fewer if the control group has less processor time. At
+/// least 1. The limits are read once.
+unsigned available_cores();
+
+}  // namespace octopair
