@@ -99,7 +99,7 @@ THIRD_PARTY = {
     "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
     "assimp": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
-    "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"},
+    "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"}, "systemd": {"cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},
 }
 # Third-party headers that a public header may include, because every user of its component has them.

@@ -3,7 +3,9 @@
 
 #include <limits>
 
+#include "io/temporary.hpp"
 #include "processes/asked.hpp"
+#include "service/gate.hpp"
 #include "service/served.hpp"
 #include "support/kinds.hpp"
 
@@ -97,6 +99,18 @@ TEST_F(ServedErrors, OfSinksAndProgressReachTheCaller) {
     EXPECT_THROW((void)remote_->stream_pairs({std::span(few), {}}, sink), Own);
     EXPECT_THROW((void)remote_->count_pairs({std::span(few), {}}, options), Own);
     test::check_serves(served_.address());
+}
+
+TEST(ServedFailures, DoNotNameFoldersOfTheServer) {
+    Gate gate;
+    const Served served([&](service::ServerOptions& options) { options.engine = gated_engines(gate); });
+    gate.fail("worker processes end at their start, with a signal: /opt/secret place/libexec/octopair-worker");
+    const std::vector<Box3f> boxes(3);
+    EXPECT_EQ(error_of(ErrorCode::engine_failed,
+                       [&] {
+                           (void)served.client()->count_pairs({std::span(boxes), {}});
+                       }),
+              "worker processes end at their start, with a signal: octopair-worker");
 }
 
 }  // namespace

@@ -42,8 +42,14 @@ void Gate::close() {
     open_ = false;
 }
 
+void Gate::fail(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    failure_ = message;
+}
+
 void Gate::pass(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
+    if (!failure_.empty()) throw Error(ErrorCode::engine_failed, failure_);
     ++waiting_;
     changed_.notify_all();
     (void)changed_.wait(lock, stop, [&] { return open_; });

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include "octopair/octopair.hpp"
 #include "service/server/server_options.hpp"
@@ -16,6 +17,8 @@ class Gate {
 public:
     void open();
     void close();
+    /// Lets all later calls throw Error{engine_failed} with this message.
+    void fail(const std::string& message);
     /// Waits until the gate opens. Throws: Error{cancelled} if `stop` is requested before.
     void pass(const std::stop_token& stop);
     /// Waits until `waiting` calls are at the gate, for a minute at most. Returns false if the minute ended first.
@@ -25,6 +28,7 @@ private:
     std::mutex mutex_;
     std::condition_variable_any changed_;
     bool open_ = false;
+    std::string failure_;
     unsigned waiting_ = 0;
 };
 

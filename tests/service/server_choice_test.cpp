@@ -55,8 +55,9 @@ TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
         "\"$P\" $D --quiet --count-only --token-file new");
     const std::string refused = "octopair: unix:socket: the server does not accept this token\n";
     EXPECT_EQ(outcome.out, refused + "1\n" + refused + "1\n");
-    EXPECT_NE(content("log").find("the tokens stay as they are: tokens: line 1: a line must be NAME TOKEN"),
-              std::string::npos)
+    EXPECT_NE(
+        content("log").find("reading tokens, roles and certificates again: tokens: line 1: a line must be NAME TOKEN"),
+        std::string::npos)
         << content("log");
 }
 

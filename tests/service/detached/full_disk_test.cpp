@@ -80,7 +80,8 @@ TEST(FullDisk, WaitsForRoomForAResult) {
         reader.join();
         EXPECT_TRUE(same_bytes(read, pairs_here(work)));
         EXPECT_FALSE(client->status(id).waits_for_room);
-        EXPECT_NE(server.log().find("job " + id + ": waits for room for its result: "), std::string::npos) << server.log();
+        EXPECT_NE(server.log().find("job " + id + ": waits for room for its result: "), std::string::npos)
+            << server.log();
         EXPECT_NE(server.log().find("No space left"), std::string::npos);
         EXPECT_EQ(server.log().find(disk), std::string::npos) << "messages do not name the server's folders";
     }

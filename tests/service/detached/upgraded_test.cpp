@@ -84,10 +84,12 @@ TEST_F(Upgraded, ANewerFolderIsNotTouched) {
     write_file(server_.state() + "/0000000000000002.job.part", "unfinished");
     write_file(server_.state() + "/version", "octopair state 3\n");
     const auto refusal = [&] { return error_of(ErrorCode::io_failed, [&] { server_.start(); }); };
-    EXPECT_EQ(refusal(), server_.state() +
-                             ": the state folder has version 3; this program uses version 2 or older. Nothing was changed");
+    EXPECT_EQ(refusal(),
+              server_.state() +
+                  ": the state folder has version 3; this program uses version 2 or older. Nothing was changed");
     EXPECT_EQ(server_.files().size(), 2u);
-    for (const char* text : {"", "octopair state 2", "octopair state x\n", "octopair state 0\n", "octopair state 2 3\n"}) {
+    for (const char* text :
+         {"", "octopair state 2", "octopair state x\n", "octopair state 0\n", "octopair state 2 3\n"}) {
         write_file(server_.state() + "/version", text);
         EXPECT_EQ(refusal(), server_.state() + "/version: damaged: it is not a version of a state folder") << text;
     }

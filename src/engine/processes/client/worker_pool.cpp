@@ -82,8 +82,7 @@ void WorkerPool::start(unsigned slot) {
 }
 
 void WorkerPool::throw_cannot_start(const std::string& how) const {
-    throw Error(ErrorCode::engine_failed,
-                "worker processes end at their start, " + how + ": " + program_.substr(program_.rfind('/') + 1));
+    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
 }
 
 /// Replaces workers that ended between passes or could not be started before.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "service/protocol/job_spec.hpp"
@@ -12,13 +13,22 @@ namespace octopair::service {
 
 namespace {
 
+/// Returns the message without the folders of an absolute path, because clients receive it. Folders may have spaces in their names: all text
+/// from the first path to the last slash is left out.
+std::string without_folders(const std::string& message) {
+    const std::size_t first = message.starts_with('/') ? 0 : message.find(" /");
+    if (first == std::string::npos) return message;
+    return message.substr(0, first == 0 ? 0 : first + 1) + message.substr(message.rfind('/') + 1);
+}
+
 /// Returns the failure for the current exception. Requires: called in a catch block.
 v1::Failure failure_of_exception() noexcept {
     v1::Failure failure;
     try {
         throw;
     } catch (const Error& error) {
-        return failure_of(error);
+        failure = failure_of(error);
+        failure.set_message(without_folders(failure.message()));
     } catch (const std::bad_alloc&) {
         failure.set_code(v1::RESOURCE_LIMIT);
         failure.set_message("out of memory");

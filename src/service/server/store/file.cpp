@@ -21,8 +21,7 @@ namespace {
 /// Throws: as fail_io(); NoRoomError if the disk is full.
 [[noreturn]] void fail(const std::string& path, const char* action, int error_number) {
     if (error_number == ENOSPC || error_number == EDQUOT) {
-        throw NoRoomError(name_of_file(path) + ": " + action + ": " +
-                          std::generic_category().message(error_number));
+        throw NoRoomError(name_of_file(path) + ": " + action + ": " + std::generic_category().message(error_number));
     }
     fail_io(name_of_file(path), action, error_number);
 }

@@ -94,7 +94,8 @@ std::optional<grpc::Slice> PairsInFile::piece(std::uint64_t offset) const {
     const std::span bytes = room_in(piece);
     file->read(result_head_bytes + first * sizeof(Pair), bytes);
     if (checksum_of(bytes) != sum) {
-        fail_damaged(name_of_file(target_.path), "wrong checksum of the piece that begins with pair " + std::to_string(first));
+        fail_damaged(name_of_file(target_.path),
+                     "wrong checksum of the piece that begins with pair " + std::to_string(first));
     }
     const std::size_t begin = std::size_t(offset - first) * sizeof(Pair);
     return begin == 0 ? piece : piece.sub(begin, piece.size());

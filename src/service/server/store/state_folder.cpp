@@ -63,13 +63,15 @@ StateFolder::StateFolder(std::string path, const Room& room, std::shared_ptr<spd
 
 std::uint64_t StateFolder::disk_bytes() const {
     struct statvfs status {};
-    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0) return std::numeric_limits<std::uint64_t>::max();
+    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0)
+        return std::numeric_limits<std::uint64_t>::max();
     return std::uint64_t(status.f_blocks) * status.f_frsize;
 }
 
 std::uint64_t StateFolder::free_bytes() const {
     struct statvfs status {};
-    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0) return std::numeric_limits<std::uint64_t>::max();
+    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0)
+        return std::numeric_limits<std::uint64_t>::max();
     return std::uint64_t(status.f_bavail) * status.f_frsize;
 }
 
