@@ -49,15 +49,15 @@ TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
         "install -m 600 /dev/null new && echo fedcba9876543210 >new\n"
         "reads() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"
         "\"$P\" $D --quiet --count-only --token-file new 2>&1\n"
-        "echo 'bert fedcba9876543210' >tokens; kill -HUP $child; reads 'read the tokens again'\n"
+        "echo 'bert fedcba9876543210' >tokens; kill -HUP $child; reads 'info read tokens, roles'\n"
         "\"$P\" $D --quiet --count-only --token-file new; \"$P\" $D --quiet --count-only --token-file token 2>&1\n"
-        "echo broken >tokens; kill -HUP $child; reads 'the tokens stay as they are'\n"
+        "echo broken >tokens; kill -HUP $child; reads 'cannot read them again'\n"
         "\"$P\" $D --quiet --count-only --token-file new");
     const std::string refused = "octopair: unix:socket: the server does not accept this token\n";
     EXPECT_EQ(outcome.out, refused + "1\n" + refused + "1\n");
-    EXPECT_NE(
-        content("log").find("reading tokens, roles and certificates again: tokens: line 1: a line must be NAME TOKEN"),
-        std::string::npos)
+    EXPECT_NE(content("log").find(
+                  "tokens, roles and certificates: cannot read them again: tokens: line 1: a line must be NAME TOKEN"),
+              std::string::npos)
         << content("log");
 }
 

@@ -104,7 +104,7 @@ void reload(service::Server& server, spdlog::logger& log) {
         log_text(log, service::LogLevel::info, "read tokens, roles and certificates again");
     } catch (const std::exception& error) {
         log_text(log, service::LogLevel::error,
-                 "reading tokens, roles and certificates again: " + std::string(error.what()));
+                 "tokens, roles and certificates: cannot read them again: " + std::string(error.what()));
     }
 }
 
