@@ -85,7 +85,7 @@ grpc::Status Access::identify(const grpc::ServerContextBase& context, Caller& ca
     const std::shared_ptr<const Files> files = this->files();
     std::string name = "local";
     if (has_tokens()) {
-        const grpc::Status status = check_token(context, files->tokens, name);
+        grpc::Status status = check_token(context, files->tokens, name);
         if (!status.ok()) return status;
     } else if (const auto peer = context.auth_context(); peer && peer->IsPeerAuthenticated()) {
         name = name_of(*peer);
