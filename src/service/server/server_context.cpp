@@ -69,7 +69,7 @@ grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, Right 
                   "the role " + std::string(name_of(admission.caller.role)) + " does not permit this call"};
     }
     if (!status.ok()) {
-        server_log.call_refused(context.peer(), status);
+        server_log.call_refused({admission.client(), context.peer()}, status);
         return status;
     }
     try {

@@ -1,4 +1,6 @@
 // Tests that the server's log reports detached jobs in the same way as other jobs.
+#include <unistd.h>
+
 #include "service/detached/detached_server.hpp"
 #include "service/metrics_page.hpp"
 #include "service/raw_call.hpp"
@@ -24,6 +26,31 @@ TEST(DetachedServerLog, CountsJobs) {
         EXPECT_EQ(page.find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page;
     }
     EXPECT_NE(server.log().find("job ended"), std::string::npos) << server.log();
+}
+
+/// Each call that makes, reads or ends a job has a line, and each connection.
+TEST(DetachedServerLog, HasALineForEachCallAboutAJob) {
+    const DetachedServer server;
+    const auto client = server.client();
+    const std::vector<Box3f> boxes(3), same(1'000'000);
+    const std::string id = client->submit({std::span(boxes), {}}),
+                      endless = client->submit({std::span(same), {}}, {}, {.count_only = true});
+    (void)pairs_there(*client, id);
+    (void)client->cancel(endless);
+    client->release(id);
+    (void)client->submit({std::span(boxes), {}}, {}, {.id = some_id});
+    (void)test::error_of(ErrorCode::bad_input, [&] { client->submit({std::span(same), {}}, {}, {.id = some_id}); });
+    const auto has = [&](const std::string& line) { return server.log().find(line) != std::string::npos; };
+    const std::string owner = ",\"owner\":\"local\"", job = "{\"id\":\"" + id + "\"" + owner;
+    for (const std::string& line :
+         {"submit\x1f" + job + ",\"peer\":\"unix:\",\"objects\":3,\"bytes\":72}",
+          "result\x1f" + job + ",\"client\":\"local\",\"peer\":\"unix:\",\"offset\":0,\"bytes\":",
+          "release\x1f" + job + ",\"client\":\"local\",\"peer\":\"unix:\"}",
+          "cancel\x1f{\"id\":\"" + endless + "\"" + owner, std::string("call failed\x1f{\"client\":\"local\""),
+          "connected\x1f{\"peer\":\"unix:user=" + std::to_string(::geteuid()) +
+              ",process=" + std::to_string(::getpid())})
+        EXPECT_TRUE(comes_true([&] { return has(line); })) << line << " is not in\n" << server.log();
+    EXPECT_TRUE(has(",\"outcome\":\"complete\"}"));
 }
 
 TEST(DetachedServerLog, CountsRefusals) {

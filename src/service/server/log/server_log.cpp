@@ -99,13 +99,14 @@ void ServerLog::connected(const std::string& peer, const std::string& client) {
     log_event(*log_, LogLevel::info, "connected", fields);
 }
 
-void ServerLog::call_refused(const std::string& peer, const grpc::Status& why) {
+void ServerLog::call_refused(const Asker& asker, const grpc::Status& why) {
     const bool going = why.error_code() == grpc::StatusCode::UNAVAILABLE;
     const bool known = why.error_code() == grpc::StatusCode::PERMISSION_DENIED;
     metrics_.call_refused(going ? "going down" : known ? "not permitted" : "unauthenticated");
-    std::vector<Field> fields = {{"peer", peer}, {"reason", why.error_message()}};
+    std::vector<Field> fields = {{"peer", asker.peer}, {"reason", why.error_message()}};
+    if (known) fields.insert(fields.begin(), {"client", asker.client});
     if (!going) {
-        const auto left_out = refused_calls_.pass(known ? "known" : "unknown");
+        const auto left_out = refused_calls_.pass(known ? asker.client : "");
         if (!left_out) return;
         if (*left_out > 0) fields.push_back({"unreported", *left_out});
     }

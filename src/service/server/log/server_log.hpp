@@ -53,9 +53,9 @@ public:
     void connections_refused(std::uint64_t allowed, std::uint64_t refused);
     /// Records a connection. `client`: client of its first call; empty: not known yet.
     void connected(const std::string& peer, const std::string& client);
-    /// Records a call that was not admitted. `peer`: the caller's address as gRPC writes it. At most one line a second; the next line says
-    /// how many were left out.
-    void call_refused(const std::string& peer, const grpc::Status& why);
+    /// Records a call that was not admitted. The client is empty unless it is authenticated. At most one line a second for all others, and
+    /// one for each authenticated client; the next line says how many were left out.
+    void call_refused(const Asker& asker, const grpc::Status& why);
     /// Records a call that was admitted, but made no job. At most one line a second for each client.
     void call_failed(const Asker& asker, const grpc::Status& why);
     /// Records that a client asked the server to end.
