@@ -12,6 +12,7 @@
 #include "processes/leftovers.hpp"
 #include "service/gate.hpp"
 #include "service/served.hpp"
+#include "support/kinds.hpp"
 
 namespace octopair::test {
 namespace {
@@ -79,6 +80,29 @@ TEST(ServedPatience, EndsWhenAServerStaysAway) {
         return pairs == 1;
     };
     EXPECT_TRUE(test::comes_true(answers, std::chrono::minutes(1)));
+}
+
+/// For example a proxy whose server is gone: it takes calls, and ends each with UNAVAILABLE.
+TEST(ServedPatience, EndsAtAServerThatRefusesEachCall) {
+    Gate gate;
+    Served served([&](service::ServerOptions& options) {
+        options.engine = gated_engines(gate);
+        options.engine_widths.instant = 0;
+    });
+    const auto engine = served.client(), other = served.client(milliseconds(500));
+    Job job = engine->submit(touching_boxes);
+    ASSERT_TRUE(gate.wait_for(1));
+    std::jthread drain([&] { served.server().drain(std::chrono::seconds(30)); });
+    const auto is_refused = [&] {
+        return code_of([&] { (void)connect(served.address(), {.connect_timeout = milliseconds(100)}); }) ==
+               ErrorCode::engine_failed;
+    };
+    ASSERT_TRUE(comes_true(is_refused, std::chrono::seconds(20)));
+    const std::vector<Box3f> many = make_boxes("uniform", 100'000, 1);  // a stream of messages
+    const auto begun = std::chrono::steady_clock::now();
+    EXPECT_EQ(code_of([&] { (void)other->count_pairs({std::span(many), {}}); }), ErrorCode::engine_failed);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+    gate.open();
 }
 
 TEST(ServedPatience, CanBeStopped) {

@@ -43,7 +43,8 @@ grpc::Status RawStream::run(const std::stop_token& stop) {
 }
 
 void RawStream::handle(Event event, bool ok) {
-    if (ok) connection_.heard();
+    // Other events show only that gRPC took something: it does so also for a server that ends each call.
+    if (ok && event == Event::read) connection_.heard();
     switch (event) {
         case Event::started:
             ok ? read() : finish();
