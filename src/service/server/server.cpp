@@ -39,6 +39,9 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
     builder.SetResourceQuota(quota);
     builder.SetMaxReceiveMessageSize(int(max_message_bytes));
     builder.SetMaxSendMessageSize(int(max_message_bytes));
+    // Compressed messages would be expanded before the caller is known.
+    for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP})
+        builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, int(greeting.count()));
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 300'000);
