@@ -58,6 +58,21 @@ TEST_F(Strangers, ConnectionsWithoutACallAreCut) {
     EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u) << "a client that was admitted stays";
 }
 
+TEST_F(Strangers, ManyRefusedCallsAreCut) {
+    const Served served(with(40));
+    RawSocket socket(served.address());
+    ASSERT_TRUE(socket.send(std::string(http2_preface) + http2_frame({settings_frame}, "")));
+    bool open = true;
+    std::uint32_t stream = 1;
+    for (; open && stream < 2'000; stream += 2)  // in all, less than half of the bytes that are allowed
+        open = socket.send(grpc_head(stream, "Describe") +
+                           http2_frame({reset_frame, 0, stream}, std::string("\0\0\0\10", 4)));
+    open = open && !socket.is_closed_within(seconds(5));
+    EXPECT_FALSE(open) << stream / 2 << " calls were taken";
+    const auto engine = connect(served.address(), anna());
+    for (int i = 0; i < 200; ++i) EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u);
+}
+
 TEST_F(Strangers, AClientHasItsShareOfTheConnections) {
     const Served served([&](service::ServerOptions& options) {
         with(40)(options);

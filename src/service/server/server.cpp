@@ -85,6 +85,7 @@ public:
         context_.on_call = [this](const grpc::ServerContextBase& call, const std::string& client) {
             if (listener_.awaits_calls()) count_connection(call, client);
         };
+        context_.on_unknown = [this](const std::string& peer) { listener_.note_refused(peer); };
         start_listening(options);
     }
 

@@ -69,7 +69,9 @@ grpc::Status ServerContext::admit(const grpc::ServerContextBase& context, Right 
                   "the role " + std::string(name_of(admission.caller.role)) + " does not permit this call"};
     }
     if (!status.ok()) {
-        server_log.call_refused({admission.client(), context.peer()}, status);
+        const std::string peer = context.peer();
+        server_log.call_refused({admission.client(), peer}, status);
+        if (status.error_code() == grpc::StatusCode::UNAUTHENTICATED && on_unknown) on_unknown(peer);
         return status;
     }
     try {

@@ -62,6 +62,9 @@ public:
     /// LimitError to refuse the call.
     std::function<void(const grpc::ServerContextBase&, const std::string& client)> on_call;
 
+    /// Called with the peer of each call that is refused because its client is not known; may be empty. Set before the first call.
+    std::function<void(const std::string& peer)> on_unknown;
+
     /// Authenticates the caller, checks that its role has `right`, and sets `admission`. Returns why a call is refused.
     grpc::Status admit(const grpc::ServerContextBase& context, Right right, Admission& admission);
     /// Returns the job that the caller names. `owner`: owner of the job, for callers that see the jobs of all. Throws:

@@ -81,6 +81,12 @@ ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, 
     return Admission::known_now;
 }
 
+void ConnectionWatch::note_refused(const std::string& name) {
+    const auto found = std::find_if(unknown_.begin(), unknown_.end(),
+                                    [&](const Unknown& connection) { return connection.peer.name == name; });
+    if (found != unknown_.end() && ++found->refused_calls > terms_.max_refused_calls) cut(found);
+}
+
 std::uint64_t ConnectionWatch::open_connections(const std::string& client) {
     std::erase_if(known_, [](const Known& connection) { return socket_of(connection.number) != connection.socket; });
     return std::uint64_t(std::count_if(known_.begin(), known_.end(),

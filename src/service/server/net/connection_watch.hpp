@@ -4,6 +4,7 @@
 //   - in time: at most `greeting` from its start;
 //   - in bytes received: at most `max_bytes`. An endless header, for example, would cost the server much time (CVE-2023-33953). So the
 //     first call of a connection must be small; Describe is;
+//   - in refused calls: at most `max_refused_calls`. Calls that are reset at once, for example, would cost much (CVE-2023-44487);
 //   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
 //     oldest unknown connection of the address that has most of them is cut. So known clients always find slots.
 // A known connection counts for the client of its first call, until it is closed.
@@ -31,6 +32,7 @@ public:
         std::uint64_t max_per_client = 0;   ///< known connections of one client; 0: no limit
         std::chrono::milliseconds greeting{10'000};
         std::uint64_t max_bytes = 512 << 10;
+        std::uint64_t max_refused_calls = 32;
     };
     explicit ConnectionWatch(const Terms& terms) : terms_(terms) {}
 
@@ -47,6 +49,8 @@ public:
     /// Notes that `client` makes a call on the connection of a peer. A connection that is not known yet becomes known and is not watched
     /// any longer, unless the client has too many already.
     Admission make_known(const std::string& name, const std::string& client);
+    /// Notes that a call of a peer was refused, because the server does not know who makes it.
+    void note_refused(const std::string& name);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
     std::uint64_t check(Clock::time_point now);
 
@@ -58,6 +62,7 @@ private:
         int number;             // gRPC's descriptor
         Peer peer;
         Clock::time_point since;
+        std::uint64_t refused_calls = 0;
     };
 
     struct Known {

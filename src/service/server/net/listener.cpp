@@ -267,6 +267,13 @@ ConnectionWatch::Admission Listener::make_known(const std::string& peer, const s
     return admission;
 }
 
+void Listener::note_refused(const std::string& peer) {
+    if (!watch_) return;
+    const std::lock_guard lock(watch_mutex_);
+    watch_->note_refused(peer);
+    unknown_ = watch_->unknown();
+}
+
 void Listener::check_watched() {
     if (!watch_ || !awaits_calls()) return;
     std::uint64_t cut = 0;

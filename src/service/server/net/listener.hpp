@@ -58,6 +58,8 @@ public:
     void stop();
     /// Notes that `client` makes a call from this peer (ConnectionWatch::Peer::name). Thread safety: safe.
     ConnectionWatch::Admission make_known(const std::string& peer, const std::string& client);
+    /// Notes that a call from this peer was refused, because the server does not know who makes it. Thread safety: safe.
+    void note_refused(const std::string& peer);
     /// Returns whether connections wait for that. Thread safety: safe.
     bool awaits_calls() const { return unknown_ > 0; }
     std::uint64_t connections() const { return connections_; }
