@@ -31,7 +31,7 @@ public:
         std::uint64_t max_connections = 0;  ///< 0: no limit on the number of unknown connections
         std::uint64_t max_per_client = 0;   ///< known connections of one client; 0: no limit
         std::chrono::milliseconds greeting{10'000};
-        std::uint64_t max_bytes = 512 << 10;
+        std::uint64_t max_bytes = 128 << 10;
         std::uint64_t max_refused_calls = 32;
     };
     explicit ConnectionWatch(const Terms& terms) : terms_(terms) {}
