@@ -1,11 +1,14 @@
 // Tests connections of strangers over TCP: silent ones, and those that send much before they make a call, do not keep clients out.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
+#include <filesystem>
 #include <thread>
 
 #include "service/guarded.hpp"
 #include "service/raw_socket.hpp"
 #include "service/served.hpp"
+#include "service/server_program.hpp"
 
 namespace octopair::test {
 namespace {
@@ -56,6 +59,33 @@ TEST_F(Strangers, ConnectionsWithoutACallAreCut) {
     EXPECT_TRUE(comes_true([&] { return served.load().connections <= 1; }, seconds(20)));
     std::this_thread::sleep_for(seconds(2));
     EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u) << "a client that was admitted stays";
+}
+
+/// gRPC reads a new connection on the thread that hands it over, as long as it has data. So that thread must not be the one that cuts
+/// connections. The header is a number with endless zeros, which gRPC reads again from its start with each frame.
+TEST_F(Strangers, ABurstDoesNotDelayClients) {
+    // In a program of its own, whose listener has no other gRPC threads to help it.
+    const ServerProgram program(
+        {.arguments = "--engine local --threads 2 --tokens '" + folder_.file("tokens") + "'", .listen = "127.0.0.1:0"});
+    const std::string before = "started address=";
+    const auto has_started = [&] {
+        return std::filesystem::exists(program.file("log")) && program.log().find(before) != std::string::npos;
+    };
+    ASSERT_TRUE(comes_true(has_started, seconds(60)));
+    std::string address = program.log().substr(program.log().find(before) + before.size());
+    address.resize(address.find(' '));
+    constexpr char continuation_frame = 9;
+    const std::string zeros(16'000, '\x80'), more = http2_frame({continuation_frame, 0, 3}, zeros);
+    for (int round = 0; round < 2; ++round) {
+        const RawSocket socket(address);
+        ASSERT_TRUE(socket.send(std::string(http2_preface) + http2_frame({settings_frame}, "") +
+                                http2_frame({headers_frame, 0, 3}, "\x40\x7f" + zeros)));
+        for (int sent = 0; sent < 240 && ::send(socket.number(), more.data(), more.size(), MSG_NOSIGNAL) > 0; ++sent) {
+        }
+        const auto begun = std::chrono::steady_clock::now();
+        EXPECT_EQ(connect(address, anna())->count_pairs(objects_of(touching_boxes)), 1u);
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, seconds(2));
+    }
 }
 
 TEST_F(Strangers, ManyRefusedCallsAreCut) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/work_queue.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/limit_error.hpp"
@@ -92,6 +93,8 @@ public:
     ~State() {
         context_.server_log.metrics().hide();
         listener_.stop();
+        new_connections_.close();
+        handing_over_.clear();
         server_->Shutdown(std::chrono::system_clock::now());
         server_->Wait();
     }
@@ -125,7 +128,11 @@ private:
         terms.max_per_client =
             share_of_client(options, options.limits.connections, options.limits.connections_per_client);
         terms.encrypted = !options.tls.certificate.empty();
-        terms.accept = [this](Descriptor connection) { hand_over(std::move(connection)); };
+        for (std::size_t i = 0; i < max_handed_over; ++i) {
+            handing_over_.emplace_back(
+                [this] { new_connections_.run([this](Descriptor& connection) { hand_over(std::move(connection)); }); });
+        }
+        terms.accept = [this](Descriptor connection) { new_connections_.add(std::move(connection)); };
         terms.refused = [this] {
             context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused());
         };
@@ -174,7 +181,13 @@ private:
         acceptor_->HandleNewConnection(&parameters);
     }
 
+    /// Threads that hand connections to gRPC. gRPC may read on such a thread until the connection has no more data, so it must not be the
+    /// listener's, which cuts connections.
+    static constexpr std::size_t max_handed_over = 4;
+
     Listener listener_;
+    WorkQueue<Descriptor> new_connections_;
+    std::vector<std::jthread> handing_over_;
     ServerContext context_;
     Credentials credentials_;
     const std::unique_ptr<grpc::Service> calls_;
