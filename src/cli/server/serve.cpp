@@ -1,6 +1,9 @@
 // octopair serve: runs a server that finds pairs for clients.
 #include <malloc.h>
+#include <unistd.h>
 
+#include <cstdint>
+#include <fstream>
 #include <memory>
 #include <stop_token>
 
@@ -21,6 +24,26 @@ void keep_freed_memory() {
     mallopt(M_TRIM_THRESHOLD, 64 << 20);
 }
 
+std::uint64_t resident_bytes() {
+    std::uint64_t mapped = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> mapped >> resident;
+    return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+/// Gives freed memory back to the system if there is much more of it than the last time, and than the jobs use now.
+class FreedMemory {
+public:
+    void give_back(const service::Server& server) {
+        constexpr std::uint64_t much = std::uint64_t(64) << 20;
+        if (resident_bytes() < kept_ + much + 2 * server.load().memory_bytes) return;
+        (void)malloc_trim(0);
+        kept_ = resident_bytes();
+    }
+
+private:
+    std::uint64_t kept_ = resident_bytes();
+};
+
 int run_serve(const ServeRequest& request) {
     keep_freed_memory();
 #ifdef OCTOPAIR_WITH_MPI
@@ -39,7 +62,8 @@ int run_serve(const ServeRequest& request) {
     log_start(*log, server, options);
     const Reloader reloader(server, *log);
     const Supervisor supervisor(server);
-    wait_for_stop(end.get_token());
+    FreedMemory freed;
+    wait_for_stop(end.get_token(), [&] { freed.give_back(server); });
     Supervisor::report_stopping();
     drain(*log, server);
     return 0;

@@ -74,7 +74,7 @@ void add_limits(Command& command, service::ServerLimits& limits) {
                 "maximum connections of one client over TCP (default: half of --max-connections, with tokens or client "
                 "certificates)"},
                limits.connections_per_client);
-    add_number(command, {"--max-calls-per-client", "N", "maximum calls of one client at a time (default 1000)"},
+    add_number(command, {"--max-calls-per-client", "N", "maximum calls of one client at a time (default 256)"},
                limits.calls_per_client);
     command
         .add_option(

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
@@ -128,11 +129,15 @@ Reloader::~Reloader() {
     thread_.join();
 }
 
-void wait_for_stop(const std::stop_token& stop) {
+void wait_for_stop(const std::stop_token& stop, const std::function<void()>& sometimes) {
+    constexpr std::chrono::seconds apart(5);
     std::mutex mutex;
     std::condition_variable_any changed;
     std::unique_lock lock(mutex);
-    changed.wait(lock, stop, [] { return false; });
+    while (!stop.stop_requested()) {
+        (void)changed.wait_for(lock, stop, apart, [] { return false; });
+        if (sometimes) sometimes();
+    }
 }
 
 void drain(spdlog::logger& log, service::Server& server) {

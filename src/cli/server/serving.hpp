@@ -4,6 +4,7 @@
 #include <spdlog/fwd.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <thread>
@@ -52,8 +53,8 @@ private:
     std::thread thread_;
 };
 
-/// Waits for a stop request.
-void wait_for_stop(const std::stop_token& stop);
+/// Waits for a stop request. Calls `sometimes`, if given, every five seconds.
+void wait_for_stop(const std::stop_token& stop, const std::function<void()>& sometimes = {});
 /// Drains the server (Server::drain), and logs the beginning and the end.
 void drain(spdlog::logger& log, service::Server& server);
 

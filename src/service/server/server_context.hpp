@@ -10,6 +10,7 @@
 
 #include "service/protocol/limit_error.hpp"
 #include "service/server/calls/call_threads.hpp"
+#include "service/server/calls/result_reader.hpp"
 #include "service/server/jobs/array_pool.hpp"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/job_scheduler.hpp"
@@ -52,6 +53,7 @@ public:
     JobTable jobs;
     Watchdog watchdog;
     CallThreads threads;
+    ResultReader result_reader;
     std::shared_ptr<DetachedJobs> detached;  // null without a state folder
     std::atomic<bool> draining = false;
     /// Number of attached jobs that the server waits for when it shuts down. Each job reserves 1 from the end of its upload to

@@ -23,7 +23,7 @@ struct ServerLimits {
     std::uint64_t jobs = 1000;  ///< jobs that are uploading, queued or running, and open scenes
     std::uint64_t jobs_per_client = 200;
     std::uint64_t connections = 1000;
-    std::uint64_t calls_per_client = 1000;                ///< calls of one client at a time
+    std::uint64_t calls_per_client = 256;                 ///< calls of one client at a time
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
     std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder

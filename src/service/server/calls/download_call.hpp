@@ -36,7 +36,7 @@ public:
             const std::lock_guard lock(mutex_);
             writing_ = false;
         }
-        ok ? pump() : refuse({grpc::StatusCode::CANCELLED, "the client does not read"});
+        ok ? pump_soon() : refuse({grpc::StatusCode::CANCELLED, "the client does not read"});
     }
 
     void OnCancel() final { refuse({grpc::StatusCode::CANCELLED, "cancelled"}); }
@@ -47,7 +47,7 @@ public:
     }
     // NOLINTEND(readability-identifier-naming)
 
-    void job_changed() final { pump(); }
+    void job_changed() final { pump_soon(); }
 
     void check_deadline(std::chrono::steady_clock::time_point now) final {
         bool stuck = false, downloading = false;
@@ -95,7 +95,7 @@ protected:
             first_pair_ = offset;
         }
         job->watch(self_);
-        pump();
+        pump_soon();
     }
 
     /// Ends the call with `status`, after the write in progress.
@@ -105,15 +105,8 @@ protected:
             if (!refusal_) refusal_ = status;
         }
         refused();
-        pump();
+        pump_soon();
     }
-
-private:
-    /// Called when the call is going to end before all pairs were sent.
-    virtual void refused() {}
-    virtual void done() {}
-    /// Called when nothing was written for the stall timeout, or when pairs are sent while the server shuts down.
-    virtual void handle_stall(bool downloading) = 0;
 
     /// Writes the next message if one is ready and no write is in progress.
     void pump() {
@@ -134,6 +127,15 @@ private:
         if (!next.status.ok()) return this->Finish(next.status);
         this->StartWriteAndFinish(&out_, {}, next.status);
     }
+
+private:
+    /// Calls pump() now or soon, on any thread.
+    virtual void pump_soon() { pump(); }
+    /// Called when the call is going to end before all pairs were sent.
+    virtual void refused() {}
+    virtual void done() {}
+    /// Called when nothing was written for the stall timeout, or when pairs are sent while the server shuts down.
+    virtual void handle_stall(bool downloading) = 0;
 
     ServerContext& server_;
     grpc::CallbackServerContext& context_;

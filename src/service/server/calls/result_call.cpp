@@ -1,6 +1,7 @@
 // The call Result: streams the pairs of a detached job.
 #include "service/server/calls/call_handlers.hpp"
 
+#include <atomic>
 #include <memory>
 
 #include "service/protocol/messages.hpp"
@@ -50,6 +51,14 @@ private:
         if (job_) server().server_log.result_sent(*job_, {caller().name, context().peer()}, sent());
     }
 
+    void pump_soon() override {
+        if (scheduled_.exchange(true)) return;
+        server().result_reader.add(caller().name, [self = shared_from_this()] {
+            self->scheduled_ = false;
+            self->pump();
+        });
+    }
+
     void handle_stall(bool) override {
         if (!server().draining || !job_ || job_->ended()) return;
         refuse({grpc::StatusCode::UNAVAILABLE, "the server is going down"});
@@ -57,6 +66,7 @@ private:
 
     std::shared_ptr<ServerJob> job_;
     Budget::Reservation piece_;
+    std::atomic<bool> scheduled_ = false;  // the reader will call pump()
 };
 
 }  // namespace
