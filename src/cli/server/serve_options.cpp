@@ -74,7 +74,9 @@ void add_limits(Command& command, service::ServerLimits& limits) {
                 "maximum connections of one client over TCP (default: half of --max-connections, with tokens or client "
                 "certificates)"},
                limits.connections_per_client);
-    add_number(command, {"--max-calls-per-client", "N", "maximum calls of one client at a time (default 256)"},
+    add_number(command,
+               {"--max-calls-per-client", "N",
+                "maximum calls of one client at a time (default 256, with tokens or client certificates)"},
                limits.calls_per_client);
     command
         .add_option(

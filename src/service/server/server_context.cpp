@@ -41,7 +41,7 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
       memory("memory_bytes", "bytes of memory", given.limits.memory_bytes,
              share_of_client(given, given.limits.memory_bytes, given.limits.memory_bytes_per_client)),
       job_slots("jobs", "job slots", given.limits.jobs, given.limits.jobs_per_client),
-      calls("calls", "calls", 0, given.limits.calls_per_client),
+      calls("calls", "calls", 0, given.limits.calls_per_client.value_or(tells_clients_apart(given) ? 256 : 0)),
       state(given.state_folder.empty()
                 ? nullptr
                 : std::make_unique<StateFolder>(

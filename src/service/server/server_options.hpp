@@ -23,7 +23,6 @@ struct ServerLimits {
     std::uint64_t jobs = 1000;  ///< jobs that are uploading, queued or running, and open scenes
     std::uint64_t jobs_per_client = 200;
     std::uint64_t connections = 1000;
-    std::uint64_t calls_per_client = 256;                 ///< calls of one client at a time
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
     std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder
@@ -31,6 +30,8 @@ struct ServerLimits {
     std::optional<std::uint64_t> memory_bytes_per_client = {}, state_bytes_per_client = {};
     /// Connections of one client over TCP. Default as above.
     std::optional<std::uint64_t> connections_per_client = {};
+    /// Calls of one client at a time. Default: 256, on a server with tokens or client certificates; otherwise no limit.
+    std::optional<std::uint64_t> calls_per_client = {};
 };
 
 /// Paths of PEM files. Without a certificate connections are not encrypted.
@@ -63,11 +64,15 @@ struct ServerOptions {
     std::chrono::seconds stall{60};        ///< maximum time between two messages of a client, sent or read
 };
 
+/// Returns whether clients have different names (access.hpp).
+inline bool tells_clients_apart(const ServerOptions& options) {
+    return !options.token_file.empty() || !options.tls.client_authority.empty();
+}
+
 /// Returns how much of a limited amount one client may take: `each`, or else half, if the server can tell clients apart; 0: no limit.
 inline std::uint64_t share_of_client(const ServerOptions& options, std::uint64_t all,
                                      std::optional<std::uint64_t> each) {
-    const bool tells_apart = !options.token_file.empty() || !options.tls.client_authority.empty();
-    return each.value_or(tells_apart ? all - all / 2 : 0);
+    return each.value_or(tells_clients_apart(options) ? all - all / 2 : 0);
 }
 
 }  // namespace octopair::service

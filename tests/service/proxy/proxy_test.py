@@ -356,7 +356,7 @@ class ProxyTests:
                 attacker.join()
         self.assertGreater(sum(calls), 20_000, "the attack is too weak for a test")
         self.assertLess(self.stack.octopair.cpu_seconds() - before, 0.5, "CPU seconds of octopair")
-        self.assertLess(self.stack.octopair.lines() - lines, 20, "lines in the log of octopair")
+        self.assertLess(self.stack.octopair.lines() - lines, 60, "lines in the log of octopair")
 
     def test_silent_connections_leave_room_for_clients(self):
         lines = self.stack.octopair.lines()
@@ -384,7 +384,7 @@ class ProxyTests:
         self.assertEqual(sum(not one.is_closed() for one in encrypted), 0, "connections without a call after 15 s")
         if self.max_of_address is None:
             self.assertEqual(sum(is_open(one) for one in silent), 0, "silent connections after 15 s")
-        self.assertLess(self.stack.octopair.lines() - lines, 20, "lines in the log of octopair")
+        self.assertLess(self.stack.octopair.lines() - lines, 60, "lines in the log of octopair")
 
     def test_calls_of_other_services_do_not_reach_octopair(self):
         # HPACK's static table has the status 200 at 8 and 404 at 13. octopair answers calls that it does not have with 200.

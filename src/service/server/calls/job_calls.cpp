@@ -146,7 +146,7 @@ v1::ServerDescription describe(const ServerContext& server) {
     described.set_connections(limits.connections);
     described.set_connections_per_client(
         share_of_client(server.options, limits.connections, limits.connections_per_client));
-    described.set_calls_per_client(limits.calls_per_client);
+    described.set_calls_per_client(server.calls.each());
     described.set_job_seconds(limits.job_seconds);
     described.set_memory_bytes(limits.memory_bytes);
     described.set_memory_bytes_per_client(server.memory.each());
