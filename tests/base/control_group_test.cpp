@@ -7,29 +7,21 @@
 #include <fstream>
 #include <thread>
 
+#include "io/temporary.hpp"
+
 namespace octopair::test {
 namespace {
 
 class ControlGroup : public ::testing::Test {
 protected:
-    ControlGroup() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "octopair-test-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
-        root_ = pattern;
-    }
-    ~ControlGroup() override {
-        std::error_code ignored;
-        std::filesystem::remove_all(root_, ignored);
-    }
-
     void write(const std::string& path, const std::string& text) const {
-        const std::filesystem::path file = root_ + path;
+        const std::filesystem::path file = root_.path() + path;
         std::filesystem::create_directories(file.parent_path());
         std::ofstream(file) << text;
     }
-    ControlGroupLimits limits() const { return control_group_limits(root_); }
+    ControlGroupLimits limits() const { return control_group_limits(root_.path()); }
 
-    std::string root_;
+    TemporaryDirectory root_;
 };
 
 TEST_F(ControlGroup, HasNoLimitWithoutFiles) {

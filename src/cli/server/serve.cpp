@@ -2,6 +2,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -30,17 +31,24 @@ std::uint64_t resident_bytes() {
     return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
 }
 
-/// Gives freed memory back to the system if there is much more of it than the last time, and than the jobs use now.
+/// Gives memory that ended jobs have freed back to the system.
 class FreedMemory {
 public:
+    /// Does nothing if the memory that no job uses has hardly grown since the last time.
     void give_back(const service::Server& server) {
         constexpr std::uint64_t much = std::uint64_t(64) << 20;
-        if (resident_bytes() < kept_ + much + 2 * server.load().memory_bytes) return;
+        if (unused_bytes(server) < kept_ + much) return;
         (void)malloc_trim(0);
-        kept_ = resident_bytes();
+        kept_ = unused_bytes(server);
     }
 
 private:
+    /// Returns the resident memory, less twice what jobs have reserved: they may take more than they reserve.
+    static std::uint64_t unused_bytes(const service::Server& server) {
+        const std::uint64_t resident = resident_bytes(), used = 2 * server.load().memory_bytes;
+        return resident - std::min(resident, used);
+    }
+
     std::uint64_t kept_ = resident_bytes();
 };
 

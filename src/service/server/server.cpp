@@ -127,20 +127,25 @@ private:
     void start_listening(const ServerOptions& options) {
         Listener::Terms terms;
         terms.max_connections = options.limits.connections;
-        terms.max_per_client =
-            share_of_client(options, options.limits.connections, options.limits.connections_per_client);
+        terms.max_per_client = context_.connections_per_client;
         terms.encrypted = !options.tls.certificate.empty();
-        for (std::size_t i = 0; i < max_handed_over; ++i) {
-            handing_over_.emplace_back(
-                [this] { new_connections_.run([this](Descriptor& connection) { hand_over(std::move(connection)); }); });
-        }
         terms.accept = [this](Descriptor connection) { new_connections_.add(std::move(connection)); };
         terms.refused = [this] {
             context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused());
         };
         terms.connected = [this](const std::string& peer) { context_.server_log.connected(peer, {}); };
         terms.greeting = std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall);
-        listener_.start(std::move(terms));
+        try {
+            for (std::size_t i = 0; i < max_handed_over; ++i) {
+                handing_over_.emplace_back([this] {
+                    new_connections_.run([this](Descriptor& connection) { hand_over(std::move(connection)); });
+                });
+            }
+            listener_.start(std::move(terms));
+        } catch (...) {
+            new_connections_.close();  // the threads end; otherwise their destructors would wait for them without end
+            throw;
+        }
     }
 
     /// Throws: LimitError if the client has too many connections.
@@ -154,8 +159,7 @@ private:
             case ConnectionWatch::Admission::too_many:
                 break;
         }
-        const std::uint64_t most = share_of_client(context_.options, context_.options.limits.connections,
-                                                   context_.options.limits.connections_per_client);
+        const std::uint64_t most = context_.connections_per_client;
         throw LimitError("connections_per_client", most,
                          "connections_per_client: a client may have " + std::to_string(most) + " connections");
     }

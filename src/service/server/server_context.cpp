@@ -42,6 +42,7 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
              share_of_client(given, given.limits.memory_bytes, given.limits.memory_bytes_per_client)),
       job_slots("jobs", "job slots", given.limits.jobs, given.limits.jobs_per_client),
       calls("calls", "calls", 0, given.limits.calls_per_client.value_or(tells_clients_apart(given) ? 256 : 0)),
+      connections_per_client(share_of_client(given, given.limits.connections, given.limits.connections_per_client)),
       state(given.state_folder.empty()
                 ? nullptr
                 : std::make_unique<StateFolder>(

@@ -47,9 +47,10 @@ public:
     ServerLog server_log;
     Budget memory;
     ArrayPool array_pool;
-    Budget job_slots;                          // of unfinished jobs, and of scenes
-    Budget calls;                              // at a time
-    const std::unique_ptr<StateFolder> state;  // null: the server takes no detached jobs
+    Budget job_slots;                            // of unfinished jobs, and of scenes
+    Budget calls;                                // at a time
+    const std::uint64_t connections_per_client;  // over TCP; 0: no limit
+    const std::unique_ptr<StateFolder> state;    // null: the server takes no detached jobs
     JobTable jobs;
     Watchdog watchdog;
     CallThreads threads;

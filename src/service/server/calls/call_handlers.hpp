@@ -1,6 +1,6 @@
 // Functions that start the calls of octopair.proto. calls.cpp forwards each call to its function.
 // Each function returns gRPC's reactor of the call; the reactor deletes itself when the call is done. The calls about jobs find
-// only jobs of the caller.
+// only jobs that the caller sees (net/caller.hpp).
 //
 // Requires: `server` outlives the call.
 #pragma once

@@ -144,15 +144,13 @@ v1::ServerDescription describe(const ServerContext& server) {
     described.set_jobs(limits.jobs);
     described.set_jobs_per_client(limits.jobs_per_client);
     described.set_connections(limits.connections);
-    described.set_connections_per_client(
-        share_of_client(server.options, limits.connections, limits.connections_per_client));
+    described.set_connections_per_client(server.connections_per_client);
     described.set_calls_per_client(server.calls.each());
     described.set_job_seconds(limits.job_seconds);
     described.set_memory_bytes(limits.memory_bytes);
     described.set_memory_bytes_per_client(server.memory.each());
     described.set_state_bytes(limits.state_bytes);
-    described.set_state_bytes_per_client(
-        share_of_client(server.options, limits.state_bytes, limits.state_bytes_per_client));
+    if (server.state) described.set_state_bytes_per_client(server.state->disk().each());
     described.set_message_bytes(max_message_bytes);
     return description;
 }

@@ -28,7 +28,7 @@ struct Asker {
     std::string peer;
 };
 
-/// What a call sent of a result.
+/// The part of a result that a call sent.
 struct Sent {
     std::uint64_t offset = 0, bytes = 0;
     std::string outcome;  ///< "complete", or why the call ended before

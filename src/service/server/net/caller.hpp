@@ -15,7 +15,7 @@ namespace octopair::service {
 /// `none`: every call is refused.
 enum class Role : std::uint8_t { owner, reader, server_operator, none };
 
-/// What a call does, as far as roles differ.
+/// Kinds of calls that roles permit or refuse.
 enum class Right : std::uint8_t { describe, submit, see, read, cancel, release, drain };
 
 struct Caller {

@@ -61,18 +61,11 @@ StateFolder::StateFolder(std::string path, const Room& room, std::shared_ptr<spd
     check_version();
 }
 
-std::uint64_t StateFolder::disk_bytes() const {
+StateFolder::DiskSpace StateFolder::disk_space() const {
+    constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
     struct statvfs status {};
-    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0)
-        return std::numeric_limits<std::uint64_t>::max();
-    return std::uint64_t(status.f_blocks) * status.f_frsize;
-}
-
-std::uint64_t StateFolder::free_bytes() const {
-    struct statvfs status {};
-    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0)
-        return std::numeric_limits<std::uint64_t>::max();
-    return std::uint64_t(status.f_bavail) * status.f_frsize;
+    if (::statvfs(path_.c_str(), &status) != 0 || status.f_blocks == 0) return {unknown, unknown};
+    return {std::uint64_t(status.f_blocks) * status.f_frsize, std::uint64_t(status.f_bavail) * status.f_frsize};
 }
 
 void StateFolder::lock() {

@@ -56,10 +56,11 @@ public:
     /// Returns the base path of a new job. Thread safety: this and all members below are safe.
     std::string new_base();
     Budget& disk() { return disk_; }
-    /// Returns the size of the folder's disk, and the part that this program may still use, in bytes. If the system does not say it, the
-    /// greatest number.
-    std::uint64_t disk_bytes() const;
-    std::uint64_t free_bytes() const;
+    struct DiskSpace {
+        std::uint64_t all, free;  ///< bytes of the folder's disk, and those that this program may still use
+    };
+    /// If the system does not tell, both are the greatest number.
+    DiskSpace disk_space() const;
     DiskQueue& disk_queue() { return disk_queue_; }
     spdlog::logger& log() { return *log_; }
 

@@ -55,7 +55,7 @@ void StoredJob::wait_for_room(const NoRoomError& why) {
     needed_bytes_ = parts_.pairs->bytes() + piece_bytes;
     parts_.pairs->discard();
     parts_.folder.disk().check(parts_.disk.amount() + needed_bytes_);
-    const std::uint64_t most = parts_.folder.disk_bytes();
+    const std::uint64_t most = parts_.folder.disk_space().all;
     if (parts_.disk.amount() + needed_bytes_ > most) {
         throw Error(ErrorCode::io_failed, "the result does not fit on the server's disk, which has " +
                                               std::to_string(most) + " bytes in all");
@@ -73,7 +73,8 @@ bool StoredJob::has_room() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_check_) return false;
     next_check_ = now + apart;
-    return parts_.folder.free_bytes() >= needed_bytes_ && parts_.folder.disk().has(needed_bytes_, parts_.stored.owner);
+    return parts_.folder.disk_space().free >= needed_bytes_ &&
+           parts_.folder.disk().has(needed_bytes_, parts_.stored.owner);
 }
 
 /// Deletes N.job first: after a crash a server removes a result without a job, but would run a job without a result.
