@@ -1,4 +1,5 @@
-// Tests that a StagedWriter appends the same entries to the same lists as a ChunkWriter, however it stages them.
+// Tests that a StagedWriter appends the same entries to the same lists as a ChunkWriter, however it stages them. Tests that
+// readers of damaged lists end.
 #include "octree/build/chunk_lists.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "octopair/error.hpp"
 #include "octree/build/chunk_writer.hpp"
 #include "octree/build/staged_writer.hpp"
 
@@ -86,6 +88,25 @@ TEST(StagedWriter, FillsTheSameListsIfThereAreFew) {
     for (const std::uint32_t lists : {1u, 2u, 511u, 512u, 513u}) expect_same_lists({1, 20000, lists, 1});
 }
 TEST(StagedWriter, FillsNoListWithoutEntries) { expect_same_lists({2, 0, 100, 1}); }
+
+/// A worker with damaged records writes a block while others read it. The chunks of a list then led from one list into another,
+/// and round in a circle.
+TEST(ChunkLists, HaveAnEndWhenASecondWriterDamagesThem) {
+    ChunkLists lists(own_pages());
+    lists.resize(1, 2, 10'000);
+    const auto append_to = [](ChunkWriter& writer, std::uint32_t list, int count) {
+        for (int i = 0; i < count; ++i) writer.append(list, {});
+    };
+    ChunkWriter first(lists, 0);
+    append_to(first, 0, 2000);
+    first.finish();
+    EXPECT_EQ(entries_of(lists, 0).size(), 2000u);
+    ChunkWriter second(lists, 0);
+    append_to(second, 0, 1);
+    append_to(second, 1, 2000);
+    append_to(second, 0, 2000);
+    EXPECT_THROW((void)entries_of(lists, 0), Error);
+}
 
 }  // namespace
 }  // namespace octopair::test

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/tuning.hpp"
+#include "octopair/error.hpp"
 #include "octree/build/chunk_writer.hpp"
 
 namespace octopair {
@@ -24,6 +25,8 @@ void ChunkLists::resize(std::size_t blocks, std::size_t lists, std::size_t max_e
     next_.reserve_discard(blocks * chunks_per_block_);
     ends_.resize_discard(blocks * lists);
 }
+
+void ChunkLists::throw_damaged() { throw Error(ErrorCode::engine_failed, "the octree in shared memory is damaged"); }
 
 ChunkWriter::ChunkWriter(ChunkLists& of, std::size_t block)
     : of_(of),

@@ -6,7 +6,8 @@
 // ChunkWriter (build/chunk_writer.hpp) appends the entries of one block.
 //
 // Invariants
-//   A chunk has room for `chunk_size` entries, a power of two, and belongs to one list. next_ links the chunks of a list.
+//   A chunk has room for `chunk_size` entries, a power of two, and belongs to one list. next_ links the chunks of a list, in
+//   ascending order.
 //   Each block has its own range of the memory, of which it commits as much as it needs.
 //   Chunk 0 of a block belongs to no list: list number `lists` discards entries there. So position 0 means an empty list.
 #pragma once
@@ -34,6 +35,7 @@ public:
     std::size_t lists() const { return lists_; }
 
     /// Calls visit(entries) for each run of adjacent entries of a list, in the order of blocks.
+    /// Throws: Error{engine_failed} if the chunks are not in order: a process that shares the memory has damaged them.
     template <typename Visit>
     void for_each_run(std::size_t list, Visit&& visit) const {
         for (std::size_t block = 0; block < blocks_; ++block) for_each_run(block, list, visit);
@@ -45,8 +47,12 @@ public:
         const CellEntry* const entries = entries_.data() + block * entries_per_block_;
         const std::uint32_t* const next = next_.data() + block * chunks_per_block_;
         const std::size_t last = (ends.end - 1) / chunk_size_;
-        for (std::size_t chunk = ends.first; chunk != last; chunk = next[chunk]) {
+        for (std::size_t chunk = ends.first; chunk != last;) {
             visit(std::span(entries + chunk * chunk_size_, chunk_size_));
+            const std::size_t following = next[chunk];
+            if (following <= chunk || following > last) [[unlikely]]
+                throw_damaged();
+            chunk = following;
         }
         visit(std::span(entries + last * chunk_size_, ends.end - last * chunk_size_));
     }
@@ -59,6 +65,8 @@ private:
     struct Ends {
         std::uint32_t first, end;
     };
+
+    [[noreturn]] static void throw_damaged();
 
     Buffer<CellEntry> entries_;
     Buffer<std::uint32_t> next_;  // by chunk: next chunk of its list
