@@ -36,11 +36,37 @@ Received received_by(const Descriptor& connection) {
 
 }  // namespace
 
-void ConnectionWatch::add(const Descriptor& connection, const Peer& peer, Clock::time_point now) {
-    Descriptor copy(::fcntl(connection.number(), F_DUPFD_CLOEXEC, 0));
-    if (!copy.open()) return;  // without descriptors nothing can be watched; the limit on connections still holds
+void ConnectionWatch::add(Descriptor connection, const Peer& peer, Clock::time_point now) {
     while (is_full(peer.address)) cut_oldest();
-    unknown_.push_back({std::move(copy), connection.number(), peer, now});
+    unknown_.push_back({std::move(connection), -1, peer, now});
+}
+
+std::vector<Descriptor> ConnectionWatch::take_ready(Clock::time_point now) {
+    std::vector<Descriptor> ready;
+    for (Unknown& connection : unknown_) {
+        if (connection.number >= 0 || must_wait(connection.peer.address, now)) continue;
+        connection.number = connection.connection.number();
+        connection.since = now;
+        Descriptor copy(::fcntl(connection.number, F_DUPFD_CLOEXEC, 0));
+        ready.push_back(std::exchange(connection.connection, std::move(copy)));
+    }
+    // Without descriptors for copies nothing can be watched; the limit on connections still holds.
+    std::erase_if(unknown_, [](const Unknown& connection) { return !connection.connection.open(); });
+    return ready;
+}
+
+std::size_t ConnectionWatch::waiting() const {
+    return std::size_t(
+        std::count_if(unknown_.begin(), unknown_.end(), [](const Unknown& one) { return one.number < 0; }));
+}
+
+/// Returns whether a connection of the address must wait. If not, it is handed on now.
+bool ConnectionWatch::must_wait(const std::string& address, Clock::time_point now) {
+    const auto found = paced_.find(address);
+    if (found == paced_.end()) return false;
+    if (now < found->second.next) return true;
+    found->second.next = now + terms_.interval;
+    return false;
 }
 
 bool ConnectionWatch::is_full(const std::string& address) const {
@@ -69,6 +95,13 @@ void ConnectionWatch::cut(std::vector<Unknown>::iterator connection) {
     ++cut_;
 }
 
+void ConnectionWatch::cut_and_pace(std::vector<Unknown>::iterator connection, Clock::time_point now) {
+    Paced& paced = paced_[connection->peer.address];
+    paced.next = std::max(paced.next, now + terms_.interval);
+    paced.until = now + terms_.remembered;
+    cut(connection);
+}
+
 ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, const std::string& client) {
     const auto found = std::find_if(unknown_.begin(), unknown_.end(),
                                     [&](const Unknown& connection) { return connection.peer.name == name; });
@@ -81,10 +114,10 @@ ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, 
     return Admission::known_now;
 }
 
-void ConnectionWatch::note_refused(const std::string& name) {
+void ConnectionWatch::note_refused(const std::string& name, Clock::time_point now) {
     const auto found = std::find_if(unknown_.begin(), unknown_.end(),
                                     [&](const Unknown& connection) { return connection.peer.name == name; });
-    if (found != unknown_.end() && ++found->refused_calls > terms_.max_refused_calls) cut(found);
+    if (found != unknown_.end() && ++found->refused_calls > terms_.max_refused_calls) cut_and_pace(found, now);
 }
 
 std::uint64_t ConnectionWatch::open_connections(const std::string& client) {
@@ -99,10 +132,13 @@ std::uint64_t ConnectionWatch::check(Clock::time_point now) {
         const Received received = received_by(connection->connection);
         if (!received.open) {
             unknown_.erase(connection);
-        } else if (now - connection->since > terms_.greeting || received.bytes > terms_.max_bytes) {
+        } else if (connection->number >= 0 && received.bytes > terms_.max_bytes) {
+            cut_and_pace(connection, now);
+        } else if (now - connection->since > terms_.greeting) {
             cut(connection);
         }
     }
+    std::erase_if(paced_, [&](const auto& paced) { return now > paced.second.until; });
     return std::exchange(cut_, 0);
 }
 

@@ -8,12 +8,17 @@
 //   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
 //     oldest unknown connection of the address that has most of them is cut. So known clients always find slots.
 // A known connection counts for the client of its first call, until it is closed.
+//
+// After a connection was cut for its bytes or refused calls, new connections of its address wait. They are handed on one by one, with an
+// interval between them. Otherwise a stranger could connect again at once and cost as much time again. No address is refused, because
+// clients may share it.
 #pragma once
 
 #include <sys/types.h>
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +38,8 @@ public:
         std::chrono::milliseconds greeting{10'000};
         std::uint64_t max_bytes = 128 << 10;
         std::uint64_t max_refused_calls = 32;
+        std::chrono::milliseconds interval{50};        ///< between waiting connections of one address
+        std::chrono::milliseconds remembered{10'000};  ///< after a cut: time in which new connections wait
     };
     explicit ConnectionWatch(const Terms& terms) : terms_(terms) {}
 
@@ -42,27 +49,35 @@ public:
         std::string
             address;  ///< part that a client cannot choose freely: 192.0.2.1, or the first 64 bits of an IPv6 address
     };
-    /// Watches a connection until it is known, closed or cut. Keeps a copy of its descriptor until then. Cuts other connections if too many
-    /// are unknown.
-    void add(const Descriptor& connection, const Peer& peer, Clock::time_point now);
+    /// Watches a connection until it is known, closed or cut. Cuts other connections if too many are unknown.
+    void add(Descriptor connection, const Peer& peer, Clock::time_point now);
+    /// Returns the connections that need not wait any longer, in the order of add(). Keeps copies of their descriptors.
+    std::vector<Descriptor> take_ready(Clock::time_point now);
     enum class Admission : std::uint8_t { known_before, known_now, too_many };
     /// Notes that `client` makes a call on the connection of a peer. A connection that is not known yet becomes known and is not watched
     /// any longer, unless the client has too many already.
     Admission make_known(const std::string& name, const std::string& client);
     /// Notes that a call of a peer was refused, because the server does not know who makes it.
-    void note_refused(const std::string& name);
+    void note_refused(const std::string& name, Clock::time_point now);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
     std::uint64_t check(Clock::time_point now);
 
-    std::size_t unknown() const { return unknown_.size(); }
+    std::size_t unknown() const { return unknown_.size(); }  ///< number of connections that are not known yet
+    std::size_t waiting() const;                             ///< number of those that wait
 
 private:
     struct Unknown {
-        Descriptor connection;  // a copy: its number cannot be reused for another connection
-        int number;             // gRPC's descriptor
+        Descriptor connection;  // after handing on, a copy: its number cannot be reused for another connection
+        int number = -1;        // the descriptor that was handed on; -1: the connection waits
         Peer peer;
-        Clock::time_point since;
+        Clock::time_point since;  // begin of waiting, or time of handing on
         std::uint64_t refused_calls = 0;
+    };
+
+    /// An address whose connection was cut for its bytes or calls.
+    struct Paced {
+        Clock::time_point next;   // earliest time to hand on the next connection
+        Clock::time_point until;  // until then new connections wait
     };
 
     struct Known {
@@ -75,10 +90,13 @@ private:
     std::uint64_t open_connections(const std::string& client);
     void cut_oldest();
     void cut(std::vector<Unknown>::iterator connection);
+    void cut_and_pace(std::vector<Unknown>::iterator connection, Clock::time_point now);
+    bool must_wait(const std::string& address, Clock::time_point now);
 
     const Terms terms_;
     std::vector<Unknown> unknown_;  // oldest first
     std::vector<Known> known_;      // closed ones are removed when open ones are counted
+    std::map<std::string, Paced> paced_;
     std::uint64_t cut_ = 0;
 };
 

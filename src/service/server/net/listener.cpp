@@ -231,8 +231,9 @@ void Listener::refill_spares() {
 void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
     const std::uint64_t most = terms_.max_connections;
-    if (accepted_.size() >= forget_from_ || (most > 0 && accepted_.size() >= most)) forget_closed();
-    if (most > 0 && accepted_.size() >= most) {
+    const auto is_full = [&] { return most > 0 && accepted_.size() + waiting_ >= most; };
+    if (accepted_.size() >= forget_from_ || is_full()) forget_closed();
+    if (is_full()) {
         refuse(std::move(connection), "at most " + std::to_string(most) + " connections");
         return;
     }
@@ -241,22 +242,41 @@ void Listener::take(Descriptor connection) {
         const int on = 1;
         (void)::setsockopt(connection.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
     }
-    if (!watch(connection)) return;
+    if (watch_) {
+        watch(std::move(connection));
+    } else {
+        hand_on(std::move(connection));
+    }
+}
+
+/// Watches a TCP connection until a call of it is admitted.
+void Listener::watch(Descriptor connection) {
+    const auto peer = peer_of(connection);
+    if (!peer) return;  // the connection has ended
+    {
+        const std::lock_guard lock(watch_mutex_);
+        watch_->add(std::move(connection), *peer, ConnectionWatch::Clock::now());
+    }
+    hand_on_ready();
+}
+
+/// Hands the watched connections on that need not wait any longer.
+void Listener::hand_on_ready() {
+    std::vector<Descriptor> ready;
+    {
+        const std::lock_guard lock(watch_mutex_);
+        ready = watch_->take_ready(ConnectionWatch::Clock::now());
+        unknown_ = watch_->unknown();
+        waiting_ = watch_->waiting();
+    }
+    for (Descriptor& connection : ready) hand_on(std::move(connection));
+}
+
+void Listener::hand_on(Descriptor connection) {
     report_process(connection);
     accepted_.push_back({connection.number(), socket_of(connection.number())});
     connections_ = accepted_.size();
     terms_.accept(std::move(connection));
-}
-
-/// Watches a TCP connection until a call of it is admitted. Returns false if the connection has ended.
-bool Listener::watch(const Descriptor& connection) {
-    if (!watch_) return true;
-    const auto peer = peer_of(connection);
-    if (!peer) return false;  // it has ended
-    const std::lock_guard lock(watch_mutex_);
-    watch_->add(connection, *peer, ConnectionWatch::Clock::now());
-    unknown_ = watch_->unknown();
-    return true;
 }
 
 ConnectionWatch::Admission Listener::make_known(const std::string& peer, const std::string& client) {
@@ -270,7 +290,7 @@ ConnectionWatch::Admission Listener::make_known(const std::string& peer, const s
 void Listener::note_refused(const std::string& peer) {
     if (!watch_) return;
     const std::lock_guard lock(watch_mutex_);
-    watch_->note_refused(peer);
+    watch_->note_refused(peer, ConnectionWatch::Clock::now());
     unknown_ = watch_->unknown();
 }
 
@@ -280,8 +300,8 @@ void Listener::check_watched() {
     {
         const std::lock_guard lock(watch_mutex_);
         cut = watch_->check(ConnectionWatch::Clock::now());
-        unknown_ = watch_->unknown();
     }
+    hand_on_ready();
     if (cut == 0) return;
     refused_ += cut;
     report_refusals();

@@ -94,7 +94,9 @@ private:
     void refuse_one_more();
     void refill_spares();
     void refuse(Descriptor connection, std::string why);
-    bool watch(const Descriptor& connection);
+    void watch(Descriptor connection);
+    void hand_on_ready();
+    void hand_on(Descriptor connection);
     void check_watched();
     void report_refusals();
     void send_refusal(Refused& refused) const;
@@ -109,6 +111,7 @@ private:
     std::deque<Refused> refused_connections_;
     std::chrono::steady_clock::time_point last_report_;  // last call of terms_.refused
     std::size_t forget_from_ = 64;
+    std::size_t waiting_ = 0;  // connections that are not handed to gRPC yet (ConnectionWatch)
     std::mutex watch_mutex_;
     std::optional<ConnectionWatch>
         watch_;  // guarded by watch_mutex_; not for Unix sockets, whose peers are this user or root
