@@ -166,6 +166,7 @@ struct Tuning {
         std::uint64_t waiting_part = 16;        ///< one in this many pairs may wait to be merged into the list
         std::uint64_t min_waiting = 1 << 14;    ///< number of pairs that may wait in any scene
         std::size_t share_queries = 64;         ///< queries per share
+        std::size_t exact_part = 1 << 14;       ///< pairs of enlarged boxes that a thread filters at once
     } scene;
 };
 

@@ -5,6 +5,8 @@
 //   Boxes are stored in one precision, that of the scene.
 //   Paddings and traits have arrays only from the first object on that does not have the default value.
 //   The box at an index that is not in use is valid, but has no meaning.
+//   An object has its own box and a box that is searched. Without slack these are the same. With slack the searched box is enlarged. It
+//   contains the own box after enlarge() or enlarge_all(), and does not change when the object moves.
 #pragma once
 
 #include <hwy/cache_control.h>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -33,7 +36,8 @@ struct ObjectState {
 
 class ObjectTable {
 public:
-    explicit ObjectTable(Precision precision);
+    /// `slack`: as in SceneOptions.
+    explicit ObjectTable(Precision precision, double slack = 0) : precision_(precision), slack_(slack) {}
 
     static constexpr std::uint32_t none = ~std::uint32_t(0);
 
@@ -45,16 +49,31 @@ public:
     }
     ObjectId id(std::uint32_t index) const { return {index, slots_[index].generation}; }
 
-    Box3d box(std::uint32_t index) const { return boxes64_.empty() ? wide(boxes32_[index]) : boxes64_[index]; }
-    bool has_box(std::uint32_t index, const Box3f& box) const { return equal(boxes32_[index], box); }
-    bool has_box(std::uint32_t index, const Box3d& box) const { return equal(boxes64_[index], box); }
+    bool has_slack() const { return slack_ > 0; }
+    /// Returns the object's own box.
+    Box3d box(std::uint32_t index) const { return (has_slack() ? own_ : searched_).box(index); }
+    Box3d searched_box(std::uint32_t index) const { return searched_.box(index); }
+    /// Returns whether `box` is the object's own box.
+    template <typename Real>
+    bool has_box(std::uint32_t index, const Box<Real>& box) const {
+        return equal((has_slack() ? own_ : searched_).template all<Real>()[index], box);
+    }
     double padding(std::uint32_t index) const { return padded_ ? paddings_[index] : 0; }
     Traits traits(std::uint32_t index) const { return with_traits_ ? traits_[index] : Traits{}; }
-    ObjectState state(std::uint32_t index) const { return {alive(index), box(index), padding(index), traits(index)}; }
+    /// Returns the state that a search uses, with the searched box.
+    ObjectState state(std::uint32_t index) const {
+        return {alive(index), searched_box(index), padding(index), traits(index)};
+    }
     bool any_padding() const { return padded_; }
     bool any_traits() const { return with_traits_; }
-    /// Returns boxes and paddings of all indices, including indices that are not in use.
+    /// Returns searched boxes and paddings of all indices, including indices that are not in use.
     Objects objects() const;
+    /// Returns the own boxes of all indices. Requires: has_slack(); the table has the precision of Real.
+    template <typename Real>
+    std::span<const Box<Real>> own_boxes() const {
+        return own_.template all<Real>().span();
+    }
+    Precision precision() const { return precision_; }
     /// Returns the traits of all indices; empty if all objects have the defaults.
     std::span<const Traits> all_traits() const { return with_traits_ ? traits_.span() : std::span<const Traits>(); }
     /// Returns the indices that are free. create() uses the last element first.
@@ -62,7 +81,8 @@ public:
     /// Prefetches what other calls read of this object.
     void prefetch(std::uint32_t index) const {
         prefetch_slot(index);
-        boxes64_.empty() ? hwy::Prefetch(&boxes32_[index]) : hwy::Prefetch(&boxes64_[index]);
+        searched_.prefetch(index);
+        if (has_slack()) own_.prefetch(index);
     }
     /// Prefetches what contains() reads. `index` may be out of range.
     void prefetch_slot(std::uint32_t index) const {
@@ -73,10 +93,16 @@ public:
     /// Requires: reserve() has been called for it.
     template <typename Real>
     ObjectId create(const Box<Real>& box, double padding, const Traits& traits);
-    /// Requires: the table has precision float32.
-    void set_box(std::uint32_t index, const Box3f& box) { boxes32_[index] = box; }
-    /// Requires: the table's precision represents `box` exactly.
-    void set_box(std::uint32_t index, const Box3d& box);
+    /// Sets the object's own box. Requires: the table's precision represents `box` exactly.
+    template <typename Real>
+    void set_box(std::uint32_t index, const Box<Real>& box) {
+        (has_slack() ? own_ : searched_).set(index, box);
+    }
+    /// Stores the indices of objects whose own boxes are not within their searched boxes in `left`. Requires: has_slack().
+    void find_left(std::vector<std::uint32_t>& left) const;
+    /// Sets the searched box to the own box, enlarged by the slack. Requires: has_slack().
+    void enlarge(std::uint32_t index);
+    void enlarge_all();
     /// Requires: reserve() has been called with `with_traits`, unless `traits` are the defaults.
     void set_traits(std::uint32_t index, const Traits& traits) {
         if (with_traits_) traits_[index] = traits;
@@ -102,15 +128,38 @@ private:
         std::uint32_t mark;
     };
 
+    /// Boxes by index, in one of two precisions.
+    struct BoxArray {
+        GrowingArray<Box3f> float32;
+        GrowingArray<Box3d> float64;
+
+        template <typename Real>
+        const GrowingArray<Box<Real>>& all() const {
+            if constexpr (std::is_same_v<Real, float>)
+                return float32;
+            else
+                return float64;
+        }
+        Box3d box(std::uint32_t index) const { return float64.empty() ? wide(float32[index]) : float64[index]; }
+        void prefetch(std::uint32_t index) const {
+            float64.empty() ? hwy::Prefetch(&float32[index]) : hwy::Prefetch(&float64[index]);
+        }
+        void set(std::uint32_t index, const Box3f& box) { float32[index] = box; }
+        void set(std::uint32_t index, const Box3d& box);
+    };
+
     std::uint32_t new_index();
+    template <typename Real>
+    Box<Real> enlarged(const Box<Real>& box) const;
     template <typename Real>
     static bool equal(const Box<Real>& a, const Box<Real>& b) {
         return std::ranges::equal(a.min, b.min) && std::ranges::equal(a.max, b.max);
     }
 
     Precision precision_;
-    GrowingArray<Box3f> boxes32_;  // used for Precision::float32
-    GrowingArray<Box3d> boxes64_;  // used for Precision::float64
+    double slack_;
+    BoxArray searched_;
+    BoxArray own_;  // empty without slack
     GrowingArray<Slot> slots_;
     bool padded_ = false, with_traits_ = false;
     GrowingArray<double> paddings_;  // empty unless padded_
@@ -125,6 +174,7 @@ ObjectId ObjectTable::create(const Box<Real>& box, double padding, const Traits&
     ++slots_[index].generation;
     ++size_;
     set_box(index, box);
+    if (has_slack()) enlarge(index);
     if (padded_) paddings_[index] = padding;
     if (with_traits_) traits_[index] = traits;
     return id(index);

@@ -70,6 +70,11 @@ const PairList& Scene::persisting() {
     return state_->persisting();
 }
 
+const PairList& Scene::enlarged_pairs() {
+    const FloatingPointScope scope;
+    return state_->searched_pairs();
+}
+
 void Scene::overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(boxes, [](const Box3d& box) { return is_box(box); });

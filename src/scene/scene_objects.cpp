@@ -39,10 +39,13 @@ const Traits& traits_at(std::span<const Traits> traits, std::size_t i) {
 }  // namespace
 
 SceneObjects::SceneObjects(const SceneOptions& options, Changes changes)
-    : float64_(options.precision == Precision::float64), table_(options.precision), changes_(changes) {
-    if (!(options.margin >= 0 && std::isfinite(options.margin))) {
-        throw Error(ErrorCode::bad_input, "margin is " + std::to_string(options.margin) + ", not a finite number >= 0");
-    }
+    : float64_(options.precision == Precision::float64), table_(options.precision, options.slack), changes_(changes) {
+    const auto check = [](const char* name, double length) {
+        if (length >= 0 && std::isfinite(length)) return;
+        throw Error(ErrorCode::bad_input, name + (" is " + std::to_string(length)) + ", not a finite number >= 0");
+    };
+    check("margin", options.margin);
+    check("slack", options.slack);
     if (changes_ == Changes::forgotten) log_.give_up(table_);
 }
 
@@ -109,6 +112,22 @@ void SceneObjects::add(const Objects& objects, std::span<ObjectId> ids, std::spa
 /// Reserves log memory for changes, so that they cannot fail.
 void SceneObjects::prepare(std::uint64_t changes) { log_.reserve(table_, changes); }
 
+/// Logs that an object moves. With slack, update_searched() logs it later, if it left its searched box.
+void SceneObjects::note_move(std::uint32_t index) {
+    if (!table_.has_slack()) log_.note(table_, index, true);
+}
+
+void SceneObjects::update_searched() {
+    if (!table_.has_slack() || !changed_) return;
+    table_.find_left(left_);
+    prepare(left_.size());
+    if (log_.overflowed()) return table_.enlarge_all();
+    for (const std::uint32_t index : left_) {
+        log_.note(table_, index, true);
+        table_.enlarge(index);
+    }
+}
+
 template <typename Real>
 void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings,
                            std::span<const Traits> traits, std::span<ObjectId> ids) {
@@ -126,7 +145,7 @@ void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool 
         reserve_more(swept_, ids.size());
         if (swept_at_.size() < table_.indices()) swept_at_.resize(std::size_t(table_.indices()), ObjectTable::none);
     }
-    prepare(ids.size());
+    if (!table_.has_slack()) prepare(ids.size());
     if (recorder_ != nullptr) recorder_->move(swept ? RecordKind::sweep : RecordKind::move, ids, boxes);
     std::visit([&](auto span) { swept ? sweep_to(ids, span) : move_to(ids, span); }, boxes);
 }
@@ -139,7 +158,7 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
         if (i + ahead < ids.size()) table_.prefetch(ids[i + ahead].index);
         if (any_swept) drop_swept(index);
         if (!table_.has_box(index, boxes[i])) {
-            log_.note(table_, index, true);
+            note_move(index);
             changed_ = true;
         }
         table_.set_box(index, boxes[i]);  // also if equal: 0 may become -0
@@ -150,7 +169,7 @@ template <typename Real>
 void SceneObjects::sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const std::uint32_t index = ids[i].index;
-        log_.note(table_, index, true);
+        note_move(index);
         drop_swept(index);
         swept_at_[index] = std::uint32_t(swept_.size());
         swept_.push_back({ids[i], wide(boxes[i])});
@@ -210,6 +229,12 @@ void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Tra
     }
 }
 
+void SceneObjects::enlarge_all() {
+    if (!table_.has_slack() || log_.overflowed()) return;  // update_searched() has enlarged all
+    log_.give_up(table_);
+    table_.enlarge_all();
+}
+
 bool SceneObjects::finish_step() {
     if (changes_ == Changes::kept) log_.clear(table_);
     for (const std::uint32_t index : removed_) table_.release(index);
@@ -221,11 +246,11 @@ bool SceneObjects::finish_step() {
 /// Sets each swept object to the box at the end of its sweep. The log counts this as a change of the next step.
 bool SceneObjects::finish_sweeps() {
     if (swept_.empty()) return false;
-    prepare(swept_.size());
+    if (!table_.has_slack()) prepare(swept_.size());
     for (const Swept& swept : swept_) {
         if (!table_.contains(swept.id)) continue;
         swept_at_[swept.id.index] = ObjectTable::none;
-        log_.note(table_, swept.id.index, true);
+        note_move(swept.id.index);
         table_.set_box(swept.id.index, swept.place);
         changed_ = true;
     }

@@ -35,6 +35,10 @@ public:
     void move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept);
     void remove(std::span<const ObjectId> ids);
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
+    /// With slack: enlarges and logs the searched boxes that moved objects have left. Must be called before a search.
+    void update_searched();
+    /// With slack: enlarges all searched boxes anew, and empties the log. The step must then search all objects.
+    void enlarge_all();
     /// Ends a step: frees the indices of removed objects and sets swept objects to their new boxes. Returns true if boxes of
     /// objects have changed.
     bool finish_step();
@@ -44,6 +48,11 @@ public:
     /// Returns whether any object was added or changed since the last step. An object that is moved to where it is does not
     /// change.
     bool changed() const { return changed_; }
+    /// Returns whether a change since the last step must be searched for. Without slack that is every change.
+    /// Requires: update_searched() has been called.
+    bool must_search() const {
+        return table_.has_slack() ? log_.overflowed() || !log_.previous_states().empty() : changed_;
+    }
     /// Returns the indices of objects that were removed since the last step.
     std::span<const std::uint32_t> removed() const { return removed_; }
     std::span<const Swept> swept() const { return swept_; }
@@ -56,6 +65,7 @@ private:
     void check_paddings(std::span<const double> paddings, std::size_t objects) const;
     void check_removal(std::span<const ObjectId> ids);
     void prepare(std::uint64_t changes);
+    void note_move(std::uint32_t index);
     template <typename Real>
     void add_all(std::span<const Box<Real>> boxes, std::span<const double> paddings, std::span<const Traits> traits,
                  std::span<ObjectId> ids);
@@ -73,6 +83,7 @@ private:
     Changes changes_;
     std::vector<std::uint32_t> removed_;  // indices of objects removed since the last step
     std::vector<ObjectId> sorted_;        // buffer of check_removal()
+    std::vector<std::uint32_t> left_;     // buffer of update_searched()
     std::vector<Swept> swept_;
     /// By object index: position in swept_, or `none`. Empty before the first sweep.
     std::vector<std::uint32_t> swept_at_;

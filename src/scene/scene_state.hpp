@@ -5,11 +5,13 @@
 //              were at the last step. `octree_matches_now_`: it holds the current objects
 //   search     incremental step: brings `octree` up to date and finds the pairs that began and ended
 //   linear     linear octree of a full step. The first step with few changes after it builds `octree` from it
-//   history    pairs of the last step
+//   history    pairs of the last step; with slack, those of the searched boxes
+//   exact      with slack: pairs of the objects' own boxes at the last step
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -21,6 +23,7 @@
 #include "octree/scan_memory.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_search.hpp"
+#include "scene/exact_pairs.hpp"
 #include "scene/pair_history.hpp"
 #include "scene/queries/scene_queries.hpp"
 #include "scene/recording/recorder.hpp"
@@ -41,7 +44,8 @@ public:
     }
     const SceneObjects& objects() const { return objects_; }
     const StepResult& step(const std::stop_token& stop);
-    const PairList& pairs() { return history_.list(); }
+    const PairList& pairs() { return shown().list(); }
+    const PairList& searched_pairs() { return history_.list(); }
     const PairList& persisting();
     SceneQueries& queries() { return queries_; }
     /// Returns what a query of the current objects reads. Builds an octree if there is none to use.
@@ -49,6 +53,10 @@ public:
 
 private:
     // Defined in scene_step.cpp.
+    /// Returns the history of the pairs that the scene shows.
+    PairHistory& shown() { return exact_ ? exact_->history() : history_; }
+    bool search(const std::stop_token& stop);
+    void find_exact();
     bool find_nothing(const std::stop_token& stop);
     bool expects_few_changes() const;
     void find_all(const std::stop_token& stop);
@@ -68,6 +76,7 @@ private:
     MutableOctree octree_;
     /// Number of refills of linear_ since its octants were chosen. At the maximum, the next build chooses them anew.
     unsigned refills_ = tuning().scene.max_refills;
+    unsigned steps_with_few_ = 0;  // number of consecutive searches in which few searched boxes had changed
     EntryRounding rounding_;
     bool has_stepped_ = false;               // a step has succeeded
     bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
@@ -79,8 +88,9 @@ private:
     double seconds_a_change_ = 0;  // estimated time of an incremental step for each changed object
 
     PairHistory history_;
-    PairChanges changes_;  // changes of the last step
-    PairChanges found_;    // changes of the step under way, which may still fail
+    std::optional<ExactPairs> exact_;  // only with slack
+    PairChanges changes_;              // changes of the last step
+    PairChanges found_;                // changes of the step under way, which may still fail
     PairList persisting_;
     StepResult result_;
     std::unique_ptr<Recorder> recorder_;  // null: calls are not recorded

@@ -24,6 +24,11 @@ constexpr double max_rebuild_cost = 0.5;  // an octree is built if the changes a
 constexpr double abort_cost = 4;          // an incremental step that takes longer, plus abort_seconds, is aborted
 constexpr double abort_seconds = 0.02;    // allowance for other programs that use the processor meanwhile
 
+// With slack a full step enlarges all boxes anew, so that few objects leave them in the next steps. Therefore an incremental step must
+// be much cheaper. Before many objects leave, the fastest do: only if few leave in several steps, an octree is built.
+constexpr double max_cost_with_slack = 0.1;
+constexpr unsigned min_steps_with_few = 4;
+
 /// First estimate of the cost of a changed object, in multiples of the cost of an object in a full step.
 constexpr double initial_change_cost = 10;
 
@@ -46,6 +51,7 @@ Scene::State::State(const SceneOptions& options)
       search_(team_),
       queries_(team_),
       history_(options.room_for_pairs) {
+    if (options.slack > 0) exact_.emplace(team_, options.room_for_pairs);
     if (options.recording.empty()) return;
     recorder_ = std::make_unique<Recorder>(options);
     objects_.record_to(recorder_.get());
@@ -54,16 +60,13 @@ Scene::State::State(const SceneOptions& options)
 const StepResult& Scene::State::step(const std::stop_token& stop) {
     if (recorder_) recorder_->begin_step();
     const auto begin = std::chrono::steady_clock::now();
-    const std::uint64_t before = history_.size();
+    const std::uint64_t before = shown().size();
     bool full = false;
     try {
-        if (!find_nothing(stop)) {
-            const bool few = expects_few_changes();
-            history_.prepare(few);
-            full = !(few && find_changes(stop));
-            if (full) find_all(stop);
-            count_path(full ? Path::step_full : Path::step_incremental);
-        }
+        objects_.update_searched();
+        const bool idle = find_nothing(stop);
+        if (!idle) full = search(stop);
+        if (exact_ && (!idle || objects_.changed())) find_exact();
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     } catch (const Error& error) {
@@ -78,9 +81,35 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     return result_;
 }
 
-/// Runs a step in which no object has changed. Returns false if one has, or if no step has succeeded yet.
+/// Brings the pairs of the searched boxes up to date. Returns whether it searched all objects.
+bool Scene::State::search(const std::stop_token& stop) {
+    const bool few = expects_few_changes();
+    const bool few_left = double(objects_.log().previous_states().size()) * initial_change_cost <
+                          max_cost_with_slack * double(objects_.table().size());
+    steps_with_few_ = few_left && !objects_.log().overflowed() ? steps_with_few_ + 1 : 0;
+    history_.prepare(few);
+    const bool full = !(few && find_changes(stop));
+    if (full) {
+        objects_.enlarge_all();
+        find_all(stop);
+    }
+    count_path(full ? Path::step_full : Path::step_incremental);
+    return full;
+}
+
+/// Finds the pairs of the objects' own boxes among those of the searched boxes.
+void Scene::State::find_exact() {
+    try {
+        exact_->update(history_.list(), objects_.table(), margin_, found_);
+    } catch (...) {
+        drop_octrees();  // the pairs of the searched boxes belong to this step already, so a repeated step searches all objects
+        throw;
+    }
+}
+
+/// Runs a step in which no searched box has changed. Returns false if one has, or if no step has succeeded yet.
 bool Scene::State::find_nothing(const std::stop_token& stop) {
-    const bool idle = has_stepped_ && !objects_.changed() && !history_.is_inconsistent();
+    const bool idle = has_stepped_ && !objects_.must_search() && !history_.is_inconsistent();
     if (!idle || !chooses_incremental(true)) return false;
     throw_if_stopped(stop);
     found_.clear();
@@ -92,8 +121,10 @@ bool Scene::State::find_nothing(const std::stop_token& stop) {
 bool Scene::State::expects_few_changes() const {
     if (!octree_matches_last_step_ && !linear_matches_last_step_) return false;
     const double expected = double(objects_.log().previous_states().size()) * seconds_a_change_;
-    const double most = octree_matches_last_step_ ? max_search_cost : max_rebuild_cost;
-    const bool cheap = chooses_incremental(expected <= most * full_seconds_);
+    double most = octree_matches_last_step_ ? max_search_cost : max_rebuild_cost;
+    if (exact_) most = std::min(most, max_cost_with_slack);
+    const bool often = !exact_ || octree_matches_last_step_ || steps_with_few_ >= min_steps_with_few;
+    const bool cheap = chooses_incremental(expected <= most * full_seconds_ && often);
     // Exact entries were not widened by paddings.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
     return cheap && !unlike && !objects_.log().overflowed() && !history_.is_inconsistent();
@@ -142,6 +173,7 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
 }
 
 SceneQueries::View Scene::State::view(std::uint32_t groups) {
+    objects_.update_searched();
     const bool follows = octree_matches_last_step_ && !objects_.log().overflowed() && !history_.is_inconsistent();
     if (!follows && !octree_matches_now_) {
         count_path(Path::octree_for_queries);
@@ -152,7 +184,7 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         TeamExecutor executor(team_);
         octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});
         octree_matches_now_ = queried_ = true;
-        octree_matches_last_step_ = has_stepped_ && !objects_.changed();
+        octree_matches_last_step_ = has_stepped_ && !objects_.must_search();
     }
     return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
 }
@@ -204,7 +236,7 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
 }
 
 const PairList& Scene::State::persisting() {
-    subtract(history_.list(), changes_.began, persisting_);
+    subtract(shown().list(), changes_.began, persisting_);
     return persisting_;
 }
 

@@ -96,8 +96,10 @@ public:
         boxes_.begin(float64_, random_);
         margin_ = with_margin ? boxes_.clearance() : 0;
         model_ = Model(margin_);
-        scene_ = make(
-            SceneOptions{unsigned(1 + random_() % 3), float64_ ? Precision::float64 : Precision::float32, margin_});
+        const double slack = chance(0.5) ? boxes_.clearance() * double(random_() % 9) / 4 : 0;
+        SceneOptions options{unsigned(1 + random_() % 3), float64_ ? Precision::float64 : Precision::float32, margin_};
+        options.slack = std::isfinite(slack) ? slack : 0;
+        scene_ = make(options);
     }
 
     void run() {
