@@ -5,7 +5,8 @@
 
 A layer is a folder of src/ with the public headers (include/octopair) that it implements. A file that includes a public
 header uses the layer of this header. The folders of bench/ that octopair-bench is made of are layers, too; nothing in
-src/ may use these layers. Public headers use only public headers and the standard library. Prints one line for each
+src/ may use these layers. Public headers use only public headers and the standard library. Headers of an adapter use only
+public headers, headers of their host, and the standard library. Prints one line for each
 include that breaks a rule, and exits 1. With --print, prints the current stack for docs/design.md.
 """
 import pathlib
@@ -104,6 +105,8 @@ THIRD_PARTY = {
 }
 # Third-party headers that a public header may include, because every user of its component has them.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}
+# Hosts of adapters: the first parts of includes of their headers.
+ADAPTERS = {"cgal": set(), "fcl": {"fcl", "Eigen"}, "bullet": {"BulletCollision", "LinearMath"}}
 SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
@@ -157,6 +160,28 @@ def complaint_angled(layer, is_public_header, path, name):
     return None if {layer, layer.partition("/")[0]} & set(allowed) else f"{layer} may not use <{library}>"
 
 
+def complaint_of_adapter(host, quoted, name):
+    """Returns the violation if a header of an adapter includes `name`, or None."""
+    folder, _, file = name.rpartition("/")
+    public = folder == "octopair" and file.removesuffix(".hpp") in LAYER_OF_HEADER
+    if quoted:
+        return None if public or folder == f"octopair/{host}" else "an adapter uses only octopair's public headers"
+    standard = "/" not in name and "." not in name
+    return None if standard or name.partition("/")[0] in ADAPTERS[host] else f"the adapter of {host} may not use <{name}>"
+
+
+def check_adapters(root):
+    """Returns violations of the adapters as text, and their number of files."""
+    complaints, count = [], 0
+    for host in ADAPTERS:
+        for path in sorted((root / "adapters" / host / "include").rglob("*.hpp")):
+            count += 1
+            for line, quoted, name in includes_of(path):
+                if wrong := complaint_of_adapter(host, quoted, name):
+                    complaints.append(f"{path.relative_to(root)}:{line}: {name}: {wrong}")
+    return complaints, count
+
+
 def files_of(root):
     """Yields (path, layer or None, whether it is a public header) for each checked file."""
     for path in sorted((root / "include").rglob("*.hpp")):
@@ -203,6 +228,9 @@ def main():
     arguments = [a for a in sys.argv[1:] if a != "--print"]
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent).resolve()
     complaints, used, count = check(root)
+    of_adapters, adapter_files = check_adapters(root)
+    complaints += of_adapters
+    count += adapter_files
     for complaint in complaints:
         print(complaint)
     if "--print" in sys.argv:
