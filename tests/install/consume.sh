@@ -116,4 +116,8 @@ if [ "$with_pipeline" = ON ] && [ "$how" = installed ]; then
     build_consumer pipeline pipeline_consumer "${options[@]}" -DCONSUMER_WITH_PIPELINE=ON
     "$work/pipeline/pipeline_consumer"
 fi
+if [ "$how" = installed ] && [ -d "$prefix/include/octopair/cgal" ]; then
+    build_consumer cgal adapter_consumer "${options[@]}" -DCONSUMER_ADAPTER=cgal
+    "$work/cgal/adapter_consumer"
+fi
 echo "a consumer of octopair ($how) finds its pairs"
