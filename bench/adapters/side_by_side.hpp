@@ -21,12 +21,14 @@ inline double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// Runs both in turns, `rounds` times after a round that is not counted. Prints the medians in milliseconds, and how many times as fast
-/// the second is.
-inline void print_side_by_side(const std::string& name, unsigned rounds, const std::function<void()>& host,
-                               const std::function<void()>& octopair) {
+/// Runs both in turns, `rounds` times after a round that is not counted. `prepare` runs before each round. Prints the medians in
+/// milliseconds, and how many times as fast the second is.
+inline void print_side_by_side(
+    const std::string& name, unsigned rounds, const std::function<void()>& host, const std::function<void()>& octopair,
+    const std::function<void()>& prepare = [] {}) {
     std::vector<double> of_host, of_octopair;
     for (unsigned round = 0; round <= rounds; ++round) {
+        prepare();
         const double first = seconds_of(host), second = seconds_of(octopair);
         if (round == 0 && rounds > 0) continue;
         of_host.push_back(first);
