@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE
+#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE [HOST...]
 #
 # installed: installs BUILD to a fresh prefix and moves the prefix. find_package must find octopair there.
 # subdirectory: the consumer includes ROOT by add_subdirectory.
 #
-# The last five arguments are ON or OFF. ON also tests:
+# HOST is a host of an adapter: installed adapters for these hosts are tested.
+#
+# The five arguments before are ON or OFF. ON also tests:
 #   PROGRAM    the installed program
 #   PROCESSES  octopair::processes; if installed, it must run the installed worker program without OCTOPAIR_WORKER
 #   SERVICE    octopair::client, if installed; with PROGRAM, on a server of the installed program
@@ -116,8 +118,10 @@ if [ "$with_pipeline" = ON ] && [ "$how" = installed ]; then
     build_consumer pipeline pipeline_consumer "${options[@]}" -DCONSUMER_WITH_PIPELINE=ON
     "$work/pipeline/pipeline_consumer"
 fi
-if [ "$how" = installed ] && [ -d "$prefix/include/octopair/cgal" ]; then
-    build_consumer cgal adapter_consumer "${options[@]}" -DCONSUMER_ADAPTER=cgal
-    "$work/cgal/adapter_consumer"
+if [ "$how" = installed ]; then
+    for host in "${@:10}"; do
+        build_consumer "$host" adapter_consumer "${options[@]}" -DCONSUMER_ADAPTER="$host"
+        "$work/$host/adapter_consumer"
+    done
 fi
 echo "a consumer of octopair ($how) finds its pairs"
