@@ -50,6 +50,12 @@ struct Neighbor {
     bool operator==(const Neighbor&) const = default;
 };
 
+/// Limits of a search for the nearest objects.
+struct NearestLimits {
+    std::size_t count;                                        ///< maximum number of objects
+    double within = std::numeric_limits<double>::infinity();  ///< maximum Neighbor::distance, at least 0
+};
+
 /// Answers to many queries, in the order of the queries. Reuse it for later calls: it keeps its memory.
 template <typename Answer>
 struct Answers {

@@ -133,6 +133,10 @@ public:
     /// Finds the `count` objects nearest to each place, or all if there are fewer. A point is a box of extent 0.
     void nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                  std::uint32_t groups = all_groups);
+    /// Like nearest() with `limits.count`, but leaves out objects that are farther than `limits.within`, which saves time.
+    /// Throws: also Error{bad_input} if `limits.within` is below 0 or not a number.
+    void nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
+                 std::uint32_t groups = all_groups);
 
     /// Return the answers to a query with one box, sphere, ray or place.
     std::vector<std::uint32_t> overlaps(const Box3d& box, std::uint32_t groups = all_groups);

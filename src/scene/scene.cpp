@@ -101,9 +101,16 @@ void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::u
 
 void Scene::nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                     std::uint32_t groups) {
+    nearest(places, NearestLimits{count}, answers, groups);
+}
+
+void Scene::nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
+                    std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(places, [](const Box3d& box) { return is_box(box); });
-    state_->queries().nearest(state_->view(groups), places, count, answers);
+    if (!(limits.within >= 0))
+        throw Error(ErrorCode::bad_input, "NearestLimits::within must be a number of at least 0");
+    state_->queries().nearest(state_->view(groups), places, limits, answers);
 }
 
 std::vector<std::uint32_t> Scene::overlaps(const Box3d& box, std::uint32_t groups) {

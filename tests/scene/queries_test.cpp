@@ -155,6 +155,29 @@ TEST(SceneQueries, TheNearestOfEqualRoundedDistancesComesFirst) {
     EXPECT_EQ(scene.nearest(place, 2), (std::vector<Neighbor>{{1, 1}, {0, 1}}));
 }
 
+TEST(SceneQueries, NearestObjectsAreWithinTheLimit) {
+    const std::vector<Box3d> boxes = {{{1, 0, 0}, {2, 0, 0}}, {{-3, 0, 0}, {-3, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+    Scene scene({1, Precision::float64});
+    std::vector<ObjectId> ids(boxes.size());
+    scene.add(Objects{std::span<const Box3d>(boxes)}, ids);
+    const Box3d place{{0, 0, 0}, {0, 0, 0}};
+    const auto nearest = [&](std::size_t count, double within) {
+        Answers<Neighbor> answers;
+        scene.nearest(std::span(&place, 1), NearestLimits{count, within}, answers);
+        return answers.all;
+    };
+    const std::vector<Neighbor> all = {{2, 0}, {0, 1}, {1, 3}};
+    for (std::size_t i = 0; i < 2; ++i) {  // without a step, and after a step
+        EXPECT_EQ(nearest(5, std::numeric_limits<double>::infinity()), all);
+        EXPECT_EQ(nearest(5, 3), all);
+        EXPECT_EQ(nearest(5, std::nextafter(3, 0)), std::vector<Neighbor>(all.begin(), all.begin() + 2));
+        EXPECT_EQ(nearest(1, 3), std::vector<Neighbor>(all.begin(), all.begin() + 1));
+        EXPECT_EQ(nearest(5, 0), std::vector<Neighbor>(all.begin(), all.begin() + 1));
+        EXPECT_TRUE(nearest(0, 3).empty());
+        scene.step();
+    }
+}
+
 TEST(SceneQueries, BadOnesAreRefused) {
     constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
     Scene scene;
@@ -176,6 +199,14 @@ TEST(SceneQueries, BadOnesAreRefused) {
     EXPECT_EQ(refused([&] { (void)scene.all_hits({{0, 0, 0}, {1, infinity, 0}}); }), what);
     EXPECT_EQ(refused([&] { (void)scene.all_hits({{0, 0, 0}, {1, 0, 0}, nan}); }), what);
     EXPECT_EQ(refused([&] { (void)scene.nearest(Box3d{{0, 0, nan}, {0, 0, 1}}, 1); }), what);
+    Answers<Neighbor> answers;
+    const Box3d place{{0, 0, 0}, {1, 1, 1}};
+    for (const double within : {-1.0, nan}) {
+        EXPECT_EQ(refused([&] {
+                      scene.nearest(std::span(&place, 1), NearestLimits{1, within}, answers);
+                  }),
+                  "NearestLimits::within must be a number of at least 0");
+    }
 }
 
 }  // namespace

@@ -151,6 +151,13 @@ private:
         std::vector<Neighbor> expected;
         for (std::size_t i = 0; i < count; ++i) expected.push_back({order[i].second, rounded_distance(order[i].first)});
         ASSERT_EQ(scene_.nearest(place, count, groups_), expected);
+        // The distance of one of the answers is the limit, or half of it.
+        const double farthest = expected.empty() ? unit() : expected[random_() % expected.size()].distance;
+        const NearestLimits limits{count, random_() % 2 == 0 ? farthest : farthest / 2};
+        std::erase_if(expected, [&](const Neighbor& neighbor) { return neighbor.distance > limits.within; });
+        Answers<Neighbor> answers;
+        scene_.nearest(std::span(&place, 1), limits, answers, groups_);
+        ASSERT_EQ(answers.all, expected);
     }
 
     Scene& scene_;

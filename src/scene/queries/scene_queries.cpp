@@ -121,18 +121,20 @@ private:
 /// Appends the nearest objects, in order, to a list.
 class Nearest final : public SceneProbe {
 public:
-    Nearest(const SceneQueries::View& scene, const Box3d& place, std::size_t count, std::vector<Neighbor>& list)
-        : SceneProbe(scene), place_(place), count_(count), list_(list), begin_(list.size()) {}
+    Nearest(const SceneQueries::View& scene, const Box3d& place, const NearestLimits& limits,
+            std::vector<Neighbor>& list)
+        : SceneProbe(scene), place_(place), limits_(limits), list_(list), begin_(list.size()) {}
 
 private:
     // Rounded distances have the order of the exact ones. So an object with a larger rounded distance than the last one in
     // the list is farther. An object with an equal rounded distance may be nearer, and is compared exactly.
     double from(const Box3d& region) const override { return distance_at_least(place_, region); }
-    double limit() const override { return is_full() ? list_.back().distance : infinity; }
+    double limit() const override { return is_full() ? list_.back().distance : limits_.within; }
     void try_object(std::uint32_t index) override {
         const Box3d box = table().box(index);
-        if (is_full() && distance_at_least(place_, box) > list_.back().distance) return;
+        if (distance_at_least(place_, box) > limit()) return;
         const Neighbor found{index, distance(place_, box)};
+        if (found.distance > limits_.within) return;
         const auto at = std::lower_bound(list_.begin() + std::ptrdiff_t(begin_), list_.end(), found,
                                          [&](const Neighbor& a, const Neighbor& b) { return nearer(a, b); });
         if (at != list_.end() && at->index == index) return;
@@ -142,7 +144,7 @@ private:
         if (full) list_.pop_back();
     }
 
-    bool is_full() const { return list_.size() - begin_ == count_; }
+    bool is_full() const { return list_.size() - begin_ == limits_.count; }
     bool nearer(const Neighbor& a, const Neighbor& b) const {
         if (a.distance != b.distance) return a.distance < b.distance;
         if (a.distance == 0 || a.index == b.index) return a.index < b.index;
@@ -151,7 +153,7 @@ private:
     }
 
     const Box3d& place_;
-    std::size_t count_;
+    const NearestLimits& limits_;
     std::vector<Neighbor>& list_;
     std::size_t begin_;
 };
@@ -241,10 +243,10 @@ void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answer
     });
 }
 
-void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, std::size_t count,
+void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, const NearestLimits& limits,
                            Answers<Neighbor>& answers) {
     answer(places.size(), &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
-        if (count > 0) Nearest(scene, places[i], count, worker.neighbors).search();
+        if (limits.count > 0) Nearest(scene, places[i], limits, worker.neighbors).search();
     });
 }
 

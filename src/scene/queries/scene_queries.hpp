@@ -35,7 +35,8 @@ public:
     void overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers);
     void first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
     void all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers);
-    void nearest(const View& scene, std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers);
+    void nearest(const View& scene, std::span<const Box3d> places, const NearestLimits& limits,
+                 Answers<Neighbor>& answers);
 
 private:
     /// Buffers of one thread.
