@@ -49,25 +49,29 @@ Box<S> moved_box(const ::fcl::AABB<S>& local, const ::fcl::Vector3<S>& translati
 /// Returns the box around the local box under a transform.
 template <typename S>
 Box<S> rotated_box(const ::fcl::AABB<S>& local, const ::fcl::Transform3<S>& transform) {
-    // Three products and three sums have a relative error below 4 epsilon of the sum of their absolute values. Products that
-    // underflow lose less than `min()`.
-    constexpr S rounding = 4 * std::numeric_limits<S>::epsilon();
+    // The centre, the half extent and their sum have a relative error below 8 epsilon of the sum of the absolute values of their
+    // terms. Numbers that underflow lose less than `min()`.
+    constexpr S rounding = 8 * std::numeric_limits<S>::epsilon();
     constexpr S largest = std::numeric_limits<S>::max();
+    S centre[3], extent[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const S lower = std::max(local.min_[axis], -largest) / 2, upper = std::min(local.max_[axis], largest) / 2;
+        centre[axis] = upper + lower;
+        extent[axis] = upper - lower;
+    }
     const S* const columns = transform.data();  // 4 x 4, column after column
     Box<S> box;
     for (int axis = 0; axis < 3; ++axis) {
-        S lower = columns[12 + axis], upper = lower, size = std::abs(lower);
+        S middle = columns[12 + axis], size = std::abs(middle), reach = 0;
         for (int from = 0; from < 3; ++from) {
-            const S factor = columns[4 * from + axis];
-            const S a = factor * std::clamp(local.min_[from], -largest, largest);
-            const S b = factor * std::clamp(local.max_[from], -largest, largest);
-            lower += std::min(a, b);
-            upper += std::max(a, b);
-            size += std::max(std::abs(a), std::abs(b));
+            const S factor = columns[4 * from + axis], term = factor * centre[from];
+            middle += term;
+            size += std::abs(term);
+            reach += std::abs(factor) * extent[from];
         }
-        const S error = rounding * size + std::numeric_limits<S>::min();
-        box.min[axis] = lower - error;
-        box.max[axis] = upper + error;
+        reach += rounding * (size + reach) + std::numeric_limits<S>::min();
+        box.min[axis] = middle - reach;
+        box.max[axis] = middle + reach;
     }
     return box;
 }
@@ -100,17 +104,28 @@ Box<S> bounding_box(const ::fcl::CollisionObject<S>& object, const ::fcl::Collis
     return rotated_box(geometry.aabb_local, transform);
 }
 
-/// Replaces infinite coordinates by the largest finite ones. Returns false if min <= max fails on an axis.
+/// Returns whether the box is valid: finite, with min <= max.
 template <typename S>
-bool make_finite(Box<S>& box) {
+bool is_valid(const Box<S>& box) {
     constexpr S largest = std::numeric_limits<S>::max();
-    bool is_valid = true;
+    bool result = true;
     for (int axis = 0; axis < 3; ++axis) {
-        is_valid &= box.min[axis] <= box.max[axis];
+        result &= (box.min[axis] <= box.max[axis]) & (box.min[axis] >= -largest) & (box.max[axis] <= largest);
+    }
+    return result;
+}
+
+/// Makes a box valid: replaces infinite coordinates by the largest finite ones. Returns false if the box is not a number, or empty.
+template <typename S>
+bool make_valid(Box<S>& box) {
+    if (is_valid(box)) return true;
+    constexpr S largest = std::numeric_limits<S>::max();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(box.min[axis] <= box.max[axis])) return false;
         box.min[axis] = std::clamp(box.min[axis], -largest, largest);
         box.max[axis] = std::clamp(box.max[axis], -largest, largest);
     }
-    return is_valid;
+    return true;
 }
 
 /// Throws Error{bad_input} that says what is wrong with a box. `object` names its object.
@@ -130,10 +145,9 @@ template <typename S>
 /// Returns the box of an object that a call passes. Throws: Error{bad_input} if the box is invalid.
 template <typename S>
 Box<S> box_of_argument(const ::fcl::CollisionObject<S>& object, BoundingBoxes kind) {
-    const Box<S> box = bounding_box(object, *object.collisionGeometry(), kind);
-    Box<S> finite = box;
-    if (!make_finite(finite)) refuse_box(box, "an object of the call");
-    return finite;
+    Box<S> box = bounding_box(object, *object.collisionGeometry(), kind);
+    if (!make_valid(box)) refuse_box(box, "an object of the call");
+    return box;
 }
 
 /// Returns a box in float64.

@@ -42,9 +42,9 @@ public:
         boxes_to_send_.clear();
         for (std::size_t i = 0; i < objects.size(); ++i) {
             if (indices_.contains(objects[i])) continue;
-            const Box<S> box = bounding_box(*objects[i], *objects[i]->collisionGeometry(), options_.boxes);
+            Box<S> box = bounding_box(*objects[i], *objects[i]->collisionGeometry(), options_.boxes);
+            if (!make_valid(box)) refuse_box(box, "object " + std::to_string(i) + " of the call");
             boxes_to_send_.push_back(box);
-            if (!make_finite(boxes_to_send_.back())) refuse_box(box, argument(i));
             fresh_.push_back(objects[i]);
         }
         if (fresh_.size() > 1) remove_repeated();
@@ -80,8 +80,10 @@ public:
     void update() {
         changed_.clear();
         boxes_to_send_.clear();
+        changed_.reserve(objects_.size());
+        boxes_to_send_.reserve(objects_.size());
         for (std::uint32_t index = 0; index < objects_.size(); ++index) {
-            prefetch(index + 8);
+            prefetch(index + 6);
             if (objects_[index] != nullptr) note_if_moved(index);
         }
         send_moves();
@@ -141,7 +143,6 @@ private:
         options.precision = std::is_same_v<S, float> ? Precision::float32 : Precision::float64;
         return options;
     }
-    static std::string argument(std::size_t position) { return "object " + std::to_string(position) + " of the call"; }
     static Objects as_objects(const std::vector<Box<S>>& boxes) { return {.boxes = std::span<const Box<S>>(boxes)}; }
 
     void note_changes(std::size_t count) {
@@ -153,22 +154,31 @@ private:
     /// 100,000 moved objects would wait for memory most of its time.
     void prefetch(std::size_t index) const {
         if (index >= objects_.size() || objects_[index] == nullptr) return;
+        const Object& object = *objects_[index];
+        if (options_.boxes == BoundingBoxes::fcl) return prefetch_all(object.getAABB());
+        prefetch_all(object.getTransform());
+        prefetch_all(geometries_[index]->aabb_local);
+    }
+    template <typename Value>
+    static void prefetch_all(const Value& value) {
         constexpr std::size_t cache_line = 64;
-        const auto* const bytes = reinterpret_cast<const char*>(objects_[index]);
-        for (std::size_t at = 0; at < sizeof(Object); at += cache_line) __builtin_prefetch(bytes + at);
-        __builtin_prefetch(&geometries_[index]->aabb_local);
+        const auto* const bytes = reinterpret_cast<const char*>(&value);
+        for (std::size_t at = 0; at < sizeof(Value); at += cache_line) __builtin_prefetch(bytes + at);
+        __builtin_prefetch(bytes + sizeof(Value) - 1);
     }
 
     /// Appends the object to the changed ones if its box has changed.
     void note_if_moved(std::uint32_t index) {
-        const Box<S> box = bounding_box(*objects_[index], *geometries_[index], options_.boxes);
-        Box<S> finite = box;
-        if (!make_finite(finite)) refuse_box(box, "registered object " + std::to_string(rank(index)));
+        Box<S> box = bounding_box(*objects_[index], *geometries_[index], options_.boxes);
+        if (!make_valid(box)) refuse_box(box, "registered object " + std::to_string(rank(index)));
         const Box<S>& former = boxes_[index];
-        if (std::equal(finite.min, finite.min + 3, former.min) && std::equal(finite.max, finite.max + 3, former.max))
-            return;
+        bool is_same = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            is_same &= (box.min[axis] == former.min[axis]) & (box.max[axis] == former.max[axis]);
+        }
+        if (is_same) return;
         changed_.push_back(ids_[index]);
-        boxes_to_send_.push_back(finite);
+        boxes_to_send_.push_back(box);
     }
 
     void send_moves() {
