@@ -149,7 +149,7 @@ TYPED_TEST(FclCollide, EndsWhenTheCallbackReturnsTrue) {
 
 TYPED_TEST(FclCollide, WithOtherManagers) {
     using S = TypeParam;
-    for (const auto [count, other_count] : {std::pair(200, 150), {3, 200}, {200, 3}, {0, 5}, {5, 0}}) {
+    for (const auto& [count, other_count] : {std::pair(200, 150), {3, 200}, {200, 3}, {0, 5}, {5, 0}}) {
         FclWorld<S> world(6);
         const std::vector<FclObject<S>*> objects = world.add_random(std::size_t(count), 2);
         std::vector<FclObject<S>*> others = world.add_random(std::size_t(other_count), 2);
@@ -204,7 +204,7 @@ TYPED_TEST(FclCollide, CallbacksMayCallTheManager) {
 }
 
 TEST(FclLarge, AMillionPairs) {
-    FclWorld<double> world(8, 25);
+    FclWorld<double> world(8, 22);
     const std::vector<FclObject<double>*> objects = world.add_random(30'000, 1.9);
     BroadPhaseManager<double> manager;
     manager.registerObjects(objects);
