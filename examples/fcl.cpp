@@ -1,7 +1,6 @@
 // A program for FCL that uses octopair as its broad phase. It differs from one with FCL's manager in the line marked below.
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/halfspace.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <octopair/fcl/broad_phase_manager.hpp>
 
@@ -10,13 +9,14 @@
 #include <vector>
 
 int main() {
-    // A ground, a box that stands on it, and a ball that falls.
-    fcl::CollisionObjectd ground(std::make_shared<fcl::Halfspaced>(fcl::Vector3d::UnitZ(), 0));
+    // A ground, a box above it, and a ball that falls.
+    fcl::CollisionObjectd ground(std::make_shared<fcl::Boxd>(20, 20, 2));
     fcl::CollisionObjectd box(std::make_shared<fcl::Boxd>(2, 2, 2));
     fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.5));
+    ground.setTranslation(fcl::Vector3d(0, 0, -1));
     box.setTranslation(fcl::Vector3d(0, 0, 1.25));
     ball.setTranslation(fcl::Vector3d(4, 0, 2));
-    for (fcl::CollisionObjectd* const object : {&box, &ball}) object->computeAABB();
+    for (fcl::CollisionObjectd* const object : {&ground, &box, &ball}) object->computeAABB();
 
     octopair::fcl::BroadPhaseManagerd manager;  // was: fcl::DynamicAABBTreeCollisionManagerd manager;
     manager.registerObjects({&ground, &box, &ball});
