@@ -97,18 +97,18 @@ public:
     }
 
     void distance(void* data, ::fcl::DistanceCallBack<S> callback) const override {
-        std::vector<Box3d> boxes;
-        for (const std::uint32_t index : set_.order()) boxes.push_back(detail::to_double(set_.box(index)));
+        std::vector<Box<S>> boxes;
+        for (const std::uint32_t index : set_.order()) boxes.push_back(set_.box(index));
         const SelfCalls calls{set_, data, callback};
-        detail::NearPairs<S, SelfCalls>(set_, boxes, calls).run();
+        detail::NearPairs<S, SelfCalls>(set_, boxes, calls).run(engine());
     }
 
     void distance(Object* object, void* data, ::fcl::DistanceCallBack<S> callback) const override {
         if (empty()) return;
-        const Box3d box = detail::to_double(detail::box_of_argument(*object, set_.kind()));
+        const Box<S> box = detail::box_of_argument(*object, set_.kind());
         const std::vector<Object*> objects{object};
         const MixedCalls calls{set_, objects, false, data, callback};
-        detail::NearPairs<S, MixedCalls>(set_, std::span(&box, 1), calls).run();
+        detail::NearPairs<S, MixedCalls>(set_, std::span(&box, 1), calls).run(engine());
     }
 
     void distance(Manager* other, void* data, ::fcl::DistanceCallBack<S> callback) const override {
@@ -119,10 +119,8 @@ public:
         const bool swapped = same_kind != nullptr && size() < other->size();
         const List seekers = list_of(swapped ? static_cast<const Manager&>(*this) : *other);
         const auto& targets = swapped ? same_kind->set_ : set_;
-        std::vector<Box3d> boxes;
-        for (const Box<S>& box : seekers.boxes) boxes.push_back(detail::to_double(box));
         const MixedCalls calls{targets, seekers.objects, swapped, data, callback};
-        detail::NearPairs<S, MixedCalls>(targets, boxes, calls).run();
+        detail::NearPairs<S, MixedCalls>(targets, seekers.boxes, calls).run(engine());
     }
 
 private:
@@ -140,6 +138,7 @@ private:
 
     /// Calls for pairs of registered objects. Seekers are in the order of registration.
     struct SelfCalls {
+        static constexpr bool is_self = true;
         const Set& set;
         void* data;
         ::fcl::DistanceCallBack<S> callback;
@@ -154,6 +153,7 @@ private:
 
     /// Calls for pairs of registered objects with others. `swapped`: the seekers are in this manager, the targets in another.
     struct MixedCalls {
+        static constexpr bool is_self = false;
         const Set& set;
         const std::vector<Object*>& seekers;
         bool swapped;
@@ -167,6 +167,11 @@ private:
             return swapped ? callback(b, a, data, dist) : callback(a, b, data, dist);
         }
     };
+
+    Engine& engine() const {
+        if (!engine_) engine_ = make_local_engine(set_.threads());
+        return *engine_;
+    }
 
     List list_of(const Manager& manager) const {
         List list;
@@ -237,9 +242,8 @@ private:
     std::vector<Pair> join(const List& theirs) const {
         const List ours = list_of(*this);
         const auto objects = [](const List& list) { return Objects{.boxes = std::span<const Box<S>>(list.boxes)}; };
-        if (!engine_) engine_ = make_local_engine(set_.threads());
         PairList found;
-        (void)engine_->find_pairs(Join{objects(ours), objects(theirs)}, found);
+        (void)engine().find_pairs(Join{objects(ours), objects(theirs)}, found);
         std::vector<Pair> pairs = found.to_vector();
         std::erase_if(pairs, [&](Pair pair) { return ours.objects[pair.a] == theirs.objects[pair.b]; });
         return pairs;
