@@ -54,7 +54,7 @@ private:
     static constexpr std::size_t max_count = 256;        // an answer's cost grows with the number of targets
     static constexpr std::size_t max_answers = 1 << 16;  // bounds the memory for answers
 
-    /// Calls all pairs, and sets is_done_, unless too many pairs are within the limit.
+    /// Calls all pairs and sets is_done_, unless too many pairs are within the limit.
     void search_with_margin(Engine& engine) {
         std::vector<std::uint32_t> sample;
         const std::size_t stride = std::clamp<std::size_t>(seekers_.size() / 16, 1, samples);
@@ -63,7 +63,7 @@ private:
         is_done_ = search(sample, 3);
         is_sampling_ = false;
         unfinished_.clear();
-        if (is_done_ || limit_ == std::numeric_limits<S>::max()) return;
+        if (is_done_ || !(limit_ < std::numeric_limits<S>::max())) return;
 
         std::vector<Box<S>> boxes;
         for (const std::uint32_t index : targets_.order()) boxes.push_back(targets_.box(index));
