@@ -1,6 +1,6 @@
 // Compares octopair::fcl::BroadPhaseManager with FCL's managers on the same objects, one thread. Prints a table of medians.
 //
-//     octopair_fcl_adapter [--quick] [ROUNDS]
+//     octopair_adapter_fcl [--quick] [ROUNDS]
 //
 // Managers take turns in each round. Objects are boxes, spheres, capsules and cylinders that move and turn from round to round.
 // They compute their boxes (computeAABB) before the measurement. FCL's trees keep their structure when all objects move, so they
