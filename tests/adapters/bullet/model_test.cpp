@@ -45,7 +45,8 @@ struct Collected : btBroadphaseRayCallback {
 
 class History {
 public:
-    explicit History(std::uint64_t seed) : random_(seed), broadphase_(nullptr, unsigned(1 + seed % 2)) {}
+    explicit History(std::uint64_t seed)
+        : random_(seed), broadphase_(seed / 2 % 2 == 0 ? nullptr : &sorted_, unsigned(1 + seed % 2)) {}
 
     void run(int steps) {
         for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
@@ -157,6 +158,7 @@ private:
 
     std::mt19937_64 random_;
     SumFilter filter_;
+    btSortedOverlappingPairCache sorted_;
     bullet::Broadphase broadphase_;
     std::vector<btBroadphaseProxy*> proxies_;
 };
@@ -167,6 +169,31 @@ TEST(BulletModel, HasThePairsAndAnswersOfAllPairsTested) {
         const std::uint64_t seed = test::case_seed("bullet", i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         History(seed).run(30);
+    }
+}
+
+/// Pairs of destroyed proxies leave the cache, also those that others have added.
+TEST(BulletBroadphase, LeavesNoPairOfADestroyedProxy) {
+    btHashedOverlappingPairCache hashed;
+    btSortedOverlappingPairCache sorted;
+    for (btOverlappingPairCache* const cache :
+         {static_cast<btOverlappingPairCache*>(&hashed), static_cast<btOverlappingPairCache*>(&sorted)}) {
+        bullet::Broadphase broadphase(cache);
+        std::vector<btBroadphaseProxy*> proxies;
+        for (const btScalar at : {btScalar(0), btScalar(1), btScalar(9)}) {
+            const btVector3 lower(at, at, at);
+            proxies.push_back(broadphase.createProxy(lower, lower + btVector3(1, 1, 1), 0, nullptr, 1, 1, nullptr));
+        }
+        broadphase.calculateOverlappingPairs(nullptr);
+        EXPECT_EQ(pairs_in(*cache), (std::set<Numbers>{{1, 2}}));
+        EXPECT_NE(cache->addOverlappingPair(proxies[0], proxies[2]), nullptr);
+        broadphase.destroyProxy(proxies[0], nullptr);
+        EXPECT_EQ(cache->getNumOverlappingPairs(), 0);
+        broadphase.destroyProxy(proxies[1], nullptr);
+        broadphase.destroyProxy(proxies[2], nullptr);
+        broadphase.calculateOverlappingPairs(nullptr);
+        broadphase.resetPool(nullptr);
+        EXPECT_EQ(broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, 1, nullptr)->m_uniqueId, 1);
     }
 }
 

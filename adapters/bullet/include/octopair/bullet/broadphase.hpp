@@ -5,12 +5,13 @@
 //
 // Pairs     After calculateOverlappingPairs() the pair cache has each pair of proxies whose boxes overlap, touching included, and that
 //           the filter accepts. Bullet's own broad phases have pairs of enlarged boxes, too.
-// Filter    Groups and masks as in Bullet; changed values count from the next change of the proxy's box on. If the cache has a filter
-//           callback, it decides alone. Pairs that it has refused are offered to it again in each step. Pairs that it has accepted stay
-//           until the boxes part.
-// Cache     Pairs that others have removed from the cache are added again in the next step if their boxes still overlap.
-// Order     Ended pairs leave and new pairs come in ascending order of the creation of their proxies. So the order in the cache does not
-//           depend on addresses or threads.
+// Filter    Groups and masks as in Bullet; changed values count from the next change of the proxy's box on, also for pairs in the cache.
+//           If the cache has a filter callback, it decides alone. Pairs that it has refused are offered to it again in each step. Pairs
+//           that it has accepted stay until the boxes part.
+// Cache     If others have changed the number of pairs in the cache, the next step adds the missing pairs. Pairs that others
+//           have added may stay until one of their proxies is destroyed.
+// Order     Ended pairs leave and new pairs come in the order of the scene's indices. It depends on the calls alone, neither on addresses
+//           nor on threads. Without removals it is the order of creation.
 // Queries   rayTest() and aabbTest() use the current boxes, also between steps. They call the callback in an order that depends on the
 //           boxes alone.
 // Errors    octopair::Error{bad_input} for a box that is not finite or has min > max. Bullet does not call setAabb() with such a box.
@@ -47,11 +48,16 @@ public:
 
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
         Proxy& gone = *static_cast<Proxy*>(proxy);
+        const int before = cache_->getNumOverlappingPairs();
+        // Others may have added pairs that are not among the partners. Only a search of the whole cache finds these.
+        const bool are_known = before == expected_ && !cache_->hasDeferredRemoval();
         for (const std::uint32_t index : gone.partners) {
             Proxy& partner = *proxies_.at(index);
             std::erase(partner.partners, gone.id.index);
-            remove_from_cache(gone, partner, dispatcher);
+            if (are_known) cache_->removeOverlappingPair(&gone, &partner, dispatcher);
         }
+        if (!are_known) cache_->removeOverlappingPairsContainingProxy(&gone, dispatcher);
+        expected_ -= before - cache_->getNumOverlappingPairs();
         proxies_.remove(gone);
     }
 
@@ -93,14 +99,12 @@ public:
         });
     }
 
+    /// If there are no proxies: numbers new ones from the beginning, so that a repeated simulation has the same order of pairs.
+    void resetPool(btDispatcher* /*dispatcher*/) override { proxies_.reset_if_empty(); }
+
     void printStats() override { std::printf("octopair: %d pairs\n", cache_->getNumOverlappingPairs()); }
 
 private:
-    void remove_from_cache(Proxy& a, Proxy& b, btDispatcher* dispatcher) {
-        const int before = cache_->getNumOverlappingPairs();
-        cache_->removeOverlappingPair(&a, &b, dispatcher);
-        expected_ -= before - cache_->getNumOverlappingPairs();
-    }
     /// Adds a pair to the cache, if the filter accepts it.
     void offer(const Pair& pair) {
         if (cache_->addOverlappingPair(proxies_.at(pair.a), proxies_.at(pair.b)) == nullptr) refused_.push_back(pair);
@@ -114,13 +118,13 @@ private:
         if (a == nullptr || b == nullptr) return;  // destroyProxy() has removed the pair
         std::erase(a->partners, pair.b);
         std::erase(b->partners, pair.a);
-        remove_from_cache(*a, *b, dispatcher);
+        if (!cache_->hasDeferredRemoval()) cache_->removeOverlappingPair(a, b, dispatcher);
     }
     void begin_pair(const Pair& pair) {
         proxies_.at(pair.a)->partners.push_back(pair.b);
         proxies_.at(pair.b)->partners.push_back(pair.a);
-        offer(pair);
     }
+    void remove_ended(btDispatcher* dispatcher);
     void offer_refused_again() {
         std::vector<Pair> before;
         before.swap(refused_);
@@ -140,13 +144,32 @@ private:
 
 inline void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     Scene& scene = proxies_.flush(cache_->getOverlapFilterCallback() == nullptr);
+    const bool is_ours = cache_->getNumOverlappingPairs() == expected_;
     const StepResult& step = scene.step();
     for (const Pair& pair : step.ended) end_pair(pair, dispatcher);
-    const bool is_complete = cache_->getNumOverlappingPairs() >= expected_;
-    offer_refused_again();
+    if (!step.ended.empty() && cache_->hasDeferredRemoval()) remove_ended(dispatcher);
     for (const Pair& pair : step.began) begin_pair(pair);
-    if (!is_complete) restore_cache(scene);
+    if (is_ours) {
+        offer_refused_again();
+        for (const Pair& pair : step.began) offer(pair);
+    } else {
+        restore_cache(scene);
+    }
     expected_ = cache_->getNumOverlappingPairs();
+}
+
+/// Removes the pairs whose boxes have parted from a cache that removes single pairs only in a search of all.
+inline void Broadphase::remove_ended(btDispatcher* dispatcher) {
+    struct Parted : btOverlapCallback {
+        explicit Parted(const Broadphase& of) : broadphase(of) {}
+        bool processOverlap(btBroadphasePair& pair) override {
+            return !broadphase.overlap({static_cast<const Proxy*>(pair.m_pProxy0)->id.index,
+                                        static_cast<const Proxy*>(pair.m_pProxy1)->id.index});
+        }
+        const Broadphase& broadphase;
+    };
+    Parted parted(*this);
+    cache_->processAllOverlappingPairs(&parted, dispatcher);
 }
 
 /// Adds the pairs again that others have removed from the cache.

@@ -40,7 +40,7 @@ struct Proxy : btBroadphaseProxy {
 
 class Proxies {
 public:
-    explicit Proxies(unsigned threads) : scene_(options(threads)) {}
+    explicit Proxies(unsigned threads) : threads_(threads), scene_(options(threads)) {}
 
     Proxy& add(const btBroadphaseProxy& made) {
         check(made.m_aabbMin, made.m_aabbMax);
@@ -70,6 +70,14 @@ public:
         if (proxy.is_queued) changed_[proxy.position] = nullptr;
         removed_.push_back(proxy.id);
         of_index_[proxy.id.index] = nullptr;
+    }
+
+    /// If there are no proxies, makes a new scene, and gives the next proxy the first number.
+    void reset_if_empty() {
+        bool any = false;
+        for_each([&](const Proxy&) { any = true; });
+        if (any) return;
+        *this = Proxies(threads_);
     }
 
     /// Sends all changes to the scene. `with_filters`: groups and masks decide which proxies make pairs.
@@ -173,6 +181,7 @@ private:
         ++lengths_;
     }
 
+    unsigned threads_;
     Scene scene_;
     bool with_filters_ = true;
     int last_id_ = 0;
