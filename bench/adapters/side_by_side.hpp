@@ -21,22 +21,24 @@ inline double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// Runs both in turns, `rounds` times after a round that is not counted. `prepare` runs before each round. Prints the medians in
-/// milliseconds, and how many times as fast the second is.
-inline void print_side_by_side(
-    const std::string& name, unsigned rounds, const std::function<void()>& host, const std::function<void()>& octopair,
-    const std::function<void()>& prepare = [] {}) {
+/// Prints medians in seconds as milliseconds, and how many times as fast the second is.
+inline void print_medians(const std::string& name, double of_host, double of_octopair) {
+    std::printf("%-44s %10.2f ms %10.2f ms %8.1f times\n", name.c_str(), 1e3 * of_host, 1e3 * of_octopair,
+                of_host / of_octopair);
+    std::fflush(stdout);
+}
+
+/// Runs both in turns, `rounds` times after a round that is not counted. Prints the medians.
+inline void print_side_by_side(const std::string& name, unsigned rounds, const std::function<void()>& host,
+                               const std::function<void()>& octopair) {
     std::vector<double> of_host, of_octopair;
     for (unsigned round = 0; round <= rounds; ++round) {
-        prepare();
         const double first = seconds_of(host), second = seconds_of(octopair);
         if (round == 0 && rounds > 0) continue;
         of_host.push_back(first);
         of_octopair.push_back(second);
     }
-    std::printf("%-44s %10.2f ms %10.2f ms %8.1f times\n", name.c_str(), 1e3 * median(of_host),
-                1e3 * median(of_octopair), median(of_host) / median(of_octopair));
-    std::fflush(stdout);
+    print_medians(name, median(of_host), median(of_octopair));
 }
 
 }  // namespace octopair::bench

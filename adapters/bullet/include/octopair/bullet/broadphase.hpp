@@ -29,7 +29,7 @@
 
 namespace octopair::bullet {
 
-class Broadphase final : public btBroadphaseInterface {
+class Broadphase : public btBroadphaseInterface {
 public:
     /// `cache`: borrowed; null: the broad phase makes a btHashedOverlappingPairCache. `threads`: 0: one per core.
     explicit Broadphase(btOverlappingPairCache* cache = nullptr, unsigned threads = 1)
