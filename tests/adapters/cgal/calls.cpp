@@ -160,6 +160,18 @@ Positions self_with_own_traits(const Question& question) {
     return report.sorted();
 }
 
+/// Several boxes have the same id, which CGAL's function of all pairs ignores.
+Positions self_of_all_pairs_with_equal_ids(const Question& question) {
+    auto all = own(question.first, 0);
+    for (auto& [box, id] : all) id %= 7;
+    Report report(true);
+    const auto position = [&](const auto& one) { return std::size_t(one.first - question.first.data()); };
+    library::box_self_intersection_all_pairs_d(
+        all.begin(), all.end(), [&](const auto& a, const auto& b) { report.add(position(a), position(b)); },
+        OwnTraits(), topology_of(question));
+    return report.sorted();
+}
+
 template <class Number>
 Positions two(const Question& question) {
     auto first = numbered<Numbered<Number>, Number>(question.first);
@@ -231,6 +243,7 @@ std::vector<Call> calls() {
             {"pointers", self_of_pointers},
             {"parallel", self_in_parallel},
             {"all pairs", self_of_all_pairs},
+            {"all pairs with equal ids", self_of_all_pairs_with_equal_ids},
             {"handles", self_of_handles},
             {"own traits", self_with_own_traits},
             {"setting complete", complete},

@@ -5,9 +5,12 @@
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>.
 #include <gtest/gtest.h>
 
+#include <cfenv>
+#include <cmath>
 #include <random>
 
 #include "adapters/cgal/calls.hpp"
+#include "octopair/cgal/box_intersection_d.hpp"
 #include "support/cases.hpp"
 #include "support/scale.hpp"
 
@@ -82,6 +85,39 @@ TEST(CgalAdapter, FindsThePairsOfCgal) {
         }
     }
     EXPECT_GT(pairs, 1000 * seeds);
+}
+
+namespace boxes = octopair::cgal::Box_intersection_d;
+
+TEST(CgalAdapter, CallsBackWithTheRoundingOfTheCaller) {
+    using Box = boxes::Box_d<double, 3>;
+    const double lower[] = {0, 0, 0}, upper[] = {1, 1, 1};
+    const std::vector<Box> two = {Box(lower, upper), Box(lower, upper)};  // with different ids
+    ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+    double third = 0;
+    int inside = 0;
+    const volatile double one = 1, three = 3;
+    cgal::box_self_intersection_d(two.begin(), two.end(), [&](const Box&, const Box&) {
+        inside = std::fegetround();
+        third = one / three;
+    });
+    const double expected = one / three;
+    ASSERT_EQ(std::fesetround(FE_TONEAREST), 0);
+    EXPECT_EQ(inside, FE_UPWARD);
+    EXPECT_EQ(third, expected);
+    EXPECT_GT(third, one / three);
+}
+
+TEST(CgalAdapter, NamesTheBoxThatIsNotANumber) {
+    using Box = boxes::Box_d<double, 3>;
+    const double lower[] = {0, 0, 0}, upper[] = {1, 1, 1}, wrong[] = {0, std::nan(""), 1};
+    const std::vector<Box> all = {Box(upper, lower), Box(lower, upper), Box(lower, wrong)};
+    try {
+        cgal::box_self_intersection_d(all.begin(), all.end(), [](const Box&, const Box&) {});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("box 2 "), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // Facts about the interface are from CGAL's manual ("Intersecting Sequences of dD Iso-oriented Boxes"); no code of CGAL is used.
 //
 // Differences from CGAL 5.5
-//   Boxes are constructed from any type with xmin(), ymin(), zmin(), xmax(), ymax() and zmax(), in place of CGAL's Bbox_3. There is no
-//   function bbox().
+//   Boxes of double are constructed from any type with xmin(), ymin(), zmin(), xmax(), ymax() and zmax(), in place of CGAL's Bbox_3. There
+//   is no function bbox() and no Box_with_info_d.
 //   Corners are passed as pointers to constant numbers, so arrays of constants work, too.
 #pragma once
 
@@ -38,14 +38,14 @@ public:
 
     /// The corners are not initialised.
     Box_d() = default;
-    explicit Box_d(bool complete) { init(complete); }
+    Box_d(bool complete) { init(complete); }  // NOLINT(google-explicit-constructor): CGAL's is implicit
     /// `lower`, `upper`: `dimensions` numbers each.
     Box_d(const Number* lower, const Number* upper) {
         std::copy_n(lower, dimensions, lower_.begin());
         std::copy_n(upper, dimensions, upper_.begin());
     }
     template <class Bbox>
-        requires(dimensions == 3) && requires(const Bbox& box) { box.zmax(); }
+        requires(dimensions == 3 && std::is_same_v<Number, double>) && requires(const Bbox& box) { box.zmax(); }
     Box_d(const Bbox& box)  // NOLINT(google-explicit-constructor): CGAL's is implicit
         : lower_{Number(box.xmin()), Number(box.ymin()), Number(box.zmin())},
           upper_{Number(box.xmax()), Number(box.ymax()), Number(box.zmax())} {}
@@ -57,8 +57,7 @@ public:
     }
     /// Extends the box to contain a point.
     void extend(const Number* point) {
-        for (std::size_t axis = 0; axis < std::size_t(dimensions); ++axis)
-            extend(axis, point[axis], point[axis]);
+        for (std::size_t axis = 0; axis < std::size_t(dimensions); ++axis) extend(axis, point[axis], point[axis]);
     }
     /// Extends the box to contain an interval for each axis.
     void extend(const std::pair<Number, Number>* intervals) {
@@ -109,7 +108,8 @@ namespace detail {
 
 /// Base class of a box with a handle. A handle gives the id in place of a policy of Box_d.
 template <class Number, int dimensions, class IdPolicy>
-using HandleBase = Box_d<Number, dimensions, std::conditional_t<std::is_same_v<IdPolicy, ID_FROM_HANDLE>, ID_NONE, IdPolicy>>;
+using HandleBase =
+    Box_d<Number, dimensions, std::conditional_t<std::is_same_v<IdPolicy, ID_FROM_HANDLE>, ID_NONE, IdPolicy>>;
 
 }  // namespace detail
 
@@ -122,11 +122,11 @@ public:
     using Handle = Referring;
 
     Box_with_handle_d() = default;
-    explicit Box_with_handle_d(Handle handle) : handle_(handle) {}
+    Box_with_handle_d(Handle handle) : handle_(handle) {}  // NOLINT(google-explicit-constructor): as above
     Box_with_handle_d(bool complete, Handle handle) : Base(complete), handle_(handle) {}
     Box_with_handle_d(const Number* lower, const Number* upper, Handle handle) : Base(lower, upper), handle_(handle) {}
     template <class Bbox>
-        requires(dimensions == 3) && requires(const Bbox& box) { box.zmax(); }
+        requires(dimensions == 3 && std::is_same_v<Number, double>) && requires(const Bbox& box) { box.zmax(); }
     Box_with_handle_d(const Bbox& box, Handle handle) : Base(box), handle_(handle) {}
 
     Handle handle() const { return handle_; }
