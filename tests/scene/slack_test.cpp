@@ -81,7 +81,7 @@ TEST(Slack, DriftingObjectsHaveThePairsOfAFullDetection) {
 TEST(Slack, AStepThatHasNoRoomCanBeRepeated) {
     std::uint64_t left = 0;
     int failures = 0;
-    for (std::uint64_t budget = 0; budget < 20'000'000; budget += 500'000) {
+    for (std::uint64_t budget = 0; budget < 20'000'000; budget += test::sanitized ? 4'000'000 : 500'000) {
         SceneOptions options = with_slack(0.5);
         options.room_for_pairs = [&](std::uint64_t bytes) {
             if (bytes > left) throw std::runtime_error("no room");
@@ -106,7 +106,7 @@ TEST(Slack, AStepThatHasNoRoomCanBeRepeated) {
         EXPECT_EQ(step.began.size(), 1010u * 1009 / 2 - 45);
         EXPECT_EQ(scene.pairs().size(), 1010u * 1009 / 2);
     }
-    EXPECT_GT(failures, 3);
+    EXPECT_GT(failures, 1);
 }
 
 }  // namespace
