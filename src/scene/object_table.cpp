@@ -50,11 +50,11 @@ void ObjectTable::BoxArray::set(std::uint32_t index, const Box3d& box) {
     }
 }
 
-void ObjectTable::find_left(std::vector<std::uint32_t>& left) const {
-    left.clear();
+void ObjectTable::find_outside(std::vector<std::uint32_t>& outside) const {
+    outside.clear();
     const auto find = [&](const auto& own, const auto& searched) {
         for (std::uint32_t index = 0; index < slots_.size(); ++index) {
-            if (!is_within(own[index], searched[index]) && alive(index)) left.push_back(index);
+            if (!is_within(own[index], searched[index]) && alive(index)) outside.push_back(index);
         }
     };
     precision_ == Precision::float64 ? find(own_.float64, searched_.float64) : find(own_.float32, searched_.float32);
@@ -63,7 +63,7 @@ void ObjectTable::find_left(std::vector<std::uint32_t>& left) const {
 template <typename Real>
 Box<Real> ObjectTable::enlarged(const Box<Real>& box) const {
     constexpr Real most = std::numeric_limits<Real>::max();
-    const Real slack = std::min(Real(slack_), most);
+    const auto slack = Real(std::min(slack_, double(most)));
     Box<Real> large;
     // Rounding is monotone, so the enlarged box contains the box.
     for (int axis = 0; axis < 3; ++axis) {

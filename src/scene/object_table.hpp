@@ -98,8 +98,8 @@ public:
     void set_box(std::uint32_t index, const Box<Real>& box) {
         (has_slack() ? own_ : searched_).set(index, box);
     }
-    /// Stores the indices of objects whose own boxes are not within their searched boxes in `left`. Requires: has_slack().
-    void find_left(std::vector<std::uint32_t>& left) const;
+    /// Stores the indices of objects whose own boxes are not within their searched boxes in `outside`. Requires: has_slack().
+    void find_outside(std::vector<std::uint32_t>& outside) const;
     /// Sets the searched box to the own box, enlarged by the slack. Requires: has_slack().
     void enlarge(std::uint32_t index);
     void enlarge_all();

@@ -119,10 +119,10 @@ void SceneObjects::note_move(std::uint32_t index) {
 
 void SceneObjects::update_searched() {
     if (!table_.has_slack() || !changed_) return;
-    table_.find_left(left_);
-    prepare(left_.size());
+    table_.find_outside(outside_);
+    prepare(outside_.size());
     if (log_.overflowed()) return table_.enlarge_all();
-    for (const std::uint32_t index : left_) {
+    for (const std::uint32_t index : outside_) {
         log_.note(table_, index, true);
         table_.enlarge(index);
     }

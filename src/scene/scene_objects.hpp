@@ -83,7 +83,7 @@ private:
     Changes changes_;
     std::vector<std::uint32_t> removed_;  // indices of objects removed since the last step
     std::vector<ObjectId> sorted_;        // buffer of check_removal()
-    std::vector<std::uint32_t> left_;     // buffer of update_searched()
+    std::vector<std::uint32_t> outside_;  // buffer of update_searched()
     std::vector<Swept> swept_;
     /// By object index: position in swept_, or `none`. Empty before the first sweep.
     std::vector<std::uint32_t> swept_at_;

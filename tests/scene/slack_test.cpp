@@ -106,7 +106,7 @@ TEST(Slack, AStepThatHasNoRoomCanBeRepeated) {
         EXPECT_EQ(step.began.size(), 1010u * 1009 / 2 - 45);
         EXPECT_EQ(scene.pairs().size(), 1010u * 1009 / 2);
     }
-    EXPECT_GT(failures, 1);
+    EXPECT_GT(failures, test::sanitized ? 1 : 3);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ private:
         broadphase_.destroyProxy(proxies_[at], nullptr);
         proxies_.erase(proxies_.begin() + std::ptrdiff_t(at));
     }
-    /// A callback that has accepted a pair is not asked again until the boxes part. So it only accepts more here, or is removed.
+    /// A callback that has accepted a pair is not asked again until the boxes part. So it only accepts more here.
     void change_filter() {
         btOverlappingPairCache& cache = *broadphase_.getOverlappingPairCache();
         if (cache.getOverlapFilterCallback() == nullptr && cache.getNumOverlappingPairs() == 0) {

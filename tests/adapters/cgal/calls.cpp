@@ -211,6 +211,41 @@ Positions two_of_all_pairs(const Question& question) {
     return report.sorted();
 }
 
+/// Two boxes among the 27 cubes of a grid.
+Positions grid(const Question& question) {
+    std::vector<Corners> cubes;
+    for (const double x : {0.0, 1.0, 2.0}) {
+        for (const double y : {0.0, 1.0, 2.0}) {
+            for (const double z : {0.0, 1.0, 2.0}) cubes.push_back({{x, y, z}, {x + 1, y + 1, z + 1}});
+        }
+    }
+    const std::vector<Corners> wanted = {{{1, 1, 1}, {2, 2, 2}}, {{0, 0, 0}, {1, 3, 0.5}}};
+    return two<double>({cubes, wanted, question.closed, question.cutoff});
+}
+
+/// The triangles of a mesh whose boxes intersect and that share no vertex. Vertex i is the lower corner of box i.
+Positions triangles(const Question& question) {
+    using Triangle = std::array<std::size_t, 3>;
+    std::vector<Triangle> mesh;
+    for (std::size_t i = 0; i + 2 < question.first.size(); ++i) mesh.push_back({i, i + 1, i + 2});
+    std::vector<boxes::Box_with_handle_d<double, 3, const Triangle*>> all;
+    for (const Triangle& triangle : mesh) {
+        boxes::Box_with_handle_d<double, 3, const Triangle*> box(&triangle);
+        box.init();
+        for (const std::size_t vertex : triangle) {
+            auto corner = numbers<double>(question.first[vertex].min);
+            box.extend(corner.data());
+        }
+        all.push_back(box);
+    }
+    Report report(true);
+    library::box_self_intersection_d(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+        const auto first = std::size_t(a.handle() - mesh.data()), second = std::size_t(b.handle() - mesh.data());
+        if (first + 2 < second || second + 2 < first) report.add(first, second);
+    });
+    return report.sorted();
+}
+
 /// Points that are nearer to each other than `eps` on each axis: boxes of half this size around the points, as handles.
 Positions near_points(const Question& question) {
     constexpr double eps = 1.5;
@@ -248,6 +283,8 @@ std::vector<Call> calls() {
             {"own traits", self_with_own_traits},
             {"setting complete", complete},
             {"near points", near_points},
+            {"triangles", triangles},
+            {"grid", grid},
             {"two sequences of double", two<double>},
             {"two sequences of float", two<float>},
             {"two sequences with common ids", two_with_common_ids},

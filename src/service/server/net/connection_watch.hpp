@@ -94,9 +94,9 @@ private:
     bool must_wait(const std::string& address, Clock::time_point now);
 
     const Terms terms_;
-    std::vector<Unknown> unknown_;  // oldest first
-    std::vector<Known> known_;      // closed ones are removed when open ones are counted
-    std::map<std::string, Paced> paced_;
+    std::vector<Unknown> unknown_;        // oldest first
+    std::vector<Known> known_;            // closed ones are removed when open ones are counted
+    std::map<std::string, Paced> paced_;  // by address; entries are removed after `remembered`
     std::uint64_t cut_ = 0;
 };
 

@@ -8,8 +8,8 @@
 // Filter    Groups and masks as in Bullet; changed values count from the next change of the proxy's box on, also for pairs in the cache.
 //           If the cache has a filter callback, it decides alone. Pairs that it has refused are offered to it again in each step. Pairs
 //           that it has accepted stay until the boxes part.
-// Cache     If others have changed the number of pairs in the cache, the next step adds the missing pairs. Pairs that others
-//           have added may stay until one of their proxies is destroyed.
+// Cache     If the program has changed the number of pairs in the cache, the next step adds the missing pairs. Pairs that the program has
+//           added may stay until one of their proxies is destroyed.
 // Order     Ended pairs leave and new pairs come in the order of the scene's indices. It depends on the calls alone, neither on addresses
 //           nor on threads. Without removals it is the order of creation.
 // Queries   rayTest() and aabbTest() use the current boxes, also between steps. They call the callback in an order that depends on the
@@ -49,7 +49,7 @@ public:
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
         Proxy& gone = *static_cast<Proxy*>(proxy);
         const int before = cache_->getNumOverlappingPairs();
-        // Others may have added pairs that are not among the partners. Only a search of the whole cache finds these.
+        // The program may have added pairs that are not among the partners. Only a search of the whole cache finds them.
         const bool are_known = before == expected_ && !cache_->hasDeferredRemoval();
         for (const std::uint32_t index : gone.partners) {
             Proxy& partner = *proxies_.at(index);
@@ -137,7 +137,7 @@ private:
     Proxies proxies_;
     std::unique_ptr<btOverlappingPairCache> own_cache_;
     btOverlappingPairCache* cache_;
-    int expected_ = 0;           // number of pairs in the cache, if nobody else changes it
+    int expected_ = 0;           // number of pairs in the cache, unless the program changes it
     std::vector<Pair> refused_;  // overlapping pairs that the filter callback has refused
     std::uint64_t rays_ = 0;
 };
@@ -172,7 +172,7 @@ inline void Broadphase::remove_ended(btDispatcher* dispatcher) {
     cache_->processAllOverlappingPairs(&parted, dispatcher);
 }
 
-/// Adds the pairs again that others have removed from the cache.
+/// Adds the pairs again that the program has removed from the cache.
 inline void Broadphase::restore_cache(Scene& scene) {
     refused_.clear();
     for (const std::span<const Pair> chunk : scene.pairs().chunks()) {
