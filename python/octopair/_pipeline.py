@@ -1,0 +1,360 @@
+"""The pipeline of filters, and the calls that are made of it."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, Literal, Optional, Sequence, Tuple, Union, overload
+
+import numpy as np
+
+from . import _arrays, _core
+from ._engine import Engine, Order, call_options
+from ._errors import InputError, InputTypeError, UsageError
+from ._progress import Progress, reporter
+from ._results import Collisions, PipelineSummary
+from ._shapes import Shapes, face_array
+
+ADJACENT = ("beyond_shared", "exclude", "include")
+"""Treatments of triangles that share corners: kept if they also meet elsewhere, dropped, kept."""
+
+
+class Pipeline:
+    """Runs filters on the pairs of an engine. Pairs go in, collisions come out.
+
+    The methods that add a filter return the pipeline. In all of them `against` describes the second set of a join. Arrays and shapes must
+    not change while the pipeline is used.
+
+    Parameters
+    ----------
+    threads : int
+        Threads that run filters; 0: one per core.
+
+    Examples
+    --------
+    >>> import numpy as np, octopair as op
+    >>> boxes = np.zeros((4, 6))
+    >>> pipeline = op.Pipeline().parents([0, 0, 1, 1]).keep(lambda batch: batch.a == 0)
+    >>> pipeline.run(boxes).pairs
+    array([[0, 2],
+           [0, 3]], dtype=uint32)
+    """
+
+    def __init__(self, threads: int = 0) -> None:
+        self._pipeline = _core.Pipeline(threads)
+        self._filters: list[str] = []
+        self._names: Tuple[Optional[Sequence[str]], Optional[Sequence[str]]] = (None, None)
+
+    def _added(self, name: str) -> "Pipeline":
+        self._filters.append(name)
+        return self
+
+    def keep(self, condition: Callable[[Collisions], Any], name: str = "") -> "Pipeline":
+        """Adds a filter of your own.
+
+        Parameters
+        ----------
+        condition : callable
+            Receives a batch of pairs with what earlier filters found, and returns an array of bool, one per pair: True keeps the pair. The
+            effect on a pair may depend only on that pair. Several threads call this, one at a time.
+        name : str
+            Name in the summary. Default: the name of the callable.
+        """
+        if not callable(condition):
+            raise InputTypeError(f"condition: a {type(condition).__name__} is not callable")
+        label = name or getattr(condition, "__name__", "keep")
+
+        def keep_batch(columns: Dict[str, np.ndarray]) -> np.ndarray:
+            batch = Collisions(**columns)
+            mask = np.asarray(condition(batch))
+            if mask.dtype != np.bool_ or mask.shape != (len(batch),):
+                raise InputTypeError(f"filter {label!r}: it returned an array of {mask.dtype} of the shape {mask.shape}; it must return "
+                                     f"bool of the shape ({len(batch)},)")
+            return np.ascontiguousarray(mask)
+
+        self._pipeline.add_callable(label, keep_batch)
+        return self._added(label)
+
+    def groups(self, groups: Any, mask: Any, against: Optional[Tuple[Any, Any]] = None) -> "Pipeline":
+        """Keeps pairs where b's mask has a bit of a's groups, and a's mask has a bit of b's groups. Arrays of uint32."""
+        first = (_column(groups, "groups"), _column(mask, "mask"))
+        second = None if against is None else (_column(against[0], "groups"), _column(against[1], "mask"))
+        self._pipeline.add_groups(first, second)
+        return self._added("groups")
+
+    def ignored_pairs(self, pairs: Any, join: bool = False) -> "Pipeline":
+        """Drops these pairs, integers of shape (m, 2). Without `join`, (a, b) also drops (b, a)."""
+        array = _arrays.array_of(pairs, "pairs", copy=True)
+        if array.size == 0:
+            array = np.empty((0, 2), dtype=np.uint32)
+        if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+            raise InputError(f"pairs: {array.dtype} of the shape {array.shape}; it must have integers of the shape (m, 2)")
+        if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+            raise InputError("pairs: an index is below 0 or above 4294967295")
+        self._pipeline.add_ignored_pairs(np.ascontiguousarray(array, dtype=np.uint32), join)
+        return self._added("ignored pairs")
+
+    def name_rules(self, names: Sequence[str], rules: Sequence[Tuple[str, str]],
+                   against: Optional[Sequence[str]] = None) -> "Pipeline":
+        """Drops pairs whose names match a rule: a pair of patterns, where ``*`` stands for any characters and ``?`` for one."""
+        self._pipeline.add_names(list(names), [(str(a), str(b)) for a, b in rules], None if against is None else list(against))
+        return self._added("name rules")
+
+    def parents(self, parents: Any, against: Any = None) -> "Pipeline":
+        """Keeps pairs of objects with different parents: any number per object, such as that of a body."""
+        self._pipeline.add_parents(_column(parents, "parents"), None if against is None else _column(against, "against"))
+        return self._added("same parent")
+
+    def bounding_spheres(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+        """Drops pairs whose bounding spheres are further apart than margin and paddings."""
+        return self._shapes("bounding spheres", (shapes, against), (margin, 0, 0.0, None))
+
+    def oriented_boxes(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+        """Drops pairs whose oriented boxes are further apart than margin and paddings."""
+        return self._shapes("oriented boxes", (shapes, against), (margin, 0, 0.0, None))
+
+    def exact_objects(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+        """Keeps objects that meet, or whose distance is at most margin and paddings. Computes class, distance and nearest points; for
+        moving objects, the time of impact."""
+        return self._shapes("exact object", (shapes, against), (margin, 0, 0.0, None))
+
+    def exact_features(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None, *, max_contacts: int = 16,
+                       tolerance: float = 0, duplicate_tolerance: Optional[float] = None) -> "Pipeline":
+        """Computes the class, the depth and the contacts of each pair. Requires :meth:`exact_objects` before it.
+
+        Parameters
+        ----------
+        max_contacts : int
+            Contacts that are stored per pair, the deepest first.
+        tolerance : float
+            Objects are touching if a translation of at most this length is proven to separate them.
+        duplicate_tolerance : float, optional
+            Objects of the same geometry are duplicates if no corner is further from its counterpart. Default: the tolerance.
+        """
+        return self._shapes("exact feature", (shapes, against), (margin, max_contacts, tolerance, duplicate_tolerance))
+
+    def _shapes(self, kind: str, sets: Tuple[Shapes, Optional[Shapes]], options: Tuple[Any, ...]) -> "Pipeline":
+        first, second = sets
+        for shapes in sets:
+            if shapes is not None and not isinstance(shapes, Shapes):
+                raise InputTypeError(f"shapes: a {type(shapes).__name__} is not a Shapes")
+        margin, contacts, tolerance, duplicate = options
+        if not 0 <= contacts <= 0xFFFFFFFF:
+            raise InputError(f"max_contacts: {contacts} is below 0 or above 4294967295")
+        self._pipeline.add_shapes(kind, first._shapes, None if second is None else second._shapes,
+                                  (float(margin), int(contacts), float(tolerance), duplicate))
+        self._names = (first.names, None if second is None else second.names)
+        return self._added(kind)
+
+    def min_depth(self, least: float) -> "Pipeline":
+        """Drops pairs that are certainly less deep. Requires :meth:`exact_features` or :meth:`triangles` before it."""
+        self._pipeline.add_depth(float(least))
+        return self._added("depth")
+
+    def triangles(self, triangles: Any, owners: Any = None, *, adjacent: str = "beyond_shared", margin: float = 0,
+                  features: bool = False, tolerance: float = 0, against: Optional[Tuple[Any, Any]] = None) -> "Pipeline":
+        """Keeps triangles that meet, or whose distance is at most the margin.
+
+        Parameters
+        ----------
+        triangles : array, shape (n, 3, 3), float32 or float64
+            Corners of each triangle.
+        owners : array, shape (n,), uint32, optional
+            Number of each triangle's mesh. Default: all are of one mesh.
+        adjacent : {"beyond_shared", "exclude", "include"}
+            Triangles of one mesh that share corners: kept if they also meet elsewhere, dropped, kept.
+        margin : float
+            Largest distance at which triangles that are not adjacent are kept.
+        features : bool
+            True: computes contact and depth, and distinguishes penetrating from touching.
+        tolerance : float
+            With `features`: triangles that a translation of at most this length separates only touch.
+        against : tuple, optional
+            Triangles and owners of the second set; the owners may be None.
+        """
+        if adjacent not in ADJACENT:
+            raise InputError(f"adjacent: {adjacent!r} is none of {', '.join(ADJACENT)}")
+        first = (_triangles(triangles), None if owners is None else _column(owners, "owners"))
+        second = None
+        if against is not None:
+            second = (_triangles(against[0]), None if against[1] is None else _column(against[1], "owners"))
+        self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), float(margin), bool(features), float(tolerance)))
+        return self._added("exact triangle")
+
+    def run(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
+            against_padding: Any = None, limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None,
+            sink: Optional[Callable[[Collisions], Any]] = None, progress: Progress = None, copy: bool = False) -> Collisions:
+        """Finds pairs, filters them, and returns the collisions.
+
+        Parameters are those of :func:`octopair.find_pairs`, and:
+
+        Parameters
+        ----------
+        engine : Engine, optional
+            Default: a temporary local engine.
+        sink : callable, optional
+            Receives the collisions of each batch, in order, on a thread of the library. The result then has none, and memory is bounded.
+        limit : int, optional
+            Maximum number of collisions.
+        """
+        data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
+        receive = None if sink is None else lambda columns: sink(Collisions(**columns))
+        with reporter(progress) as report:
+            columns, summary = self._pipeline.run(_core_engine(engine), data, call_options(margin, order, limit, verify),
+                                                  (report, receive))
+        return Collisions(**columns, summary=PipelineSummary._of(summary), names=_list(self._names[0]),
+                          against_names=_list(self._names[1]))
+
+    def count(self, boxes: Any, against: Any = None, margin: float = 0, *, padding: Any = None, against_padding: Any = None,
+              limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None, progress: Progress = None,
+              copy: bool = False) -> PipelineSummary:
+        """Like :meth:`run`, but only counts the collisions, and returns the summary."""
+        data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
+        with reporter(progress) as report:
+            return PipelineSummary._of(self._pipeline.count(_core_engine(engine), data,
+                                                            call_options(margin, limit=limit, verify=verify), report))
+
+    def __repr__(self) -> str:
+        return f"Pipeline({' > '.join(self._filters)})"
+
+
+def _list(names: Optional[Sequence[str]]) -> Optional[list[str]]:
+    return None if names is None else list(names)
+
+
+def _column(value: Any, name: str) -> np.ndarray:
+    """Returns numbers of objects as uint32."""
+    array = _arrays.array_of(value, name, copy=True)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
+        raise InputTypeError(f"{name}: {array.dtype} of the shape {array.shape}; it must have integers of the shape (n,)")
+    if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+        raise InputError(f"{name}: a number is below 0 or above 4294967295")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def _triangles(value: Any) -> np.ndarray:
+    return _arrays.numbers(value, "triangles", (None, 3, 3))
+
+
+def _core_engine(engine: Optional[Engine]) -> _core.Engine:
+    if engine is None:
+        return _core.Engine.local(0)
+    if not isinstance(engine, Engine):
+        raise InputTypeError(f"engine: a {type(engine).__name__} is not an octopair.Engine")
+    return engine._ready()
+
+
+def collide(shapes: Shapes, against: Optional[Shapes] = None, *, margin: float = 0, max_contacts: int = 16, tolerance: float = 0,
+            min_depth: Optional[float] = None, stage: Literal["objects", "features"] = "features",
+            keep: Optional[Callable[[Collisions], Any]] = None, order: Order = "ascending", limit: Optional[int] = None,
+            engine: Optional[Engine] = None, progress: Progress = None) -> Collisions:
+    """Finds the objects that collide, exactly, with class, depth, distance and contacts.
+
+    Parameters
+    ----------
+    shapes : Shapes
+        Objects. A trimesh mesh or scene is converted with :meth:`Shapes.from_trimesh`.
+    against : Shapes, optional
+        A second set. Then `a` is in `shapes` and `b` in `against`.
+    margin : float
+        Largest distance at which a pair counts, besides paddings.
+    max_contacts : int
+        Contacts that are stored per pair, the deepest first.
+    tolerance : float
+        Objects are touching if a translation of at most this length is proven to separate them.
+    min_depth : float, optional
+        Leaves out pairs that are certainly less deep.
+    stage : {"features", "objects"}
+        ``"objects"`` computes no depth and no contacts.
+    keep : callable, optional
+        A filter before the exact stages, as in :meth:`Pipeline.keep`.
+    order, limit, engine, progress
+        As in :meth:`Pipeline.run`.
+
+    Returns
+    -------
+    Collisions
+        A table of arrays.
+
+    Examples
+    --------
+    >>> import octopair as op
+    >>> cube = op.Geometry.box([1, 1, 1])
+    >>> shapes = op.Shapes([cube], op.make_poses([[0, 0, 0], [1.5, 0, 0], [4, 0, 0]]), [0, 0, 0])
+    >>> table = op.collide(shapes, margin=0.75)
+    >>> table.pairs
+    array([[0, 1],
+           [1, 2]], dtype=uint32)
+    >>> table["class"], table.depth, table.distance
+    (array(['penetrating', 'clearance'], dtype='<U11'), array([0.5, 0. ]), array([0. , 0.5]))
+    """
+    first = shapes if isinstance(shapes, Shapes) else Shapes.from_trimesh(shapes)
+    second = against if against is None or isinstance(against, Shapes) else Shapes.from_trimesh(against)
+    if stage not in ("objects", "features"):
+        raise InputError(f"stage: {stage!r} is neither 'objects' nor 'features'")
+    pipeline = Pipeline()
+    if keep is not None:
+        pipeline.keep(keep)
+    pipeline.oriented_boxes(first, margin, second).exact_objects(first, margin, second)
+    if stage == "features":
+        pipeline.exact_features(first, margin, second, max_contacts=max_contacts, tolerance=tolerance)
+    if min_depth is not None:
+        if stage == "objects":
+            raise UsageError("min_depth: the stage 'objects' computes no depth")
+        pipeline.min_depth(min_depth)
+    boxes = first.boxes(second)
+    sets = (boxes, None) if second is None else boxes
+    return pipeline.run(*sets, margin, order, padding=first.padding, against_padding=None if second is None else second.padding,
+                        limit=limit, engine=engine, progress=progress)
+
+
+@overload
+def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin: float = ..., features: Literal[False] = ...,
+                       tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
+                       progress: Progress = ...) -> np.ndarray: ...
+
+
+@overload
+def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin: float = ..., features: Literal[True],
+                       tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
+                       progress: Progress = ...) -> Collisions: ...
+
+
+def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_shared", margin: float = 0, features: bool = False,
+                       tolerance: float = 0, limit: Optional[int] = None, engine: Optional[Engine] = None,
+                       progress: Progress = None) -> Union[np.ndarray, Collisions]:
+    """Finds the triangles of a mesh that meet each other, with exact arithmetic.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3), float32 or float64
+        Corners.
+    faces : array, shape (m, 3), integers
+        Triangles.
+    adjacent, margin, tolerance
+        As in :meth:`Pipeline.triangles`.
+    features : bool
+        True: returns a table with contact, depth and class instead of pairs.
+    limit, engine, progress
+        As in :meth:`Pipeline.run`.
+
+    Returns
+    -------
+    numpy.ndarray or Collisions
+        Pairs of indices of triangles, shape (k, 2), uint32.
+
+    Examples
+    --------
+    >>> import octopair as op
+    >>> vertices = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0.5, 0.5, -1], [0.5, 0.5, 1], [3, 3, 1]]
+    >>> op.self_intersections(vertices, [[0, 1, 2], [3, 4, 5]])
+    array([[0, 1]], dtype=uint32)
+    """
+    corners = _arrays.array_of(vertices, "vertices", copy=True)
+    corners = _arrays.numbers(corners, "vertices", (None, 3), copy=corners.dtype.kind in "iu" or not corners.flags.c_contiguous)
+    numbers = face_array(faces)
+    if numbers.size and numbers.max() >= len(corners):
+        wrong = int(np.flatnonzero((numbers >= len(corners)).any(axis=1))[0])
+        raise InputError(f"faces: triangle {wrong} has the vertex {numbers[wrong].max()} of {len(corners)}")
+    triangles = np.ascontiguousarray(corners[numbers])
+    pipeline = Pipeline().triangles(triangles, adjacent=adjacent, margin=margin, features=features, tolerance=tolerance)
+    found = pipeline.run(_core.triangle_boxes(triangles), margin=margin, limit=limit, engine=engine, progress=progress)
+    return found if features else found.pairs

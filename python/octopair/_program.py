@@ -1,0 +1,196 @@
+"""Files, as the program octopair handles them: detect, generate, replay. The program runs as a child process."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from typing import Any, Dict, List, Optional, Sequence, Union
+
+import numpy as np
+
+from ._errors import EngineError, Error, FileError, InputError, ResourceLimitError, UsageError
+from ._results import html_table
+
+PathLike = Union[str, "os.PathLike[str]"]
+_OF_STATUS = {2: UsageError, 3: InputError, 4: FileError, 5: ResourceLimitError, 6: EngineError}
+
+
+def program_path() -> str:
+    """Returns the path of the program: that of the environment variable OCTOPAIR_PROGRAM, of this package, or of the PATH.
+
+    Raises
+    ------
+    FileError
+        If there is none.
+    """
+    own = pathlib.Path(__file__).parent / "bin" / "octopair"
+    found = os.environ.get("OCTOPAIR_PROGRAM") or (str(own) if own.exists() else shutil.which("octopair"))
+    if not found:
+        raise FileError("the program octopair is neither in this package nor on the PATH; install it, or set OCTOPAIR_PROGRAM")
+    return found
+
+
+def main() -> None:
+    """Runs the program with the arguments of this process: the command ``octopair``."""
+    try:
+        program = program_path()
+    except FileError as error:
+        sys.exit(f"octopair: {error}")
+    os.execv(program, ["octopair", *sys.argv[1:]])
+
+
+def _run(arguments: Sequence[str], allowed: Sequence[int] = (0,)) -> int:
+    """Runs the program. Raises the error that its exit status stands for, with its message."""
+    child = subprocess.Popen([program_path(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                             stderr=subprocess.PIPE)
+    try:
+        messages = child.communicate()[1].decode(errors="replace")
+    except BaseException:
+        child.send_signal(signal.SIGINT)
+        child.wait()
+        raise
+    if child.returncode in allowed:
+        return child.returncode
+    lines = [line for line in messages.strip().splitlines() if line]
+    text = lines[-1] if lines else f"octopair {arguments[0]} ended with status {child.returncode}"
+    prefix = "octopair: "
+    raise _OF_STATUS.get(child.returncode, EngineError)(text[len(prefix):] if text.startswith(prefix) else text)
+
+
+def _option(name: str, value: Any) -> List[str]:
+    """Returns the arguments of an option: none for None and False, one for True."""
+    flag = "--" + name.replace("_", "-")
+    if value is None or value is False:
+        return []
+    return [flag] if value is True else [flag, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Detection:
+    """Result of :func:`detect`.
+
+    Attributes
+    ----------
+    pairs : numpy.ndarray
+        Shape (m, 2), uint32, or uint64 where an index needs it.
+    collisions : list of dict or None
+        Rows of the exact stages as in a ``.jsonl`` result: names, class, depth, contacts. None for the stage ``"pairs"``.
+    stats : dict
+        What ``--stats`` writes: counts, times, warnings.
+    """
+
+    pairs: np.ndarray
+    collisions: Optional[List[Dict[str, Any]]]
+    stats: Dict[str, Any]
+
+    @property
+    def truncated(self) -> bool:
+        """True if the limit was reached and more exist."""
+        return bool(self.stats.get("truncated", False))
+
+    def __repr__(self) -> str:
+        kind = "pairs" if self.collisions is None else "collisions"
+        return f"Detection({len(self.pairs):,} {kind}{', truncated' if self.truncated else ''})"
+
+    def _repr_html_(self) -> str:
+        return html_table("detect", [("objects", f"{self.stats.get('objects', 0):,}"), ("found", f"{len(self.pairs):,}"),
+                                     ("time", f"{self.stats.get('seconds', {}).get('total', 0):.3f} s")])
+
+
+def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optional[str] = None, **options: Any) -> Detection:
+    """Finds the colliding pairs of files, as ``octopair detect`` does it: boxes, mesh scenes, JSON scenes.
+
+    Parameters
+    ----------
+    *inputs : path
+        Files; several are one set.
+    against : path, optional
+        File of a second set.
+    stage : {"pairs", "objects", "features"}, optional
+        How far down the pipeline. Default: pairs for boxes, objects for meshes.
+    **options
+        Options of the command with underscores: ``margin=0.1``, ``objects="triangle"``, ``same_parent=True``, ``exclude="rules.json"``,
+        ``report="report.html"``. See ``man octopair``. A moving scene is not read here: pass its frames to a :class:`Scene`.
+
+    Raises
+    ------
+    Error
+        With the message of the program.
+    """
+    if not inputs:
+        raise UsageError("inputs: there must be at least one file")
+    for name in ("output", "events", "count_only", "stats", "quiet", "fail_on_collision"):
+        if name in options:
+            raise UsageError(f"{name}: detect() returns its result; run the program for this option")
+    with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
+        pairs, stats = os.path.join(folder, "found.npy"), os.path.join(folder, "stats.json")
+        rows = os.path.join(folder, "found.jsonl")
+        arguments = ["detect", *map(os.fspath, inputs), *_option("against", against), *_option("stage", stage)]
+        for name, value in options.items():
+            arguments += _option(name, value)
+        exact = stage in ("objects", "features") or (stage is None and _has_shapes(inputs) and options.get("objects") is None)
+        _run([*arguments, "--quiet", "--output", rows if exact else pairs, "--stats", stats])
+        with open(stats, encoding="utf-8") as file:
+            counts = json.load(file)
+        if not exact:
+            return Detection(np.load(pairs), None, counts)
+        with open(rows, encoding="utf-8") as file:
+            found = [json.loads(line) for line in file]
+        numbers = np.array([(row["a"], row["b"]) for row in found], dtype=np.uint32).reshape(-1, 2)
+        return Detection(numbers, found, counts)
+
+
+def _has_shapes(inputs: Sequence[PathLike]) -> bool:
+    return not any(os.fspath(name).lower().endswith((".npy", ".csv")) for name in inputs)
+
+
+def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = None) -> np.ndarray:
+    """Returns the boxes of a sample scene, as ``octopair generate`` makes it.
+
+    Parameters
+    ----------
+    kind : str
+        ``"uniform"``, ``"clustered"``, ``"brownian"`` and others: ``octopair generate --help``.
+    objects, seed : int
+        Number of objects, and seed of the random numbers.
+    frames : int, optional
+        Number of frames of a moving scene.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (objects, 6), or (frames, objects, 6) with `frames`; float32.
+    """
+    with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
+        path = os.path.join(folder, "boxes.npy")
+        _run(["generate", kind, "--objects", str(objects), "--seed", str(seed), *_option("frames", frames), "--quiet", "--output", path])
+        return np.load(path)
+
+
+def replay(recording: PathLike, *, threads: int = 0, check: bool = True) -> None:
+    """Runs the recorded calls of a scene again, as ``octopair replay`` does it.
+
+    Parameters
+    ----------
+    recording : path
+        File of ``Scene(recording=...)``.
+    threads : int
+        0: one per core.
+    check : bool
+        True: compares each step with the recording.
+
+    Raises
+    ------
+    EngineError
+        With `check`, if a step has another result than recorded.
+    InputError
+        If the file is not a valid recording.
+    """
+    _run(["replay", os.fspath(recording), *_option("threads", threads), *_option("check", check), "--quiet"])

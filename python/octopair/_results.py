@@ -1,0 +1,392 @@
+"""Results: plain values, and tables of arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+from typing import Any, Dict, Iterator, List, Optional, Tuple
+
+import numpy as np
+
+COLLISION_CLASSES = ("unknown", "clearance", "collision", "touching", "penetrating", "contained", "duplicate")
+"""Names of the classes of collisions; a code in ``Collisions.class_codes`` is a position in this tuple."""
+DEPTH_KINDS = ("unknown", "least", "at_least")
+"""Names of the kinds of depths; a code in ``Collisions.depth_kind`` is a position in this tuple."""
+
+
+def html_table(title: str, rows: List[Tuple[str, str]]) -> str:
+    """Returns a table of names and values for notebooks."""
+    cells = "".join(f"<tr><th style='text-align:left'>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
+                    for name, value in rows)
+    return f"<table><caption>{html.escape(title)}</caption>{cells}</table>"
+
+
+@dataclasses.dataclass(frozen=True)
+class StepSeconds:
+    """Wall-clock seconds of each step of a call.
+
+    Attributes
+    ----------
+    encode, count, scatter, scan, merge : float
+        See ``octopair/summary.hpp``. `merge` is 0 except in the paper's arrangement.
+    """
+
+    encode: float
+    count: float
+    scatter: float
+    scan: float
+    merge: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Summary:
+    """Counts and times of a call.
+
+    Attributes
+    ----------
+    pairs : int
+        Number of pairs.
+    truncated : bool
+        True if the limit was reached and at least one more pair exists.
+    seconds : float
+        Wall-clock time of the call.
+    entries : int
+        Number of entries in the linear octree; at most 8 per object.
+    steps : StepSeconds
+        Seconds of each step.
+    verified : bool
+        True if the result was checked by a second algorithm (``verify=True``), and no difference was found.
+    verification_seconds : float
+        Wall-clock time of this check.
+    not_checked : str
+        Properties that were not checked; empty if all were.
+    """
+
+    pairs: int
+    truncated: bool
+    seconds: float
+    entries: int
+    steps: StepSeconds
+    verified: bool = False
+    verification_seconds: float = 0.0
+    not_checked: str = ""
+
+    @classmethod
+    def _of(cls, row: Tuple[Any, ...]) -> "Summary":
+        return cls(*row[:4], StepSeconds(*row[4]), *row[5:])
+
+    def _repr_html_(self) -> str:
+        return html_table("octopair", [
+            ("pairs", f"{self.pairs:,}" + (" (limit reached, more exist)" if self.truncated else "")),
+            ("time", f"{self.seconds * 1e3:.3f} ms"), ("entries", f"{self.entries:,}")])
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class JobResult:
+    """Result of a job.
+
+    Attributes
+    ----------
+    pairs : numpy.ndarray
+        Shape (m, 2), uint32.
+    summary : Summary
+        Counts and times.
+    """
+
+    pairs: np.ndarray
+    summary: Summary
+
+    @property
+    def truncated(self) -> bool:
+        """True if the limit was reached and at least one more pair exists."""
+        return self.summary.truncated
+
+    def __repr__(self) -> str:
+        return f"JobResult({len(self.pairs):,} pairs{', truncated' if self.truncated else ''})"
+
+    def _repr_html_(self) -> str:
+        return self.summary._repr_html_()
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class StepResult:
+    """Result of a step of a scene.
+
+    Attributes
+    ----------
+    began, ended : numpy.ndarray
+        Pairs of indices that began and ended in this step, ascending; shape (m, 2), uint32. `ended` includes the pairs of removed
+        objects. The arrays own their memory.
+    persisting : int
+        Number of pairs that existed before the step and still exist.
+    full : bool
+        True if all objects were searched, not only the changed ones.
+    seconds : float
+        Wall-clock time.
+    """
+
+    began: np.ndarray
+    ended: np.ndarray
+    persisting: int
+    full: bool
+    seconds: float
+
+    @property
+    def pairs(self) -> int:
+        """Number of all pairs after the step."""
+        return self.persisting + len(self.began)
+
+    def __repr__(self) -> str:
+        return f"StepResult({len(self.began):,} began, {len(self.ended):,} ended, {self.persisting:,} persisting)"
+
+    def _repr_html_(self) -> str:
+        return html_table("step", [("began", f"{len(self.began):,}"), ("ended", f"{len(self.ended):,}"),
+                                   ("persisting", f"{self.persisting:,}"), ("time", f"{self.seconds * 1e3:.3f} ms")])
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Answers:
+    """Answers to many queries, flat.
+
+    The answers to query `i` are at positions ``offsets[i]`` to ``offsets[i + 1]`` of the other arrays.
+
+    Attributes
+    ----------
+    indices : numpy.ndarray
+        Indices of objects, uint32.
+    offsets : numpy.ndarray
+        Shape (queries + 1,), int64.
+    """
+
+    indices: np.ndarray
+    offsets: np.ndarray
+
+    def __len__(self) -> int:
+        """Returns the number of queries."""
+        return len(self.offsets) - 1
+
+    def __getitem__(self, query: int) -> np.ndarray:
+        """Returns the indices that answer one query."""
+        size = len(self)
+        if not -size <= query < size:
+            raise IndexError(f"query {query} of {size}")
+        query %= size
+        return self.indices[self.offsets[query]:self.offsets[query + 1]]
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        return (self[query] for query in range(len(self)))
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Number of answers to each query."""
+        return np.diff(self.offsets)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self.indices):,} answers to {len(self):,} queries)"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Hits(Answers):
+    """Boxes that rays hit.
+
+    Attributes
+    ----------
+    along : numpy.ndarray
+        Position on the ray where it enters the box, in lengths of its direction; 0 if it begins inside. float64.
+    """
+
+    along: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Neighbors(Answers):
+    """Nearest objects.
+
+    Attributes
+    ----------
+    distances : numpy.ndarray
+        Euclidean distances between boxes, float64.
+    """
+
+    distances: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class FilterCounts:
+    """Counts of a filter.
+
+    Attributes
+    ----------
+    name : str
+        Name of the filter.
+    pairs_in, pairs_out : int
+        Number of pairs before and after the filter.
+    seconds : float
+        Sum over all threads.
+    undecided : int
+        Dropped pairs that may count: an object lies in the bounds of a mesh that is not closed and so has no inside.
+    """
+
+    name: str
+    pairs_in: int
+    pairs_out: int
+    seconds: float
+    undecided: int
+
+
+@dataclasses.dataclass(frozen=True)
+class PipelineSummary:
+    """Counts and times of a pipeline.
+
+    Attributes
+    ----------
+    collisions : int
+        Number of pairs that passed all filters.
+    of_class : dict
+        Collisions by class, for those that a filter has classified.
+    truncated : bool
+        True if the limit was reached and at least one more collision exists.
+    seconds : float
+        Wall-clock time.
+    search : Summary
+        Summary of the all-pairs stage.
+    filters : list of FilterCounts
+        One element per filter.
+    """
+
+    collisions: int
+    of_class: Dict[str, int]
+    truncated: bool
+    seconds: float
+    search: Summary
+    filters: List[FilterCounts]
+
+    @classmethod
+    def _of(cls, row: Tuple[Any, ...]) -> "PipelineSummary":
+        classes = {name: count for name, count in zip(COLLISION_CLASSES, row[1]) if count}
+        return cls(row[0], classes, row[2], row[3], Summary._of(row[4]), [FilterCounts(*counts) for counts in row[5]])
+
+    def _repr_html_(self) -> str:
+        rows = [("collisions", f"{self.collisions:,}"), ("time", f"{self.seconds * 1e3:.3f} ms"),
+                ("pairs of boxes", f"{self.search.pairs:,}")]
+        rows += [(name, f"{count:,}") for name, count in self.of_class.items()]
+        rows += [(f"after {counts.name}", f"{counts.pairs_out:,}") for counts in self.filters]
+        return html_table("collisions", rows)
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Collisions:
+    """Pairs with what exact filters found, in columns of equal length.
+
+    Lengths are in the caller's unit. A value that no filter computed is 0. ``table["class"]`` is another form of ``table.class_``, and
+    so on for all columns.
+
+    Attributes
+    ----------
+    pairs : numpy.ndarray
+        Indices of the objects, shape (m, 2), uint32.
+    class_codes : numpy.ndarray
+        Positions in ``COLLISION_CLASSES``, uint8.
+    distance : numpy.ndarray
+        Distance of objects that do not meet, float64.
+    nearest : numpy.ndarray
+        Nearest points of objects that do not meet, shape (m, 2, 3), float64.
+    depth : numpy.ndarray
+        Penetration depth of objects that meet, float64.
+    depth_kind : numpy.ndarray
+        Positions in ``DEPTH_KINDS``, uint8: whether the depth is the least one, or a lower bound.
+    depth_at_most : numpy.ndarray
+        Length of a translation that was found to separate the objects, float64.
+    open : numpy.ndarray
+        Whether the first and the second object are meshes with a part that is not closed, shape (m, 2), bool.
+    time : numpy.ndarray
+        Time of impact of moving objects, 0 to 1, float64.
+    more_contacts : numpy.ndarray
+        True where contacts were left out because of a limit.
+    note : numpy.ndarray
+        Free for filters of C++.
+    contact_offsets : numpy.ndarray
+        The contacts of row `i` are at ``contact_offsets[i]`` to ``contact_offsets[i + 1]``; shape (m + 1,), int64.
+    contact_points, contact_normals : numpy.ndarray
+        Shape (contacts, 3), float64. A normal is a unit vector from a to b.
+    contact_depths : numpy.ndarray
+        If b moves by this along the normal, the contact ends; float64.
+    contact_features : numpy.ndarray
+        Indices of the triangles of a and b, shape (contacts, 2), uint32; 0xFFFFFFFF: the object is not a mesh.
+    summary : PipelineSummary or None
+        Counts and times of the whole run; None for a batch.
+    names : list of str or None
+        Names of the objects of the first set.
+    against_names : list of str or None
+        Names of the objects of the second set.
+    """
+
+    pairs: np.ndarray
+    class_codes: np.ndarray
+    distance: np.ndarray
+    nearest: np.ndarray
+    depth: np.ndarray
+    depth_kind: np.ndarray
+    depth_at_most: np.ndarray
+    open: np.ndarray
+    time: np.ndarray
+    more_contacts: np.ndarray
+    note: np.ndarray
+    contact_offsets: np.ndarray
+    contact_points: np.ndarray
+    contact_normals: np.ndarray
+    contact_depths: np.ndarray
+    contact_features: np.ndarray
+    summary: Optional[PipelineSummary] = None
+    names: Optional[List[str]] = None
+    against_names: Optional[List[str]] = None
+
+    @property
+    def a(self) -> np.ndarray:
+        """Index of the first object of each pair."""
+        return self.pairs[:, 0]
+
+    @property
+    def b(self) -> np.ndarray:
+        """Index of the second object of each pair."""
+        return self.pairs[:, 1]
+
+    @property
+    def class_(self) -> np.ndarray:
+        """Name of each row's class."""
+        return np.array(COLLISION_CLASSES)[self.class_codes]
+
+    def contacts(self, row: int) -> slice:
+        """Returns the positions of the contacts of a row in the ``contact_`` arrays."""
+        return slice(int(self.contact_offsets[row]), int(self.contact_offsets[row + 1]))
+
+    def columns(self) -> Dict[str, np.ndarray]:
+        """Returns the columns with one number or text per row, for example for ``pandas.DataFrame``."""
+        found = {"a": self.a, "b": self.b}
+        if self.names is not None:
+            second = self.names if self.against_names is None else self.against_names
+            found["name_a"] = np.array(self.names, dtype=object)[self.a]
+            found["name_b"] = np.array(second, dtype=object)[self.b]
+        found.update({"class": self.class_, "distance": self.distance, "depth": self.depth,
+                      "depth_kind": np.array(DEPTH_KINDS)[self.depth_kind], "depth_at_most": self.depth_at_most,
+                      "time": self.time, "contacts": np.diff(self.contact_offsets)})
+        return found
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        value = getattr(self, "class_" if name == "class" else name, None)
+        if not isinstance(value, np.ndarray):
+            raise KeyError(name)
+        return value
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    def __repr__(self) -> str:
+        counts = np.bincount(self.class_codes, minlength=len(COLLISION_CLASSES))
+        classes = ", ".join(f"{count:,} {name}" for name, count in zip(COLLISION_CLASSES, counts) if count)
+        return f"Collisions({len(self):,}{': ' + classes if classes else ''}; {len(self.contact_depths):,} contacts)"
+
+    def _repr_html_(self) -> str:
+        if self.summary is not None:
+            return self.summary._repr_html_()
+        return html_table("collisions", [("rows", f"{len(self):,}"), ("contacts", f"{len(self.contact_depths):,}")])

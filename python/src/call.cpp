@@ -1,0 +1,197 @@
+#include "call.hpp"
+
+#include <pthread.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <vector>
+
+#include "octopair/error.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto signal_interval = 10ms;
+
+std::atomic<bool> used = false;
+std::atomic<bool> forked = false;
+
+/// A thread that runs one call at a time for the main thread.
+class Helper {
+public:
+    Helper() : thread_([this] { serve(); }) { thread_.detach(); }
+
+    void start(std::function<void()> work) {
+        const std::lock_guard lock(mutex_);
+        work_ = std::move(work);
+        ended_ = false;
+        changed_.notify_all();
+    }
+    /// Returns true if the work has ended.
+    bool wait(std::chrono::milliseconds time) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, time, [&] { return ended_; });
+    }
+    void wait() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return ended_; });
+    }
+
+private:
+    void serve() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            changed_.wait(lock, [&] { return work_ != nullptr; });
+            const std::function<void()> work = std::exchange(work_, nullptr);
+            lock.unlock();
+            work();
+            lock.lock();
+            ended_ = true;
+            changed_.notify_all();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::function<void()> work_;
+    bool ended_ = true;
+    std::thread thread_;  // last: it uses the other members
+};
+
+/// Helpers that wait for work. A call within a signal handler or a progress callable needs a second helper. Never destroyed, because
+/// its threads run until the process ends.
+class Helpers {
+public:
+    Helper* take() {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) return new Helper();
+        Helper* helper = idle_.back();
+        idle_.pop_back();
+        return helper;
+    }
+    void give_back(Helper* helper) {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(helper);
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<Helper*> idle_;
+};
+
+Helpers& helpers() {
+    static auto* const all = new Helpers();
+    return *all;
+}
+
+bool is_main_thread() {
+    static const unsigned long main =
+        py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+    return PyThread_get_thread_ident() == main;
+}
+
+/// Passes the progress to Python. Throws: exceptions of the callable.
+class Reporter {
+public:
+    Reporter(const py::object& callable, const ProgressValue& value) : callable_(callable), value_(value) {}
+
+    void report() {
+        if (callable_.is_none() || value_.get() <= last_) return;
+        last_ = value_.get();
+        callable_(last_);
+    }
+
+private:
+    const py::object& callable_;
+    const ProgressValue& value_;
+    double last_ = -1;
+};
+
+/// Runs `work` on a helper thread, and signal handlers and `reporter` on this one.
+void call_on_helper(const std::function<void(std::stop_token)>& work, Reporter& reporter) {
+    std::exception_ptr failure;
+    std::stop_source stop;
+    Helper* const helper = helpers().take();
+    helper->start([&] {
+        try {
+            work(stop.get_token());
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    });
+    try {
+        for (;;) {
+            bool ended = false;
+            {
+                const py::gil_scoped_release released;
+                ended = helper->wait(signal_interval);
+            }
+            if (ended) break;
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            reporter.report();
+        }
+    } catch (...) {
+        stop.request_stop();
+        {
+            const py::gil_scoped_release released;
+            helper->wait();
+        }
+        helpers().give_back(helper);
+        throw;
+    }
+    helpers().give_back(helper);
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+bool is_forked() { return forked.load(std::memory_order_relaxed); }
+
+void check_not_forked() {
+    if (is_forked()) {
+        throw Error(
+            ErrorCode::usage,
+            "this process was forked after octopair was used; threads do not survive a fork. Start processes with "
+            "multiprocessing.get_context('spawn'), or use octopair only after the fork");
+    }
+    if (!used.exchange(true)) pthread_atfork(nullptr, nullptr, [] { forked = true; });
+}
+
+void call(const CallSize& size, const std::function<void(std::stop_token, ProgressValue&)>& work) {
+    check_not_forked();
+    ProgressValue value;
+    Reporter reporter(size.progress, value);
+    const bool small = size.objects <= small_call;
+    if (size.progress.is_none() && (small || !is_main_thread())) {
+        const py::gil_scoped_release released;
+        work({}, value);
+        return;
+    }
+    call_on_helper([&](const std::stop_token& stop) { work(stop, value); }, reporter);
+    value.set(1);
+    reporter.report();
+}
+
+Turn::Holder::Holder(Turn& turn) : turn_(turn) {
+    if (turn.owner_ == std::this_thread::get_id()) {
+        throw Error(
+            ErrorCode::usage,
+            "a call of this object is running on this thread; a signal handler or callback may not make another");
+    }
+    if (!turn.mutex_.try_lock()) {
+        const py::gil_scoped_release released;
+        turn.mutex_.lock();
+    }
+    turn.owner_ = std::this_thread::get_id();
+}
+
+Turn::Holder::~Holder() {
+    turn_.owner_ = std::thread::id();
+    turn_.mutex_.unlock();
+}
+
+}  // namespace octopair::python

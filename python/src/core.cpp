@@ -1,0 +1,51 @@
+// octopair._core: everything but servers and MPI, which are modules of their own. The package octopair wraps it.
+#include "bindings.hpp"
+#include "errors.hpp"
+#include "octopair/octal_code.hpp"
+#include "octopair/version.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+void bind_octal_code(py::module_& module) {
+    py::class_<OctalCode>(module, "OctalCode")
+        .def(py::init([](const py::object& form) {
+                 if (py::isinstance<py::str>(form)) return OctalCode::from_text(form.cast<std::string>());
+                 if (py::isinstance<py::int_>(form)) return OctalCode::from_integer(form.cast<std::uint64_t>());
+                 return OctalCode::from_digits(form.cast<std::vector<std::uint8_t>>());
+             }),
+             py::arg("form") = py::tuple())
+        .def_property_readonly("level", &OctalCode::level)
+        .def_property_readonly("key", &OctalCode::key)
+        .def_property_readonly("parent", &OctalCode::parent)
+        .def_property_readonly("digits",
+                               [](OctalCode code) {
+                                   py::tuple digits(code.level());
+                                   for (unsigned i = 0; i < code.level(); ++i) digits[i] = code.digit(i);
+                                   return digits;
+                               })
+        .def("contains", &OctalCode::contains, py::arg("other"))
+        .def("integer", &OctalCode::integer, py::arg("depth") = 0)
+        .def("__str__", &OctalCode::text)
+        .def("__repr__", [](OctalCode code) { return "OctalCode('" + code.text() + "')"; })
+        .def("__eq__", [](OctalCode a, OctalCode b) { return a == b; })
+        .def("__lt__", [](OctalCode a, OctalCode b) { return a < b; })
+        .def("__hash__", [](OctalCode code) { return code.key() ^ code.level(); });
+}
+
+}  // namespace
+
+}  // namespace octopair::python
+
+PYBIND11_MODULE(_core, module) {
+    using namespace octopair::python;
+    register_errors();
+    module.attr("__version__") = OCTOPAIR_VERSION;
+    bind_engines(module);
+    bind_jobs(module);
+    bind_scenes(module);
+    bind_shapes(module);
+    bind_pipeline(module);
+    bind_octal_code(module);
+}

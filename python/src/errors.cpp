@@ -1,0 +1,34 @@
+#include "errors.hpp"
+
+#include <exception>
+#include <new>
+
+#include "octopair/error.hpp"
+
+namespace octopair::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// Sets the current exception of Python. `octopair._errors.make` chooses the class by the code.
+void raise(ErrorCode code, const char* message) {
+    const py::object error = py::module_::import("octopair._errors").attr("make")(int(code), message);
+    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+}
+
+}  // namespace
+
+void register_errors() {
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const Error& error) {
+            raise(error.code(), error.what());
+        } catch (const std::bad_alloc&) {
+            raise(ErrorCode::resource_limit, "out of memory");
+        }
+    });
+}
+
+}  // namespace octopair::python

@@ -1,0 +1,237 @@
+// Job: a search that runs while Python does other work. Stream: the pairs of a search in chunks, as an iterator.
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "call.hpp"
+#include "engines.hpp"
+#include "octopair/error.hpp"
+#include "octopair/job.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+JobInput borrowed_input(const ArrayInput& input) {
+    const Input& objects = input.input();
+    if (objects.second) return JobJoin{borrowed(objects.first), borrowed(*objects.second)};
+    return JobObjects(borrowed(objects.first));
+}
+
+/// Waits until `ended(time)` is true, and runs signal handlers meanwhile. Waits without end if `seconds` is negative.
+/// Returns the last result of `ended`. Throws: exceptions of signal handlers.
+bool wait_for_end(double seconds, const std::function<bool(std::chrono::nanoseconds)>& ended) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::nanoseconds interval = std::chrono::milliseconds(10);
+    const bool endless = seconds < 0 || seconds > 1e9;
+    const auto deadline = Clock::now() + std::chrono::nanoseconds(endless ? 0 : std::int64_t(seconds * 1e9));
+    for (;;) {
+        auto time = interval;
+        if (!endless) time = std::min(time, std::chrono::nanoseconds(deadline - Clock::now()));
+        bool done = false;
+        {
+            const py::gil_scoped_release released;
+            done = ended(std::max(time, std::chrono::nanoseconds(0)));
+        }
+        if (done || (!endless && time <= std::chrono::nanoseconds(0))) return done;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+}
+
+/// A job, the engine that runs it, and the arrays that it reads.
+class PythonJob {
+public:
+    PythonJob(const std::shared_ptr<PythonEngine>& engine, const py::object& input, const Options& options)
+        : engine_(engine), input_(input) {
+        check_not_forked();
+        JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
+        const py::gil_scoped_release released;
+        job_.reset(new Job(engine->engine().submit(std::move(borrowed), options)));
+    }
+    PythonJob(const PythonJob&) = delete;
+    PythonJob& operator=(const PythonJob&) = delete;
+    /// The job ends before the arrays are released.
+    ~PythonJob() { job_.reset(); }
+
+    const char* state() const {
+        switch (job_->state()) {
+            case JobState::queued:
+                return "queued";
+            case JobState::running:
+                return "running";
+            case JobState::done:
+                return "done";
+            case JobState::failed:
+                return "failed";
+            case JobState::cancelled:
+                break;
+        }
+        return "cancelled";
+    }
+    double progress() const { return job_->progress(); }
+    void cancel() { job_->cancel(); }
+    bool wait(double seconds) {
+        check_not_forked();
+        return wait_for_end(seconds, [&](std::chrono::nanoseconds time) { return job_->wait_for(time); });
+    }
+    /// Returns (pairs, summary) once.
+    py::tuple take_result() {
+        wait(-1);
+        const Summary summary = job_->summary();
+        return py::make_tuple(pairs_array(job_->take_pairs()), summary_tuple(summary));
+    }
+
+private:
+    std::shared_ptr<PythonEngine> engine_;
+    py::object input_;
+    std::unique_ptr<Job, ReleasedDelete> job_;
+};
+
+/// A bounded queue between the engine's thread, which finds pairs, and the Python thread, which takes chunks.
+class ChunkQueue {
+public:
+    explicit ChunkQueue(std::size_t chunk_pairs) : chunk_pairs_(chunk_pairs) {}
+
+    /// Appends pairs. Waits while two chunks are full.
+    void put(std::span<const Pair> pairs) {
+        std::unique_lock lock(mutex_);
+        while (!pairs.empty()) {
+            changed_.wait(lock, [&] { return closed_ || full_.size() < 2; });
+            if (closed_) throw Error(ErrorCode::cancelled, "the stream was closed");
+            const std::size_t taken = std::min(pairs.size(), chunk_pairs_ - open_.size());
+            open_.insert(open_.end(), pairs.begin(), pairs.begin() + std::ptrdiff_t(taken));
+            pairs = pairs.subspan(taken);
+            if (open_.size() == chunk_pairs_) finish_chunk();
+        }
+    }
+    /// Says that no put() follows.
+    void finish() {
+        const std::lock_guard lock(mutex_);
+        finished_ = true;
+        changed_.notify_all();
+    }
+    /// Waits at most for `time` until a chunk is full or the last pairs are there. Returns nothing if neither happens, and an empty
+    /// chunk after the last pairs.
+    std::optional<std::vector<Pair>> take(std::chrono::nanoseconds time) {
+        std::unique_lock lock(mutex_);
+        if (!changed_.wait_for(lock, time, [&] { return finished_ || !full_.empty(); })) return {};
+        if (full_.empty()) return std::exchange(open_, {});
+        std::vector<Pair> chunk = std::move(full_.front());
+        full_.pop_front();
+        changed_.notify_all();
+        return chunk;
+    }
+    void close() {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+        changed_.notify_all();
+    }
+
+private:
+    void finish_chunk() {
+        full_.push_back(std::move(open_));
+        open_ = {};
+        changed_.notify_all();
+    }
+
+    std::size_t chunk_pairs_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::vector<Pair>> full_;
+    std::vector<Pair> open_;
+    bool closed_ = false, finished_ = false;
+};
+
+/// Finishes a queue when it is destroyed. A job destroys its sink when it ends.
+struct QueueEnd {
+    explicit QueueEnd(ChunkQueue& ended) : queue(ended) {}
+    QueueEnd(const QueueEnd&) = delete;
+    QueueEnd& operator=(const QueueEnd&) = delete;
+    ~QueueEnd() { queue.finish(); }
+
+    ChunkQueue& queue;
+};
+
+/// Half of the memory for pairs is the engine's; a chunk has an eighth of it, and at most 8 MiB. Two chunks wait, one is filled, and
+/// one is the caller's.
+class PythonStream {
+public:
+    PythonStream(const std::shared_ptr<PythonEngine>& engine, const py::object& input, Options options)
+        : engine_(engine), input_(input), queue_(chunk_pairs(options)) {
+        check_not_forked();
+        JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
+        options.buffer_bytes /= 2;
+        auto sink = [this, end = std::make_shared<QueueEnd>(queue_)](std::span<const Pair> pairs) {
+            queue_.put(pairs);
+        };
+        const py::gil_scoped_release released;
+        job_.reset(new Job(engine->engine().submit_stream(std::move(borrowed), std::move(sink), options)));
+    }
+    PythonStream(const PythonStream&) = delete;
+    PythonStream& operator=(const PythonStream&) = delete;
+    ~PythonStream() {
+        if (!is_forked()) close();
+    }
+
+    /// Returns the next chunk. Throws: StopIteration at the end; the Error of the search.
+    py::array next() {
+        check_not_forked();
+        if (!job_) throw py::stop_iteration();
+        std::optional<std::vector<Pair>> chunk;
+        wait_for_end(-1, [&](std::chrono::nanoseconds time) {
+            chunk = queue_.take(time);
+            return chunk.has_value();
+        });
+        if (!chunk->empty()) return array_of<std::uint32_t>(std::move(*chunk), {2});
+        summary_ = job_->summary();
+        close();
+        throw py::stop_iteration();
+    }
+    void close() {
+        if (!job_) return;
+        queue_.close();
+        job_->cancel();
+        job_.reset();
+    }
+    /// Returns the summary after the last chunk, before that None.
+    py::object summary() const { return summary_ ? py::object(summary_tuple(*summary_)) : py::none(); }
+
+private:
+    static std::size_t chunk_pairs(const Options& options) {
+        constexpr std::uint64_t least = 1u << 16, most = 1u << 23;
+        return std::size_t(std::clamp(options.buffer_bytes / 8, least, most) / sizeof(Pair));
+    }
+
+    std::shared_ptr<PythonEngine> engine_;
+    py::object input_;
+    ChunkQueue queue_;
+    std::optional<Summary> summary_;
+    std::unique_ptr<Job, ReleasedDelete> job_;  // last: it uses the queue
+};
+
+}  // namespace
+
+void bind_jobs(py::module_& module) {
+    py::class_<PythonJob>(module, "Job")
+        .def(py::init<const std::shared_ptr<PythonEngine>&, const py::object&, const Options&>(), py::arg("engine"),
+             py::arg("input"), py::arg("options"))
+        .def_property_readonly("state", &PythonJob::state)
+        .def_property_readonly("progress", &PythonJob::progress)
+        .def("cancel", &PythonJob::cancel)
+        .def("wait", &PythonJob::wait, py::arg("seconds") = -1.0)
+        .def("take_result", &PythonJob::take_result);
+    py::class_<PythonStream>(module, "Stream")
+        .def(py::init<const std::shared_ptr<PythonEngine>&, const py::object&, Options>(), py::arg("engine"),
+             py::arg("input"), py::arg("options"))
+        .def("next", &PythonStream::next)
+        .def("close", &PythonStream::close)
+        .def_property_readonly("summary", &PythonStream::summary);
+}
+
+}  // namespace octopair::python

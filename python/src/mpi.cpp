@@ -1,0 +1,101 @@
+// octopair._mpi: engines of MPI ranks. A module of its own, because it links the system's MPI.
+#include <optional>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "call.hpp"
+#include "engines.hpp"
+#include "errors.hpp"
+#include "octopair/mpi.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+/// `communicator` is the address of an MPI_Comm.
+std::shared_ptr<PythonEngine> mpi_engine(std::uintptr_t communicator, unsigned threads, bool paper) {
+    const MPI_Comm comm = *reinterpret_cast<MPI_Comm*>(communicator);
+    const MpiOptions options{.threads = threads, .arrangement = paper ? Arrangement::paper : Arrangement::shared};
+    return wrap([&] { return make_mpi_engine(comm, options); });
+}
+
+/// Finds pairs, gathers them on rank 0, and returns (pairs of rank 0, summary).
+py::tuple gather_pairs_of(PythonEngine& engine, const ArrayInput& input, const Options& options) {
+    const Turn::Holder turn(engine.turn());
+    Summary summary;
+    {
+        // On this thread: MPI may not allow calls from another one.
+        check_not_forked();
+        const py::gil_scoped_release released;
+        summary = engine.engine().find_pairs(input.input(), engine.list(), options);
+        gather_pairs(engine.engine(), engine.list());
+    }
+    return py::make_tuple(pairs_array(engine.list()), summary_tuple(summary));
+}
+
+/// Returns (pairs of this rank, summary).
+py::tuple find_pairs_here(PythonEngine& engine, const ArrayInput& input, const Options& options) {
+    const Turn::Holder turn(engine.turn());
+    Summary summary;
+    {
+        check_not_forked();
+        const py::gil_scoped_release released;
+        summary = engine.engine().find_pairs(input.input(), engine.list(), options);
+    }
+    return py::make_tuple(pairs_array(engine.list()), summary_tuple(summary));
+}
+
+/// `indices` is uint64 of shape (n) or None for each set. Returns (pairs of uint64, summary).
+py::tuple find_pairs64_here(PythonEngine& engine, const ArrayInput& input, const py::tuple& indices,
+                            const Options& options) {
+    const Turn::Holder turn(engine.turn());
+    std::vector<Pair64> pairs;
+    const Input& sets = input.input();
+    const IndexedObjects first{sets.first, optional_rows_of<std::uint64_t>(indices[0])};
+    std::optional<IndexedObjects> second;
+    if (sets.second) second = IndexedObjects{*sets.second, optional_rows_of<std::uint64_t>(indices[1])};
+    Summary summary;
+    {
+        check_not_forked();
+        const py::gil_scoped_release released;
+        summary = find_pairs64(engine.engine(), IndexedInput(first, second), pairs, options);
+    }
+    return py::make_tuple(array_of<std::uint64_t>(std::move(pairs), {2}), summary_tuple(summary));
+}
+
+py::dict costs_of(PythonEngine& engine) {
+    const RankCosts costs = last_costs(engine.engine());
+    py::dict row;
+    row["join"] = costs.join;
+    row["plan"] = costs.plan;
+    row["route"] = costs.route;
+    row["pack"] = costs.pack;
+    row["build"] = costs.build;
+    row["merge"] = costs.merge;
+    row["scan"] = costs.scan;
+    row["order"] = costs.order;
+    row["mpi"] = costs.mpi;
+    row["bytes_sent"] = costs.bytes_sent;
+    row["messages_sent"] = costs.messages_sent;
+    row["objects"] = costs.objects;
+    row["shared_objects"] = costs.shared_objects;
+    row["objects_received"] = costs.objects_received;
+    row["octants"] = costs.octants;
+    return row;
+}
+
+}  // namespace
+
+}  // namespace octopair::python
+
+PYBIND11_MODULE(_mpi, module) {
+    using namespace octopair::python;
+    py::module_::import("octopair._core");  // has Engine, Options and Input
+    register_errors();
+    module.def("make_engine", &mpi_engine, py::arg("communicator"), py::arg("threads"), py::arg("paper"));
+    module.def("find_pairs", &find_pairs_here, py::arg("engine"), py::arg("input"), py::arg("options"));
+    module.def("gather_pairs", &gather_pairs_of, py::arg("engine"), py::arg("input"), py::arg("options"));
+    module.def("find_pairs64", &find_pairs64_here, py::arg("engine"), py::arg("input"), py::arg("indices"),
+               py::arg("options"));
+    module.def("last_costs", &costs_of, py::arg("engine"));
+}

@@ -1,0 +1,192 @@
+// Pipeline and its filters.
+#include <deque>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "call.hpp"
+#include "collisions.hpp"
+#include "engines.hpp"
+#include "octopair/filters.hpp"
+#include "shapes.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+/// Calls a Python function with the columns of a whole batch. The function returns a bool per pair.
+class CallableFilter final : public Filter {
+public:
+    CallableFilter(std::string name, py::function keep) : name_(std::move(name)), keep_(std::move(keep)) {}
+    CallableFilter(const CallableFilter&) = delete;
+    CallableFilter& operator=(const CallableFilter&) = delete;
+    ~CallableFilter() override {
+        const py::gil_scoped_acquire acquired;
+        keep_ = py::function();
+    }
+
+    std::string_view name() const override { return name_; }
+    void apply(Batch& batch) const override {
+        CollisionColumns columns;
+        columns.append(batch);
+        std::vector<std::uint32_t> kept;
+        {
+            const py::gil_scoped_acquire acquired;
+            const py::object answer = keep_(columns.take());
+            const auto mask = rows_of<bool>(answer.cast<py::array>());
+            if (mask.size() != batch.pairs().size()) throw py::value_error("a filter must return a bool for each pair");
+            for (std::size_t i = 0; i < mask.size(); ++i) {
+                if (mask[i]) kept.push_back(std::uint32_t(i));
+            }
+        }
+        batch.keep_these(kept);
+    }
+
+private:
+    std::string name_;
+    py::function keep_;
+};
+
+/// A pipeline, and references to the arrays of its filters.
+class PythonPipeline {
+public:
+    explicit PythonPipeline(unsigned threads) : pipeline_(new Pipeline(threads)) {}
+
+    void add_callable(const std::string& name, const py::function& keep) {
+        pipeline_->add(std::make_unique<CallableFilter>(name, keep));
+    }
+    /// Groups and masks of the first set, and of the second or None.
+    void add_groups(const py::tuple& first, const py::object& second) {
+        keep(first, second);
+        std::optional<GroupMasks> other;
+        if (!second.is_none()) other = masks_of(second.cast<py::tuple>());
+        pipeline_->add(make_group_filter(masks_of(first), other));
+    }
+    void add_ignored_pairs(const py::array& pairs, bool join) {
+        const auto rows = rows_of<Pair, std::uint32_t>(pairs);
+        pipeline_->add(make_ignored_pairs_filter({rows.begin(), rows.end()}, join));
+    }
+    /// Rules are pairs of patterns.
+    void add_names(std::vector<std::string> first, const std::vector<std::pair<std::string, std::string>>& rules,
+                   std::optional<std::vector<std::string>> second) {
+        std::vector<NameRule> patterns;
+        for (const auto& [a, b] : rules) patterns.push_back({a, b});
+        std::optional<std::span<const std::string>> other;
+        names_.push_back(std::move(first));
+        const std::span<const std::string> names = names_.back();
+        if (second) {
+            names_.push_back(std::move(*second));
+            other = names_.back();
+        }
+        pipeline_->add(make_name_filter(names, std::move(patterns), other));
+    }
+    void add_parents(const py::array& first, const py::object& second) {
+        keep(first, second);
+        std::optional<std::span<const std::uint32_t>> other;
+        if (!second.is_none()) other = rows_of<std::uint32_t>(second.cast<py::array>());
+        pipeline_->add(make_parent_filter(rows_of<std::uint32_t>(first), other));
+    }
+    /// `kind` is the name of a filter of shapes. `options` is (margin, max_contacts, tolerance, duplicate_tolerance).
+    void add_shapes(const std::string& kind, const py::object& first, const py::object& second,
+                    const py::tuple& options) {
+        keep(first, second);
+        const ShapedObjects& objects = first.cast<const PythonShapes&>().objects();
+        const ShapedObjects* other = second.is_none() ? nullptr : &second.cast<const PythonShapes&>().objects();
+        const ExactOptions exact{options[0].cast<double>(), options[1].cast<std::uint32_t>(), options[2].cast<double>(),
+                                 options[3].cast<std::optional<double>>()};
+        if (kind == "bounding spheres") pipeline_->add(make_sphere_filter(objects, exact.margin, other));
+        if (kind == "oriented boxes") pipeline_->add(make_oriented_box_filter(objects, exact.margin, other));
+        if (kind == "exact object") pipeline_->add(make_exact_object_filter(objects, exact, other));
+        if (kind == "exact feature") pipeline_->add(make_exact_feature_filter(objects, exact, other));
+    }
+    void add_depth(double least) { pipeline_->add(make_depth_filter(least)); }
+    /// Sets are (triangles (n, 9), owners or None). `options` is (adjacent, margin, features, tolerance).
+    void add_triangles(const py::tuple& first, const py::object& second, const py::tuple& options) {
+        keep(first, second);
+        const TriangleOptions triangles{AdjacentTriangles(options[0].cast<int>()), options[1].cast<double>(),
+                                        options[2].cast<bool>(), options[3].cast<double>(), 0};
+        std::optional<TriangleSet> other;
+        if (!second.is_none()) other = triangles_of(second.cast<py::tuple>());
+        pipeline_->add(make_triangle_filter(triangles_of(first), triangles, other ? &*other : nullptr));
+    }
+
+    /// Returns (columns, summary). With a sink, the sink receives the columns of each batch, and the result has none.
+    py::tuple run(PythonEngine& engine, const ArrayInput& input, const Options& options, const py::tuple& callables) {
+        const Turn::Holder turn(turn_), engine_turn(engine.turn());
+        const py::object progress = callables[0], sink = callables[1];
+        CollisionColumns columns;
+        PipelineSummary summary;
+        // The size is unknown: exact tests of few objects may take long.
+        call({small_call + 1, progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+            summary = pipeline_->run(
+                engine.engine(), input.input(), [&](const Batch& batch) { receive(batch, columns, sink); },
+                with_progress(options, progress, value), stop);
+        });
+        return py::make_tuple(columns.take(), summary_of(summary));
+    }
+    py::tuple count(PythonEngine& engine, const ArrayInput& input, const Options& options, const py::object& progress) {
+        const Turn::Holder turn(turn_), engine_turn(engine.turn());
+        PipelineSummary summary;
+        call({small_call + 1, progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+            summary = pipeline_->run(engine.engine(), input.input(), {}, with_progress(options, progress, value), stop);
+        });
+        return summary_of(summary);
+    }
+
+private:
+    static GroupMasks masks_of(const py::tuple& columns) {
+        return {rows_of<std::uint32_t>(columns[0].cast<py::array>()),
+                rows_of<std::uint32_t>(columns[1].cast<py::array>())};
+    }
+    static TriangleSet triangles_of(const py::tuple& set) {
+        return {rows_of<Triangle3d, double>(set[0].cast<py::array>()), optional_rows_of<std::uint32_t>(set[1])};
+    }
+    static void receive(const Batch& batch, CollisionColumns& columns, const py::object& sink) {
+        columns.append(batch);
+        if (sink.is_none()) return;
+        const py::gil_scoped_acquire acquired;
+        sink(columns.take());
+    }
+    static py::tuple summary_of(const PipelineSummary& summary) {
+        py::list filters;
+        for (const FilterCounts& filter : summary.filters) {
+            filters.append(py::make_tuple(filter.name, filter.in, filter.out, filter.seconds, filter.undecided));
+        }
+        return py::make_tuple(summary.collisions, py::tuple(py::cast(summary.of_class)), summary.truncated,
+                              summary.seconds, summary_tuple(summary.search), filters);
+    }
+
+    void keep(const py::object& first, const py::object& second) {
+        kept_.append(first);
+        kept_.append(second);
+    }
+
+    py::list kept_;
+    std::deque<std::vector<std::string>> names_;
+    std::unique_ptr<Pipeline, ReleasedDelete> pipeline_;  // last: its filters use the arrays and names
+    Turn turn_;
+};
+
+}  // namespace
+
+void bind_pipeline(py::module_& module) {
+    py::class_<PythonPipeline>(module, "Pipeline")
+        .def(py::init<unsigned>(), py::arg("threads") = 0)
+        .def("add_callable", &PythonPipeline::add_callable, py::arg("name"), py::arg("keep"))
+        .def("add_groups", &PythonPipeline::add_groups, py::arg("first"), py::arg("second"))
+        .def("add_ignored_pairs", &PythonPipeline::add_ignored_pairs, py::arg("pairs"), py::arg("join"))
+        .def("add_names", &PythonPipeline::add_names, py::arg("first"), py::arg("rules"), py::arg("second"))
+        .def("add_parents", &PythonPipeline::add_parents, py::arg("first"), py::arg("second"))
+        .def("add_shapes", &PythonPipeline::add_shapes, py::arg("kind"), py::arg("first"), py::arg("second"),
+             py::arg("options"))
+        .def("add_depth", &PythonPipeline::add_depth, py::arg("least"))
+        .def("add_triangles", &PythonPipeline::add_triangles, py::arg("first"), py::arg("second"), py::arg("options"))
+        .def("run", &PythonPipeline::run, py::arg("engine"), py::arg("input"), py::arg("options"), py::arg("callables"))
+        .def("count", &PythonPipeline::count, py::arg("engine"), py::arg("input"), py::arg("options"),
+             py::arg("progress"));
+}
+
+}  // namespace octopair::python

@@ -1,0 +1,131 @@
+// Scene: objects that persist and move, and its queries.
+#include "scenes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "bindings.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::python {
+
+namespace {
+
+/// Returns the offsets of answers: those of query i are at offsets[i] to offsets[i + 1].
+py::array_t<std::int64_t> offsets_of(const std::vector<std::size_t>& ends) {
+    py::array_t<std::int64_t> offsets(py::ssize_t(ends.size() + 1));
+    std::int64_t* const out = offsets.mutable_data();
+    out[0] = 0;
+    std::copy(ends.begin(), ends.end(), out + 1);
+    return offsets;
+}
+
+/// Returns (indices, numbers, offsets) of answers that are an index and a number.
+template <typename Answer>
+py::tuple columns_of(const Answers<Answer>& answers, double Answer::*number) {
+    py::array_t<std::uint32_t> indices(py::ssize_t(answers.all.size()));
+    py::array_t<double> numbers(py::ssize_t(answers.all.size()));
+    for (std::size_t i = 0; i < answers.all.size(); ++i) {
+        indices.mutable_data()[i] = answers.all[i].index;
+        numbers.mutable_data()[i] = answers.all[i].*number;
+    }
+    return py::make_tuple(indices, numbers, offsets_of(answers.ends));
+}
+
+/// Returns the error of a batch with the number of the query in all queries.
+Error renumbered(const Error& error, std::size_t begin) {
+    static const std::string word = "query ";
+    std::string text = error.what();
+    const std::size_t at = text.find(word);
+    if (begin == 0 || at == std::string::npos) return error;
+    std::size_t digits = 0;
+    const std::size_t query = std::stoull(text.substr(at + word.size()), &digits);
+    return {error.code(), text.replace(at + word.size(), digits, std::to_string(begin + query))};
+}
+
+class LocalScene : public PythonScene<Scene> {
+public:
+    using PythonScene::PythonScene;
+
+    py::array enlarged_pairs() {
+        return list([&] { return &scene().enlarged_pairs(); });
+    }
+    /// Queries: boxes (n, 6), spheres (n, 4: centre and radius), rays (n, 7: origin, direction, longest), all float64.
+    py::tuple overlaps(const py::array& queries, std::uint32_t groups) {
+        const auto find = [&](auto rows, auto& answers) { scene().overlaps(rows, answers, groups); };
+        Answers<std::uint32_t> answers = queries.shape(1) == 4
+                                             ? in_batches<std::uint32_t>(rows_of<Sphere, double>(queries), find)
+                                             : in_batches<std::uint32_t>(rows_of<Box3d, double>(queries), find);
+        const py::array offsets = offsets_of(answers.ends);
+        return py::make_tuple(array_of<std::uint32_t>(std::move(answers.all)), offsets);
+    }
+    py::tuple hits(const py::array& rays, bool all, std::uint32_t groups) {
+        const auto find = [&](std::span<const Ray> rows, Answers<RayHit>& answers) {
+            return all ? scene().all_hits(rows, answers, groups) : scene().first_hits(rows, answers, groups);
+        };
+        return columns_of(in_batches<RayHit>(rows_of<Ray, double>(rays), find), &RayHit::along);
+    }
+    py::tuple nearest(const py::array& places, const py::tuple& limits, std::uint32_t groups) {
+        const NearestLimits most{limits[0].cast<std::size_t>(), limits[1].cast<double>()};
+        const auto find = [&](std::span<const Box3d> rows, Answers<Neighbor>& answers) {
+            scene().nearest(rows, most, answers, groups);
+        };
+        return columns_of(in_batches<Neighbor>(rows_of<Box3d, double>(places), find), &Neighbor::distance);
+    }
+
+private:
+    /// Finds the answers to all queries. Signal handlers run after each batch of queries, which takes some milliseconds.
+    template <typename Answer, typename Query, typename Find>
+    Answers<Answer> in_batches(std::span<const Query> queries, Find find) {
+        using Clock = std::chrono::steady_clock;
+        std::size_t batch_size = 1024;
+        Answers<Answer> all, part;
+        std::size_t end = 0;
+        do {
+            const std::size_t begin = end;
+            end = std::min(begin + batch_size, queries.size());
+            const auto start = Clock::now();
+            try {
+                run([&] { find(queries.subspan(begin, end - begin), part); });
+            } catch (const Error& error) {
+                throw renumbered(error, begin);
+            }
+            const auto time = Clock::now() - start;
+            if (time < std::chrono::milliseconds(5)) batch_size *= 2;
+            if (time > std::chrono::milliseconds(20)) batch_size = std::max<std::size_t>(batch_size / 2, 1);
+            const std::size_t before = all.all.size();
+            all.all.insert(all.all.end(), part.all.begin(), part.all.end());
+            for (const std::size_t answers : part.ends) all.ends.push_back(before + answers);
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        } while (end < queries.size());
+        return all;
+    }
+};
+
+/// `options` is a dict of the members of SceneOptions.
+std::unique_ptr<LocalScene> make_scene(const py::dict& options) {
+    check_not_forked();
+    SceneOptions scene;
+    scene.threads = options["threads"].cast<unsigned>();
+    scene.precision = options["float64"].cast<bool>() ? Precision::float64 : Precision::float32;
+    scene.margin = options["margin"].cast<double>();
+    scene.recording = options["recording"].cast<std::string>();
+    scene.slack = options["slack"].cast<double>();
+    const py::gil_scoped_release released;
+    return std::make_unique<LocalScene>(Scene(scene));
+}
+
+}  // namespace
+
+void bind_scenes(py::module_& module) {
+    py::class_<LocalScene> scene(module, "Scene");
+    scene.def(py::init(&make_scene), py::arg("options"))
+        .def("enlarged_pairs", &LocalScene::enlarged_pairs)
+        .def("overlaps", &LocalScene::overlaps, py::arg("queries"), py::arg("groups"))
+        .def("hits", &LocalScene::hits, py::arg("rays"), py::arg("all"), py::arg("groups"))
+        .def("nearest", &LocalScene::nearest, py::arg("places"), py::arg("limits"), py::arg("groups"));
+    bind_scene_calls(scene);
+}
+
+}  // namespace octopair::python

@@ -1,0 +1,146 @@
+// A scene as a Python object: Scene in the module octopair._core, RemoteScene in octopair._remote.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "call.hpp"
+#include "octopair/scene.hpp"
+
+namespace octopair::python {
+
+static_assert(sizeof(ObjectId) == 2 * sizeof(std::uint32_t));
+
+/// Returns the ids of a structured array (index, generation). Throws: TypeError.
+inline std::span<const ObjectId> ids_of(const py::array& ids) {
+    if (ids.itemsize() != sizeof(ObjectId) || (ids.flags() & py::array::c_style) == 0) {
+        throw py::type_error("ids must be a contiguous array of octopair.id_dtype");
+    }
+    return {static_cast<const ObjectId*>(ids.data()), std::size_t(ids.size())};
+}
+
+/// Returns the traits of columns: groups and masks (uint32) and fixed (bool), each None or of the same length.
+std::vector<Traits> traits_of(const py::object& groups, const py::object& masks, const py::object& fixed);
+
+/// A scene of type `S`, Scene or RemoteScene. Python threads take turns.
+template <typename S>
+class PythonScene {
+public:
+    explicit PythonScene(S scene) : scene_(new S(std::move(scene))) {}
+
+    /// Writes the ids of the new objects to `ids`. `traits` is (groups, masks, fixed).
+    void add(const ArrayInput& objects, py::array ids, const py::tuple& traits) {
+        const std::vector<Traits> rows = traits_of(traits[0], traits[1], traits[2]);
+        auto* const data = static_cast<ObjectId*>(ids.mutable_data());
+        const std::span<ObjectId> out(data, ids_of(ids).size());
+        run([&] { scene_->add(objects.input().first, out, rows); });
+    }
+    void move(const py::array& ids, const py::array& boxes) {
+        const Boxes places = boxes_of(boxes);
+        run([&] { scene_->move(ids_of(ids), places); });
+    }
+    void sweep(const py::array& ids, const py::array& boxes) {
+        const Boxes places = boxes_of(boxes);
+        run([&] { scene_->sweep(ids_of(ids), places); });
+    }
+    void remove(const py::array& ids) {
+        run([&] { scene_->remove(ids_of(ids)); });
+    }
+    void set_traits(const py::array& ids, const py::tuple& traits) {
+        const std::vector<Traits> rows = traits_of(traits[0], traits[1], traits[2]);
+        run([&] { scene_->set_traits(ids_of(ids), rows); });
+    }
+    /// Returns (began, ended, persisting, full, seconds).
+    py::tuple step() {
+        const Turn::Holder turn(turn_);
+        StepResult result;
+        call({scene_->size()}, [&](const std::stop_token& stop, auto&&...) { result = scene_->step(stop); });
+        return py::make_tuple(pairs_array(result.began), pairs_array(result.ended), result.persisting, result.full,
+                              result.seconds);
+    }
+    py::array pairs() {
+        return list([&] { return &scene_->pairs(); });
+    }
+    py::array persisting() {
+        return list([&] { return &scene_->persisting(); });
+    }
+
+    std::uint64_t size() {
+        return get([&] { return scene_->size(); });
+    }
+    std::uint64_t indices() {
+        return get([&] { return scene_->indices(); });
+    }
+    /// Returns a bool for each id.
+    py::array_t<bool> contains(const py::array& ids) {
+        const std::span<const ObjectId> all = ids_of(ids);
+        py::array_t<bool> answers(py::ssize_t(all.size()));
+        get([&] {
+            for (std::size_t i = 0; i < all.size(); ++i) answers.mutable_data()[i] = scene_->contains(all[i]);
+            return 0;
+        });
+        return answers;
+    }
+    /// Writes the ids of objects with these indices. Throws: Error{bad_input}.
+    void ids_at(const py::array& indices, py::array ids) {
+        const auto all = rows_of<std::uint32_t>(indices);
+        auto* out = static_cast<ObjectId*>(ids.mutable_data());
+        get([&] {
+            for (const std::uint32_t index : all) *out++ = scene_->id(index);
+            return 0;
+        });
+    }
+
+protected:
+    S& scene() { return *scene_; }
+
+    /// Runs a call that cannot be cancelled. Signal handlers run after it.
+    template <typename Work>
+    void run(Work work) {
+        const Turn::Holder turn(turn_);
+        check_not_forked();
+        const py::gil_scoped_release released;
+        work();
+    }
+    template <typename Get>
+    py::array list(Get find) {
+        const Turn::Holder turn(turn_);
+        const PairList* found = nullptr;
+        call({scene_->size()}, [&](auto&&...) { found = find(); });
+        return pairs_array(*found);
+    }
+    template <typename Get>
+    auto get(Get read) {
+        const Turn::Holder turn(turn_);
+        check_not_forked();
+        return read();
+    }
+
+private:
+    std::unique_ptr<S, ReleasedDelete> scene_;
+    Turn turn_;
+};
+
+/// Adds the calls that both kinds of scenes have.
+template <typename Class>
+void bind_scene_calls(Class& scene) {
+    using Type = typename Class::type;
+    scene.def("add", &Type::add, py::arg("objects"), py::arg("ids"), py::arg("traits"))
+        .def("move", &Type::move, py::arg("ids"), py::arg("boxes"))
+        .def("sweep", &Type::sweep, py::arg("ids"), py::arg("boxes"))
+        .def("remove", &Type::remove, py::arg("ids"))
+        .def("set_traits", &Type::set_traits, py::arg("ids"), py::arg("traits"))
+        .def("step", &Type::step)
+        .def("pairs", &Type::pairs)
+        .def("persisting", &Type::persisting)
+        .def("size", &Type::size)
+        .def("indices", &Type::indices)
+        .def("contains", &Type::contains, py::arg("ids"))
+        .def("ids_at", &Type::ids_at, py::arg("indices"), py::arg("ids"));
+}
+
+}  // namespace octopair::python
