@@ -6,11 +6,36 @@ Arrays of the right dtype and order are read where they lie. Other arrays are re
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Tuple, Union
+import operator
+from typing import Any, Optional, Sequence, Tuple
 
 import numpy as np
+import numpy.typing as npt
 
 from ._errors import InputError, InputTypeError
+
+def whole(value: Any, name: str, most: int = 0xFFFFFFFF) -> int:
+    """Returns an integer from 0 to `most`."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InputTypeError(f"{name}: {value!r} is not an integer") from None
+    if not 0 <= number <= most:
+        raise InputError(f"{name}: {number} is not in the range 0 to {most}")
+    return number
+
+
+def real(value: Any, name: str) -> float:
+    """Returns a float."""
+    if isinstance(value, (str, bytes)):
+        raise InputTypeError(f"{name}: {value!r} is not a number")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputTypeError(f"{name}: {value!r} is not a number") from None
+
+
+Array = npt.NDArray[Any]
 
 id_dtype = np.dtype([("index", np.uint32), ("generation", np.uint32)])
 """dtype of the ids of a scene's objects."""
@@ -19,7 +44,7 @@ _FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
 _TO_COPY = "or pass copy=True"
 
 
-def array_of(value: Any, name: str, copy: bool = False) -> np.ndarray:
+def array_of(value: Any, name: str, copy: bool = False) -> Array:
     """Returns an array that shares the memory of `value`, or a copy of a sequence if `copy` is true."""
     if type(value) is np.ndarray:
         return value
@@ -51,13 +76,13 @@ def _shape_text(shape: Sequence[Optional[int]]) -> str:
     return "(" + ", ".join("n" if size is None else str(size) for size in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
-def _check_shape(array: np.ndarray, name: str, shape: Sequence[Optional[int]]) -> None:
+def _check_shape(array: Array, name: str, shape: Sequence[Optional[int]]) -> None:
     fits = array.ndim == len(shape) and all(want is None or want == size for want, size in zip(shape, array.shape))
     if not fits:
         raise InputError(f"{name}: the shape is {array.shape}; it must be {_shape_text(shape)}")
 
 
-def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Sequence[Any], copy: bool = False) -> np.ndarray:
+def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Sequence[Any], copy: bool = False) -> Array:
     """Returns an array of this shape (None: any size), C-contiguous, of one of the dtypes.
 
     With `copy`, converts to the first dtype if the array has none of them.
@@ -67,7 +92,7 @@ def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Seque
     _check_shape(array, name, shape)
     if array.dtype not in wanted:
         if not copy:
-            first = wanted[0].name
+            first = wanted[-1].name  # float64 loses less than float32
             raise InputTypeError(f"{name}: the dtype is {array.dtype}; it must be {' or '.join(d.name for d in wanted)}. "
                                  f"Pass {name}.astype(numpy.{first}), {_TO_COPY}")
         if array.dtype.kind not in "biuf":
@@ -80,7 +105,7 @@ def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Seque
     return array
 
 
-def boxes(value: Any, name: str = "boxes", copy: bool = False) -> np.ndarray:
+def boxes(value: Any, name: str = "boxes", copy: bool = False) -> Array:
     """Returns boxes of shape (n, 6), float32 or float64."""
     # The usual case, without the checks that only choose an error message.
     if type(value) is np.ndarray and value.ndim == 2 and value.shape[1] == 6 and value.dtype in _FLOATS:
@@ -93,7 +118,7 @@ def boxes(value: Any, name: str = "boxes", copy: bool = False) -> np.ndarray:
     return checked(value, name, (None, 6), _FLOATS)
 
 
-def numbers(value: Any, name: str, shape: Sequence[Optional[int]], copy: bool = False) -> np.ndarray:
+def numbers(value: Any, name: str, shape: Sequence[Optional[int]], copy: bool = False) -> Array:
     """Returns float64 numbers. Converts float32 without loss; other dtypes only with `copy`."""
     array = array_of(value, name, copy)
     _check_shape(array, name, shape)
@@ -104,7 +129,7 @@ def numbers(value: Any, name: str, shape: Sequence[Optional[int]], copy: bool = 
     return checked(array, name, shape, (np.float64,))
 
 
-def column(value: Any, name: str, size: int, dtype: Any, copy: bool = False) -> Optional[np.ndarray]:
+def column(value: Any, name: str, size: int, dtype: Any, copy: bool = False) -> Optional[Array]:
     """Returns a column with a value for each of `size` objects. A number stands for all of them; None stays None."""
     if value is None:
         return None
@@ -122,7 +147,7 @@ def column(value: Any, name: str, size: int, dtype: Any, copy: bool = False) -> 
     return array
 
 
-def ids(value: Any, name: str = "ids") -> np.ndarray:
+def ids(value: Any, name: str = "ids") -> Array:
     """Returns a one-dimensional array of ids."""
     array = array_of(value, name)
     if array.dtype != id_dtype:
@@ -147,5 +172,3 @@ def join_input(value: Any, against: Any, paddings: Tuple[Any, Any], copy: bool) 
     return (first, column(padding, "padding", len(first), np.float64, copy), second,
             column(against_padding, "against_padding", len(second), np.float64, copy))
 
-
-Number = Union[int, float]

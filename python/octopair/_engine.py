@@ -10,11 +10,14 @@ from typing import Any, Literal, Optional, Tuple, Union, overload
 import numpy as np
 
 from . import _arrays, _core
-from ._errors import InputError, UsageError
+from ._arrays import Array
+from ._errors import InputError, InputTypeError, UsageError
 from ._progress import Progress, reporter
 from ._results import JobResult, Summary
 
 Order = Literal["ascending", "octal"]
+MOST_PAIRS = (1 << 64) - 1
+MOST_THREADS = 4096
 _DEFAULT_OPTIONS = _core.Options()
 
 
@@ -24,16 +27,14 @@ def call_options(margin: float = 0, order: str = "ascending", limit: Optional[in
     if margin == 0 and order == "ascending" and limit is None and not verify and buffer_bytes is None:
         return _DEFAULT_OPTIONS
     options = _core.Options()
-    options.margin = float(margin)
+    options.margin = _arrays.real(margin, "margin")
     if order not in ("ascending", "octal"):
         raise InputError(f"order: {order!r} is neither 'ascending' nor 'octal'")
     options.octal = order == "octal"
     if limit is not None:
-        if limit < 0:
-            raise InputError(f"limit: {limit} is below 0")
-        options.limit = int(limit)
+        options.limit = _arrays.whole(limit, "limit", MOST_PAIRS)
     if buffer_bytes is not None:
-        options.buffer_bytes = max(int(buffer_bytes), 1 << 20)
+        options.buffer_bytes = max(_arrays.whole(buffer_bytes, "buffer_bytes", MOST_PAIRS), 1 << 20)
     options.verify = bool(verify)
     return options
 
@@ -60,7 +61,7 @@ class PairStream:
     def __iter__(self) -> "PairStream":
         return self
 
-    def __next__(self) -> np.ndarray:
+    def __next__(self) -> Array:
         """Returns the next chunk."""
         try:
             return self._stream.next()
@@ -137,7 +138,7 @@ class Job:
         bool
             True if the job has ended.
         """
-        return self._job.wait(-1.0 if timeout is None else max(float(timeout), 0.0))
+        return self._job.wait(-1.0 if timeout is None else max(_arrays.real(timeout, "timeout"), 0.0))
 
     def cancel(self) -> None:
         """Requests that the job ends, and returns at once. A running job ends within 200 ms."""
@@ -210,11 +211,11 @@ class Engine:
         if kind == "local":
             if workers:
                 raise UsageError("workers: a local engine has threads; pass threads")
-            self._start(_core.Engine.local(threads), "local")
+            self._start(_core.Engine.local(_arrays.whole(threads, "threads", MOST_THREADS)), "local")
         elif kind == "processes":
             if threads:
                 raise UsageError("threads: this engine has worker processes; pass workers")
-            self._start(_core.Engine.processes(workers, worker_program()), "processes")
+            self._start(_core.Engine.processes(_arrays.whole(workers, "workers", 256), worker_program()), "processes")
         else:
             raise UsageError(f"kind: {kind!r} is neither 'local' nor 'processes' nor an address (unix:PATH or HOST:PORT)")
 
@@ -242,16 +243,16 @@ class Engine:
     @overload
     def find_pairs(self, boxes: Any, against: Any = ..., margin: float = ..., order: Order = ..., *, padding: Any = ...,
                    against_padding: Any = ..., limit: Optional[int] = ..., verify: bool = ..., progress: Progress = ...,
-                   copy: bool = ..., return_summary: Literal[False] = ...) -> np.ndarray: ...
+                   copy: bool = ..., return_summary: Literal[False] = ...) -> Array: ...
 
     @overload
     def find_pairs(self, boxes: Any, against: Any = ..., margin: float = ..., order: Order = ..., *, padding: Any = ...,
                    against_padding: Any = ..., limit: Optional[int] = ..., verify: bool = ..., progress: Progress = ...,
-                   copy: bool = ..., return_summary: Literal[True]) -> Tuple[np.ndarray, Summary]: ...
+                   copy: bool = ..., return_summary: Literal[True]) -> Tuple[Array, Summary]: ...
 
     def find_pairs(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
                    against_padding: Any = None, limit: Optional[int] = None, verify: bool = False, progress: Progress = None,
-                   copy: bool = False, return_summary: bool = False) -> Union[np.ndarray, Tuple[np.ndarray, Summary]]:
+                   copy: bool = False, return_summary: bool = False) -> Union[Array, Tuple[Array, Summary]]:
         """Like :func:`octopair.find_pairs`, on this engine."""
         engine = self._ready()
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
@@ -286,12 +287,12 @@ class Engine:
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
         return Job(_core.Job(self._ready(), data, call_options(margin, order, limit, verify)))
 
-    def allocate_boxes(self, count: int, dtype: Any = "float32") -> np.ndarray:
+    def allocate_boxes(self, count: int, dtype: Any = "float32") -> Array:
         """Returns an uninitialised array of shape (count, 6) that this engine reads without copying. The array may outlive the engine.
 
         Other engines read every array without copying; worker processes need boxes in shared memory.
         """
-        return self._engine.allocate_boxes(count, float_dtype(dtype) == np.float64)
+        return self._engine.allocate_boxes(_arrays.whole(count, "count"), float_dtype(dtype) == np.float64)
 
     def worker_faults(self) -> Tuple[int, int, Tuple[int, ...]]:
         """Returns the faults of worker processes so far: number of workers that died, number that were stopped, and the numbers by the
@@ -302,34 +303,37 @@ class Engine:
         return f"Engine({self._kind!r})"
 
 
-def float_dtype(dtype: Any) -> np.dtype:
+def float_dtype(dtype: Any) -> np.dtype[Any]:
     """Returns float32 or float64."""
-    found = np.dtype(dtype)
+    try:
+        found = np.dtype(dtype)
+    except TypeError:
+        raise InputTypeError(f"dtype: {dtype!r} is no dtype of NumPy") from None
     if found not in (np.float32, np.float64):
         raise InputError(f"dtype: {found} is neither float32 nor float64")
     return found
 
 
 def _engine_for(threads: int) -> Engine:
-    return Engine._of(_core.Engine.local(threads), "local")
+    return Engine._of(_core.Engine.local(_arrays.whole(threads, "threads", MOST_THREADS)), "local")
 
 
 @overload
 def find_pairs(boxes: Any, against: Any = ..., margin: float = ..., order: Order = ..., threads: int = ..., *, padding: Any = ...,
                against_padding: Any = ..., limit: Optional[int] = ..., verify: bool = ..., progress: Progress = ..., copy: bool = ...,
-               return_summary: Literal[False] = ...) -> np.ndarray: ...
+               return_summary: Literal[False] = ...) -> Array: ...
 
 
 @overload
 def find_pairs(boxes: Any, against: Any = ..., margin: float = ..., order: Order = ..., threads: int = ..., *, padding: Any = ...,
                against_padding: Any = ..., limit: Optional[int] = ..., verify: bool = ..., progress: Progress = ..., copy: bool = ...,
-               return_summary: Literal[True]) -> Tuple[np.ndarray, Summary]: ...
+               return_summary: Literal[True]) -> Tuple[Array, Summary]: ...
 
 
 def find_pairs(boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", threads: int = 0, *,
                padding: Any = None, against_padding: Any = None, limit: Optional[int] = None, verify: bool = False,
                progress: Progress = None, copy: bool = False,
-               return_summary: bool = False) -> Union[np.ndarray, Tuple[np.ndarray, Summary]]:
+               return_summary: bool = False) -> Union[Array, Tuple[Array, Summary]]:
     """Finds all pairs of overlapping boxes. Boxes are closed: boxes that touch are a pair.
 
     For repeated calls keep an :class:`Engine`, which keeps its memory.
@@ -386,7 +390,7 @@ def find_pairs(boxes: Any, against: Any = None, margin: float = 0, order: Order 
     >>> pairs, summary.truncated
     (array([[0, 1]], dtype=uint32), True)
     """
-    engine = _core.Engine.local(threads)
+    engine = _core.Engine.local(_arrays.whole(threads, "threads", MOST_THREADS))
     data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
     options = call_options(margin, order, limit, verify)
     if not progress:

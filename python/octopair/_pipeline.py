@@ -7,7 +7,8 @@ from typing import Any, Callable, Dict, Literal, Optional, Sequence, Tuple, Unio
 import numpy as np
 
 from . import _arrays, _core
-from ._engine import Engine, Order, call_options
+from ._arrays import Array
+from ._engine import MOST_THREADS, Engine, Order, call_options
 from ._errors import InputError, InputTypeError, UsageError
 from ._progress import Progress, reporter
 from ._results import Collisions, PipelineSummary
@@ -39,7 +40,7 @@ class Pipeline:
     """
 
     def __init__(self, threads: int = 0) -> None:
-        self._pipeline = _core.Pipeline(threads)
+        self._pipeline = _core.Pipeline(_arrays.whole(threads, "threads", MOST_THREADS))
         self._filters: list[str] = []
         self._names: Tuple[Optional[Sequence[str]], Optional[Sequence[str]]] = (None, None)
 
@@ -62,7 +63,7 @@ class Pipeline:
             raise InputTypeError(f"condition: a {type(condition).__name__} is not callable")
         label = name or getattr(condition, "__name__", "keep")
 
-        def keep_batch(columns: Dict[str, np.ndarray]) -> np.ndarray:
+        def keep_batch(columns: Dict[str, Any]) -> Array:
             batch = Collisions(**columns)
             mask = np.asarray(condition(batch))
             if mask.dtype != np.bool_ or mask.shape != (len(batch),):
@@ -137,16 +138,16 @@ class Pipeline:
             if shapes is not None and not isinstance(shapes, Shapes):
                 raise InputTypeError(f"shapes: a {type(shapes).__name__} is not a Shapes")
         margin, contacts, tolerance, duplicate = options
-        if not 0 <= contacts <= 0xFFFFFFFF:
-            raise InputError(f"max_contacts: {contacts} is below 0 or above 4294967295")
         self._pipeline.add_shapes(kind, first._shapes, None if second is None else second._shapes,
-                                  (float(margin), int(contacts), float(tolerance), duplicate))
+                                  (_arrays.real(margin, "margin"), _arrays.whole(contacts, "max_contacts"),
+                                   _arrays.real(tolerance, "tolerance"),
+                                   None if duplicate is None else _arrays.real(duplicate, "duplicate_tolerance")))
         self._names = (first.names, None if second is None else second.names)
         return self._added(kind)
 
     def min_depth(self, least: float) -> "Pipeline":
         """Drops pairs that are certainly less deep. Requires :meth:`exact_features` or :meth:`triangles` before it."""
-        self._pipeline.add_depth(float(least))
+        self._pipeline.add_depth(_arrays.real(least, "least"))
         return self._added("depth")
 
     def triangles(self, triangles: Any, owners: Any = None, *, adjacent: str = "beyond_shared", margin: float = 0,
@@ -176,7 +177,8 @@ class Pipeline:
         second = None
         if against is not None:
             second = (_triangles(against[0]), None if against[1] is None else _column(against[1], "owners"))
-        self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), float(margin), bool(features), float(tolerance)))
+        self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), _arrays.real(margin, "margin"), bool(features),
+                                                  _arrays.real(tolerance, "tolerance")))
         return self._added("exact triangle")
 
     def run(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
@@ -220,7 +222,7 @@ def _list(names: Optional[Sequence[str]]) -> Optional[list[str]]:
     return None if names is None else list(names)
 
 
-def _column(value: Any, name: str) -> np.ndarray:
+def _column(value: Any, name: str) -> Array:
     """Returns numbers of objects as uint32."""
     array = _arrays.array_of(value, name, copy=True)
     if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
@@ -230,7 +232,7 @@ def _column(value: Any, name: str) -> np.ndarray:
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
-def _triangles(value: Any) -> np.ndarray:
+def _triangles(value: Any) -> Array:
     return _arrays.numbers(value, "triangles", (None, 3, 3))
 
 
@@ -301,15 +303,15 @@ def collide(shapes: Shapes, against: Optional[Shapes] = None, *, margin: float =
             raise UsageError("min_depth: the stage 'objects' computes no depth")
         pipeline.min_depth(min_depth)
     boxes = first.boxes(second)
-    sets = (boxes, None) if second is None else boxes
-    return pipeline.run(*sets, margin, order, padding=first.padding, against_padding=None if second is None else second.padding,
+    here, there = (boxes, None) if second is None else boxes
+    return pipeline.run(here, there, margin, order, padding=first.padding, against_padding=None if second is None else second.padding,
                         limit=limit, engine=engine, progress=progress)
 
 
 @overload
 def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin: float = ..., features: Literal[False] = ...,
                        tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
-                       progress: Progress = ...) -> np.ndarray: ...
+                       progress: Progress = ...) -> Array: ...
 
 
 @overload
@@ -320,7 +322,7 @@ def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin
 
 def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_shared", margin: float = 0, features: bool = False,
                        tolerance: float = 0, limit: Optional[int] = None, engine: Optional[Engine] = None,
-                       progress: Progress = None) -> Union[np.ndarray, Collisions]:
+                       progress: Progress = None) -> Union[Array, Collisions]:
     """Finds the triangles of a mesh that meet each other, with exact arithmetic.
 
     Parameters

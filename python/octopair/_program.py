@@ -15,6 +15,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 import numpy as np
 
+from ._arrays import Array
 from ._errors import EngineError, Error, FileError, InputError, ResourceLimitError, UsageError
 from ._results import html_table
 
@@ -86,7 +87,7 @@ class Detection:
         What ``--stats`` writes: counts, times, warnings.
     """
 
-    pairs: np.ndarray
+    pairs: Array
     collisions: Optional[List[Dict[str, Any]]]
     stats: Dict[str, Any]
 
@@ -132,7 +133,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
         pairs, stats = os.path.join(folder, "found.npy"), os.path.join(folder, "stats.json")
         rows = os.path.join(folder, "found.jsonl")
-        arguments = ["detect", *map(os.fspath, inputs), *_option("against", against), *_option("stage", stage)]
+        arguments = ["detect", *(os.fspath(name) for name in inputs), *_option("against", against), *_option("stage", stage)]
         for name, value in options.items():
             arguments += _option(name, value)
         exact = stage in ("objects", "features") or (stage is None and _has_shapes(inputs) and options.get("objects") is None)
@@ -151,7 +152,7 @@ def _has_shapes(inputs: Sequence[PathLike]) -> bool:
     return not any(os.fspath(name).lower().endswith((".npy", ".csv")) for name in inputs)
 
 
-def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = None) -> np.ndarray:
+def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = None) -> Array:
     """Returns the boxes of a sample scene, as ``octopair generate`` makes it.
 
     Parameters

@@ -8,6 +8,8 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
+from ._arrays import Array
+
 COLLISION_CLASSES = ("unknown", "clearance", "collision", "touching", "penetrating", "contained", "duplicate")
 """Names of the classes of collisions; a code in ``Collisions.class_codes`` is a position in this tuple."""
 DEPTH_KINDS = ("unknown", "least", "at_least")
@@ -73,7 +75,8 @@ class Summary:
 
     @classmethod
     def _of(cls, row: Tuple[Any, ...]) -> "Summary":
-        return cls(*row[:4], StepSeconds(*row[4]), *row[5:])
+        pairs, truncated, seconds, entries, steps, verified, verification_seconds, not_checked = row
+        return cls(pairs, truncated, seconds, entries, StepSeconds(*steps), verified, verification_seconds, not_checked)
 
     def _repr_html_(self) -> str:
         return html_table("octopair", [
@@ -93,7 +96,7 @@ class JobResult:
         Counts and times.
     """
 
-    pairs: np.ndarray
+    pairs: Array
     summary: Summary
 
     @property
@@ -125,8 +128,8 @@ class StepResult:
         Wall-clock time.
     """
 
-    began: np.ndarray
-    ended: np.ndarray
+    began: Array
+    ended: Array
     persisting: int
     full: bool
     seconds: float
@@ -158,14 +161,14 @@ class Answers:
         Shape (queries + 1,), int64.
     """
 
-    indices: np.ndarray
-    offsets: np.ndarray
+    indices: Array
+    offsets: Array
 
     def __len__(self) -> int:
         """Returns the number of queries."""
         return len(self.offsets) - 1
 
-    def __getitem__(self, query: int) -> np.ndarray:
+    def __getitem__(self, query: int) -> Array:
         """Returns the indices that answer one query."""
         size = len(self)
         if not -size <= query < size:
@@ -173,11 +176,11 @@ class Answers:
         query %= size
         return self.indices[self.offsets[query]:self.offsets[query + 1]]
 
-    def __iter__(self) -> Iterator[np.ndarray]:
+    def __iter__(self) -> Iterator[Array]:
         return (self[query] for query in range(len(self)))
 
     @property
-    def counts(self) -> np.ndarray:
+    def counts(self) -> Array:
         """Number of answers to each query."""
         return np.diff(self.offsets)
 
@@ -195,7 +198,7 @@ class Hits(Answers):
         Position on the ray where it enters the box, in lengths of its direction; 0 if it begins inside. float64.
     """
 
-    along: np.ndarray
+    along: Array
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -208,7 +211,7 @@ class Neighbors(Answers):
         Euclidean distances between boxes, float64.
     """
 
-    distances: np.ndarray
+    distances: Array
 
 
 @dataclasses.dataclass(frozen=True)
@@ -321,38 +324,38 @@ class Collisions:
         Names of the objects of the second set.
     """
 
-    pairs: np.ndarray
-    class_codes: np.ndarray
-    distance: np.ndarray
-    nearest: np.ndarray
-    depth: np.ndarray
-    depth_kind: np.ndarray
-    depth_at_most: np.ndarray
-    open: np.ndarray
-    time: np.ndarray
-    more_contacts: np.ndarray
-    note: np.ndarray
-    contact_offsets: np.ndarray
-    contact_points: np.ndarray
-    contact_normals: np.ndarray
-    contact_depths: np.ndarray
-    contact_features: np.ndarray
+    pairs: Array
+    class_codes: Array
+    distance: Array
+    nearest: Array
+    depth: Array
+    depth_kind: Array
+    depth_at_most: Array
+    open: Array
+    time: Array
+    more_contacts: Array
+    note: Array
+    contact_offsets: Array
+    contact_points: Array
+    contact_normals: Array
+    contact_depths: Array
+    contact_features: Array
     summary: Optional[PipelineSummary] = None
     names: Optional[List[str]] = None
     against_names: Optional[List[str]] = None
 
     @property
-    def a(self) -> np.ndarray:
+    def a(self) -> Array:
         """Index of the first object of each pair."""
         return self.pairs[:, 0]
 
     @property
-    def b(self) -> np.ndarray:
+    def b(self) -> Array:
         """Index of the second object of each pair."""
         return self.pairs[:, 1]
 
     @property
-    def class_(self) -> np.ndarray:
+    def class_(self) -> Array:
         """Name of each row's class."""
         return np.array(COLLISION_CLASSES)[self.class_codes]
 
@@ -360,7 +363,7 @@ class Collisions:
         """Returns the positions of the contacts of a row in the ``contact_`` arrays."""
         return slice(int(self.contact_offsets[row]), int(self.contact_offsets[row + 1]))
 
-    def columns(self) -> Dict[str, np.ndarray]:
+    def columns(self) -> Dict[str, Array]:
         """Returns the columns with one number or text per row, for example for ``pandas.DataFrame``."""
         found = {"a": self.a, "b": self.b}
         if self.names is not None:
@@ -372,7 +375,7 @@ class Collisions:
                       "time": self.time, "contacts": np.diff(self.contact_offsets)})
         return found
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Array:
         value = getattr(self, "class_" if name == "class" else name, None)
         if not isinstance(value, np.ndarray):
             raise KeyError(name)

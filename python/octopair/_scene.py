@@ -8,7 +8,8 @@ from typing import Any, Optional, Tuple, Union
 import numpy as np
 
 from . import _arrays, _core
-from ._engine import float_dtype
+from ._arrays import Array
+from ._engine import MOST_THREADS, float_dtype
 from ._errors import InputError, InputTypeError
 from ._results import Answers, Hits, Neighbors, StepResult
 
@@ -19,11 +20,11 @@ class SceneCalls:
     """Calls of local and remote scenes."""
 
     _scene: Any
-    _dtype: np.dtype
+    _dtype: np.dtype[Any]
     _margin: float
 
     def add(self, boxes: Any, *, groups: Any = None, mask: Any = None, fixed: Any = None, padding: Any = None,
-            copy: bool = False) -> np.ndarray:
+            copy: bool = False) -> Array:
         """Adds objects and returns their ids.
 
         Parameters
@@ -85,19 +86,19 @@ class SceneCalls:
         """Finds the pairs that began and ended since the last step."""
         return StepResult(*self._scene.step())
 
-    def pairs(self) -> np.ndarray:
+    def pairs(self) -> Array:
         """Returns all pairs of the last step, ascending; shape (m, 2), uint32."""
         return self._scene.pairs()
 
-    def persisting(self) -> np.ndarray:
+    def persisting(self) -> Array:
         """Returns the pairs of the last step that existed before it."""
         return self._scene.persisting()
 
-    def contains(self, ids: Any) -> np.ndarray:
+    def contains(self, ids: Any) -> Array:
         """Returns for each id whether its object is in the scene; shape (n,), bool."""
         return self._scene.contains(_arrays.ids(ids))
 
-    def ids(self, indices: Any) -> np.ndarray:
+    def ids(self, indices: Any) -> Array:
         """Returns the ids of the objects with these indices (uint32), for example of ``pairs()[:, 0]``."""
         array = np.ascontiguousarray(_arrays.array_of(indices, "indices", copy=True))
         if array.dtype.kind not in "iu" or array.ndim != 1:
@@ -118,7 +119,7 @@ class SceneCalls:
         return self._scene.indices()
 
     @property
-    def dtype(self) -> np.dtype:
+    def dtype(self) -> np.dtype[Any]:
         """dtype of the boxes."""
         return self._dtype
 
@@ -127,7 +128,7 @@ class SceneCalls:
         """Largest gap, per axis, at which a pair counts."""
         return self._margin
 
-    def _boxes(self, boxes: Any, copy: bool) -> np.ndarray:
+    def _boxes(self, boxes: Any, copy: bool) -> Array:
         data = _arrays.boxes(boxes, "boxes", copy)
         if data.dtype == self._dtype:
             return data
@@ -140,13 +141,13 @@ class SceneCalls:
         return f"{type(self).__name__}({len(self):,} objects, dtype={self._dtype.name!r}, margin={self._margin:g})"
 
 
-def _traits(size: int, columns: Tuple[Any, Any, Any], copy: bool) -> Tuple[Optional[np.ndarray], ...]:
+def _traits(size: int, columns: Tuple[Any, Any, Any], copy: bool) -> Tuple[Optional[Array], ...]:
     groups, mask, fixed = columns
     return (_arrays.column(groups, "groups", size, np.uint32, copy), _arrays.column(mask, "mask", size, np.uint32, copy),
             _arrays.column(fixed, "fixed", size, np.bool_, copy))
 
 
-def _rows(value: Any, name: str, width: int) -> np.ndarray:
+def _rows(value: Any, name: str, width: int) -> Array:
     """Returns queries of shape (n, width), float64; a single query may have the shape (width,)."""
     array = _arrays.array_of(value, name, copy=True)
     if array.ndim == 1:
@@ -187,11 +188,11 @@ class Scene(SceneCalls):
     def __init__(self, margin: float = 0, dtype: Any = "float32", *, threads: int = 0,
                  recording: Union[str, "os.PathLike[str]"] = "", slack: float = 0) -> None:
         self._dtype = float_dtype(dtype)
-        self._margin = float(margin)
-        self._scene = _core.Scene({"threads": threads, "float64": self._dtype == np.float64, "margin": self._margin,
-                                   "recording": os.fspath(recording), "slack": float(slack)})
+        self._margin = _arrays.real(margin, "margin")
+        self._scene = _core.Scene({"threads": _arrays.whole(threads, "threads", MOST_THREADS), "float64": self._dtype == np.float64, "margin": self._margin,
+                                   "recording": os.fspath(recording), "slack": _arrays.real(slack, "slack")})
 
-    def enlarged_pairs(self) -> np.ndarray:
+    def enlarged_pairs(self) -> Array:
         """Returns the pairs of the boxes that the last step searched: with slack, enlarged boxes. They contain :meth:`pairs`."""
         return self._scene.enlarged_pairs()
 
@@ -212,7 +213,7 @@ class Scene(SceneCalls):
         """
         array = _arrays.array_of(queries, "queries", copy=True)
         width = 4 if array.ndim and array.shape[-1] == 4 else 6
-        return Answers(*self._scene.overlaps(_rows(array, "queries", width), groups))
+        return Answers(*self._scene.overlaps(_rows(array, "queries", width), _arrays.whole(groups, "groups")))
 
     def first_hits(self, origins: Any, directions: Any, *, longest: Any = np.inf, groups: int = ALL_GROUPS) -> Hits:
         """Finds the first object that each ray hits, if there is one: the points ``origin + along * direction``.
@@ -226,17 +227,17 @@ class Scene(SceneCalls):
         groups : int
             As in :meth:`overlaps`.
         """
-        return self._hits(origins, directions, longest, (False, groups))
+        return self._hits(origins, directions, longest, (False, _arrays.whole(groups, "groups")))
 
     def all_hits(self, origins: Any, directions: Any, *, longest: Any = np.inf, groups: int = ALL_GROUPS) -> Hits:
         """Finds all objects that each ray hits, ascending by `along`. Parameters are those of :meth:`first_hits`."""
-        return self._hits(origins, directions, longest, (True, groups))
+        return self._hits(origins, directions, longest, (True, _arrays.whole(groups, "groups")))
 
     def _hits(self, origins: Any, directions: Any, longest: Any, which: Tuple[bool, int]) -> Hits:
         begins, ways = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         if len(begins) != len(ways):
             raise InputError(f"{len(begins)} origins and {len(ways)} directions; each ray needs both")
-        most = _arrays.column(longest, "longest", len(begins), np.float64)
+        most: Any = _arrays.column(longest, "longest", len(begins), np.float64)
         indices, along, offsets = self._scene.hits(np.column_stack([begins, ways, most]), *which)
         return Hits(indices, offsets, along)
 
@@ -264,7 +265,6 @@ class Scene(SceneCalls):
         rows = _rows(array, "places", width)
         if width == 3:
             rows = np.hstack([rows, rows])
-        if k < 0:
-            raise InputError(f"k: {k} is below 0")
-        indices, distances, offsets = self._scene.nearest(rows, (k, float(within)), groups)
+        limits = (_arrays.whole(k, "k"), _arrays.real(within, "within"))
+        indices, distances, offsets = self._scene.nearest(rows, limits, _arrays.whole(groups, "groups"))
         return Neighbors(indices, offsets, distances)

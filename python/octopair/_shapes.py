@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence
 import numpy as np
 
 from . import _arrays, _core
+from ._arrays import Array
 from ._errors import InputError, InputTypeError
 
 
@@ -23,7 +24,7 @@ class Geometry:
     @classmethod
     def sphere(cls, radius: float) -> "Geometry":
         """Returns a ball."""
-        return cls(_core.Geometry.sphere(radius), "sphere")
+        return cls(_core.Geometry.sphere(_arrays.real(radius, "radius")), "sphere")
 
     @classmethod
     def box(cls, half_extents: Sequence[float]) -> "Geometry":
@@ -33,17 +34,17 @@ class Geometry:
     @classmethod
     def capsule(cls, radius: float, length: float) -> "Geometry":
         """Returns all points within `radius` of the segment from z = -length / 2 to length / 2."""
-        return cls(_core.Geometry.capsule(radius, length), "capsule")
+        return cls(_core.Geometry.capsule(_arrays.real(radius, "radius"), _arrays.real(length, "length")), "capsule")
 
     @classmethod
     def cylinder(cls, radius: float, length: float) -> "Geometry":
         """Returns a cylinder from z = -length / 2 to length / 2."""
-        return cls(_core.Geometry.cylinder(radius, length), "cylinder")
+        return cls(_core.Geometry.cylinder(_arrays.real(radius, "radius"), _arrays.real(length, "length")), "cylinder")
 
     @classmethod
     def cone(cls, radius: float, length: float) -> "Geometry":
         """Returns a cone from z = -length / 2, its base, to z = length / 2, its tip."""
-        return cls(_core.Geometry.cone(radius, length), "cone")
+        return cls(_core.Geometry.cone(_arrays.real(radius, "radius"), _arrays.real(length, "length")), "cone")
 
     @classmethod
     def ellipsoid(cls, radii: Sequence[float]) -> "Geometry":
@@ -53,7 +54,7 @@ class Geometry:
     @classmethod
     def plane(cls, normal: Sequence[float], offset: float) -> "Geometry":
         """Returns the points x with ``normal * x = offset``: a surface without an interior."""
-        return cls(_core.Geometry.plane(_triple(normal, "normal"), offset), "plane")
+        return cls(_core.Geometry.plane(_triple(normal, "normal"), _arrays.real(offset, "offset")), "plane")
 
     @classmethod
     def hull(cls, points: Any) -> "Geometry":
@@ -74,7 +75,7 @@ class Geometry:
             Joins vertices at the edges of gaps that are at most this apart.
         """
         return cls(_core.Geometry.mesh(_arrays.numbers(vertices, "vertices", (None, 3), copy=True),
-                                       face_array(faces), float(weld)), "mesh")
+                                       face_array(faces), _arrays.real(weld, "weld")), "mesh")
 
     @property
     def closed(self) -> bool:
@@ -95,7 +96,7 @@ def _triple(value: Any, name: str) -> List[float]:
     return [float(number) for number in array]
 
 
-def face_array(faces: Any, name: str = "faces") -> np.ndarray:
+def face_array(faces: Any, name: str = "faces") -> Array:
     """Returns triangles as uint32, shape (m, 3)."""
     array = _arrays.array_of(faces, name, copy=True)
     if array.size == 0:
@@ -109,7 +110,7 @@ def face_array(faces: Any, name: str = "faces") -> np.ndarray:
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
-def pose_array(poses: Any, name: str = "poses") -> np.ndarray:
+def pose_array(poses: Any, name: str = "poses") -> Array:
     """Returns poses of shape (n, 3, 4), float64, from (n, 3, 4) or (n, 4, 4)."""
     array = _arrays.array_of(poses, name, copy=True)
     if array.ndim != 3 or array.shape[1:] not in ((3, 4), (4, 4)):
@@ -120,7 +121,7 @@ def pose_array(poses: Any, name: str = "poses") -> np.ndarray:
     return _arrays.numbers(np.ascontiguousarray(array[:, :3]), name, (None, 3, 4), copy=True)
 
 
-def make_poses(places: Any, rotations: Any = None) -> np.ndarray:
+def make_poses(places: Any, rotations: Any = None) -> Array:
     """Returns poses of shape (n, 3, 4), float64, that rotate and then move.
 
     Parameters

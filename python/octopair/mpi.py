@@ -17,6 +17,7 @@ from typing import Any, Dict, Optional
 import numpy as np
 
 from . import _arrays, _core
+from ._arrays import Array
 from ._engine import Engine, Order, PairStream, call_options
 from ._errors import InputTypeError, UsageError
 from ._results import Summary
@@ -32,7 +33,7 @@ __all__ = ["MpiEngine", "make_engine"]
 class MpiEngine(Engine):
     """An engine of MPI ranks. :func:`octopair.mpi_engine` makes it."""
 
-    def find_pairs(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *,  # type: ignore[override]
+    def find_pairs(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *,
                    padding: Any = None, against_padding: Any = None, limit: Optional[int] = None, verify: bool = False,
                    progress: Any = None, copy: bool = False, return_summary: bool = False) -> Any:
         """Returns this rank's piece of the pairs. Parameters are those of :func:`octopair.find_pairs`, without progress."""
@@ -41,14 +42,14 @@ class MpiEngine(Engine):
         return (pairs, Summary._of(summary)) if return_summary else pairs
 
     def gather_pairs(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
-                     against_padding: Any = None, limit: Optional[int] = None, copy: bool = False) -> np.ndarray:
+                     against_padding: Any = None, limit: Optional[int] = None, copy: bool = False) -> Array:
         """Returns all pairs on rank 0, and none on the other ranks."""
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
         return _mpi.gather_pairs(self._ready(), data, call_options(margin, order, limit))[0]
 
     def find_pairs64(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, indices: Any = None,
                      against_indices: Any = None, padding: Any = None, against_padding: Any = None, limit: Optional[int] = None,
-                     copy: bool = False) -> np.ndarray:
+                     copy: bool = False) -> Array:
         """Returns this rank's piece of the pairs as uint64, for indices of your own, or for more than 2^32 - 1 objects.
 
         Parameters

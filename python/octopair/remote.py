@@ -107,7 +107,8 @@ class JobStatus:
     @classmethod
     def _of(cls, row: Dict[str, Any]) -> "JobStatus":
         error = None if row["error"] is None else make(*row["error"])
-        return cls(**{**row, "summary": Summary._of(row["summary"]), "error": error})
+        values: Dict[str, Any] = {**row, "summary": Summary._of(row["summary"]), "error": error}
+        return cls(**values)
 
     def _repr_html_(self) -> str:
         return html_table("job", [("id", self.id), ("state", self.state), ("progress", f"{self.progress:.0%}"),
@@ -205,5 +206,5 @@ class RemoteScene(SceneCalls):
 
     def __init__(self, address: str, margin: float = 0, dtype: Any = "float32", **client: Any) -> None:
         self._dtype = float_dtype(dtype)
-        self._margin = float(margin)
+        self._margin = _arrays.real(margin, "margin")
         self._scene = _remote.Scene(address, (self._dtype == np.float64, self._margin), client_options(**client))

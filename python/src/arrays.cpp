@@ -23,8 +23,9 @@ void copy_range(const PairList& list, std::uint64_t begin, std::uint64_t end, Pa
 /// Copies all pairs to `out`, on several threads: new memory costs more time than the copy.
 void copy_pairs(const PairList& list, Pair* out) {
     const std::uint64_t size = list.size();
-    const std::uint64_t most = std::max(1u, std::min(8u, std::thread::hardware_concurrency()));
-    const std::uint64_t threads = std::clamp<std::uint64_t>(size / pairs_per_thread, 1, most);
+    std::uint64_t threads = size / pairs_per_thread;
+    if (threads < 2) return copy_range(list, 0, size, out);
+    threads = std::min<std::uint64_t>(threads, std::max(1u, std::min(8u, std::thread::hardware_concurrency())));
     std::vector<std::jthread> helpers;
     for (std::uint64_t i = 1; i < threads; ++i) {
         helpers.emplace_back([&, i] { copy_range(list, size * i / threads, size * (i + 1) / threads, out); });

@@ -1,10 +1,14 @@
 #include "call.hpp"
 
+#include <fcntl.h>
 #include <pthread.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <utility>
 #include <vector>
 
 #include "octopair/error.hpp"
@@ -94,6 +98,93 @@ bool is_main_thread() {
     return PyThread_get_thread_ident() == main;
 }
 
+/// Stops the call of the main thread when a signal arrives that Python handles. CPython writes the number of each such signal to the
+/// "wakeup" file descriptor. Never destroyed, because its thread runs until the process ends.
+class SignalWatcher {
+public:
+    /// Directs signals to the watcher during a call of the main thread. Requires: the GIL, in both functions.
+    class Scope {
+    public:
+        Scope(SignalWatcher& watcher, std::stop_source& stop) : watcher_(watcher) {
+            watcher.watch(&stop);
+            former_ = set_wakeup_descriptor(watcher.pipe_[1]);
+        }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+        ~Scope() {
+            set_wakeup_descriptor(former_);
+            for (const char number : watcher_.watch(nullptr)) {
+                // The event loop that has the former descriptor receives the signal, too. If its buffer is full, it will wake up anyway.
+                if (former_ >= 0) static_cast<void>(!write(former_, &number, 1));
+            }
+        }
+
+    private:
+        SignalWatcher& watcher_;
+        int former_;
+    };
+
+    SignalWatcher() {
+        if (pipe2(pipe_.data(), O_CLOEXEC) != 0 || fcntl(pipe_[1], F_SETFL, O_NONBLOCK) != 0) {
+            throw Error(ErrorCode::resource_limit, "no file descriptors are left to watch signals");
+        }
+        std::thread([this] { serve(); }).detach();
+    }
+
+private:
+    /// Calls signal.set_wakeup_fd. Returns the former descriptor, or -1.
+    static int set_wakeup_descriptor(int descriptor) {
+        static const py::object& set = *new py::object(py::module_::import("signal").attr("set_wakeup_fd"));
+        return set(descriptor, py::arg("warn_on_full_buffer") = false).cast<int>();
+    }
+    void serve() {
+        char number = 0;
+        while (read(pipe_[0], &number, 1) == 1) {
+            const std::lock_guard lock(mutex_);
+            received_.push_back(number);
+            if (stop_ != nullptr) stop_->request_stop();
+        }
+    }
+    /// Watches another call. Returns the signals that the watcher has received.
+    std::vector<char> watch(std::stop_source* stop) {
+        const std::lock_guard lock(mutex_);
+        stop_ = stop;
+        return std::exchange(received_, {});
+    }
+
+    std::array<int, 2> pipe_ = {};
+    std::mutex mutex_;
+    std::stop_source* stop_ = nullptr;
+    std::vector<char> received_;
+};
+
+SignalWatcher& signal_watcher() {
+    static auto* const watcher = new SignalWatcher();
+    return *watcher;
+}
+
+/// Runs `work` on the main thread. Returns false if a signal stopped it whose handler did not raise.
+/// Throws: exceptions of `work` and of signal handlers.
+bool call_watched(const std::function<void(std::stop_token)>& work) {
+    std::stop_source stop;
+    std::exception_ptr failure;
+    {
+        const SignalWatcher::Scope scope(signal_watcher(), stop);
+        const py::gil_scoped_release released;
+        try {
+            work(stop.get_token());
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    }
+    if (failure && stop.stop_requested()) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        return false;
+    }
+    if (failure) std::rethrow_exception(failure);
+    return true;
+}
+
 /// Passes the progress to Python. Throws: exceptions of the callable.
 class Reporter {
 public:
@@ -161,17 +252,23 @@ void check_not_forked() {
     if (!used.exchange(true)) pthread_atfork(nullptr, nullptr, [] { forked = true; });
 }
 
-void call(const CallSize& size, const std::function<void(std::stop_token, ProgressValue&)>& work) {
+void call(const CallMode& mode, const std::function<void(std::stop_token, ProgressValue&)>& work) {
+    static std::atomic<bool> handlers_return = false;
     check_not_forked();
     ProgressValue value;
-    Reporter reporter(size.progress, value);
-    const bool small = size.objects <= small_call;
-    if (size.progress.is_none() && (small || !is_main_thread())) {
+    const auto stoppable = [&](const std::stop_token& stop) { work(stop, value); };
+    if (mode.progress.is_none() && (mode.objects <= small_call || !is_main_thread())) {
         const py::gil_scoped_release released;
-        work({}, value);
+        stoppable({});
         return;
     }
-    call_on_helper([&](const std::stop_token& stop) { work(stop, value); }, reporter);
+    if (mode.progress.is_none() && mode.repeatable && !handlers_return) {
+        if (call_watched(stoppable)) return;
+        // The process has signal handlers that do not raise. They may be frequent, so that no call would end.
+        handlers_return = true;
+    }
+    Reporter reporter(mode.progress, value);
+    call_on_helper(stoppable, reporter);
     value.set(1);
     reporter.report();
 }

@@ -1,9 +1,9 @@
 // Calls of the C++ library from Python: without the GIL, and so that signal handlers of Python run meanwhile.
 //
-// - A call from a thread other than the main thread runs on this thread.
-// - A long call from the main thread runs on a helper thread. The main thread waits and runs signal handlers every few milliseconds,
-//   because Python runs them on this thread alone. If a handler raises (KeyboardInterrupt), the call is cancelled, and the exception
-//   propagates.
+// - Python runs signal handlers only on the main thread, and only between its instructions. While the main thread is in a call, a
+//   watcher thread receives the signals and stops the call. Then the handlers run. If one raises (KeyboardInterrupt), the exception
+//   propagates. Otherwise the call is repeated on a helper thread, while the main thread runs handlers every few milliseconds.
+// - A call that cannot be repeated, or that reports progress, runs on a helper thread at once.
 // - After a fork, calls in the child throw Error{usage}, because the threads of the library do not exist there.
 #pragma once
 
@@ -21,13 +21,14 @@ namespace octopair::python {
 
 namespace py = pybind11;
 
-/// Calls with at most this many objects are short enough to run on the main thread: pairs of 4,096 equal boxes take 30 ms.
+/// Calls with at most this many objects are too short to be stopped: all pairs of 4,096 equal boxes take 30 ms.
 inline constexpr std::uint64_t small_call = 4096;
 
-/// Progress of a call as an optional Python callable, which receives a number from 0 to 1. Called on the thread of the caller.
-struct CallSize {
-    std::uint64_t objects = 0;
-    py::object progress = py::none();
+struct CallMode {
+    std::uint64_t objects = ~std::uint64_t(0);  ///< number of objects, if it bounds the time
+    py::object progress =
+        py::none();          ///< a callable that receives a number from 0 to 1, on the thread of the caller; or None
+    bool repeatable = true;  ///< a call that was stopped may be made again
 };
 
 /// Receives the fraction of a call that is done. The waiting thread passes it to Python.
@@ -42,7 +43,7 @@ private:
 
 /// Runs `work` without the GIL. `work` must stop after a stop request.
 /// Requires: the GIL. Throws: exceptions of `work`, of signal handlers and of the progress callable; Error{usage} after a fork.
-void call(const CallSize& size, const std::function<void(std::stop_token, ProgressValue&)>& work);
+void call(const CallMode& mode, const std::function<void(std::stop_token, ProgressValue&)>& work);
 
 /// Marks the library as used, and throws Error{usage} in a process that was forked from a process that used the library.
 void check_not_forked();

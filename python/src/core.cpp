@@ -1,5 +1,6 @@
 // octopair._core: everything but servers and MPI, which are modules of their own. The package octopair wraps it.
 #include "bindings.hpp"
+#include "call.hpp"
 #include "errors.hpp"
 #include "octopair/octal_code.hpp"
 #include "octopair/version.hpp"
@@ -42,6 +43,7 @@ PYBIND11_MODULE(_core, module) {
     using namespace octopair::python;
     register_errors();
     module.attr("__version__") = OCTOPAIR_VERSION;
+    module.def("mark_used", &check_not_forked);
     bind_engines(module);
     bind_jobs(module);
     bind_scenes(module);

@@ -90,7 +90,8 @@ py::dict costs_of(PythonEngine& engine) {
 
 PYBIND11_MODULE(_mpi, module) {
     using namespace octopair::python;
-    py::module_::import("octopair._core");  // has Engine, Options and Input
+    // This module has Engine, Options and Input. It must also notice a fork.
+    py::module_::import("octopair._core").attr("mark_used")();
     register_errors();
     module.def("make_engine", &mpi_engine, py::arg("communicator"), py::arg("threads"), py::arg("paper"));
     module.def("find_pairs", &find_pairs_here, py::arg("engine"), py::arg("input"), py::arg("options"));

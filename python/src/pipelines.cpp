@@ -119,8 +119,8 @@ public:
         const py::object progress = callables[0], sink = callables[1];
         CollisionColumns columns;
         PipelineSummary summary;
-        // The size is unknown: exact tests of few objects may take long.
-        call({small_call + 1, progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+        // A repetition would pass batches to the sink twice.
+        call({.progress = progress, .repeatable = false}, [&](const std::stop_token& stop, ProgressValue& value) {
             summary = pipeline_->run(
                 engine.engine(), input.input(), [&](const Batch& batch) { receive(batch, columns, sink); },
                 with_progress(options, progress, value), stop);
@@ -130,7 +130,7 @@ public:
     py::tuple count(PythonEngine& engine, const ArrayInput& input, const Options& options, const py::object& progress) {
         const Turn::Holder turn(turn_), engine_turn(engine.turn());
         PipelineSummary summary;
-        call({small_call + 1, progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+        call({.progress = progress, .repeatable = false}, [&](const std::stop_token& stop, ProgressValue& value) {
             summary = pipeline_->run(engine.engine(), input.input(), {}, with_progress(options, progress, value), stop);
         });
         return summary_of(summary);

@@ -43,7 +43,7 @@ ClientOptions options_of(const py::dict& settings) {
 /// Runs a call of a server: like a long call, because the server may be slow.
 template <typename Work>
 void call_server(const py::object& progress, Work work) {
-    call({small_call + 1, progress}, work);
+    call({.progress = progress, .repeatable = false}, work);
 }
 
 std::shared_ptr<PythonEngine> connect_engine(const std::string& address, const py::dict& settings) {
@@ -159,7 +159,8 @@ std::unique_ptr<PythonRemoteScene> make_remote_scene(const std::string& address,
 
 PYBIND11_MODULE(_remote, module) {
     using namespace octopair::python;
-    py::module_::import("octopair._core");  // has Engine, Options and Input
+    // This module has Engine, Options and Input. It must also notice a fork.
+    py::module_::import("octopair._core").attr("mark_used")();
     register_errors();
     module.def("connect", &connect_engine, py::arg("address"), py::arg("settings"));
     py::class_<PythonJobClient>(module, "JobClient")

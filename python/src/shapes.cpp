@@ -44,6 +44,17 @@ py::array triangle_boxes(const py::array& triangles) {
     return array_of<float>(std::move(boxes), {6});
 }
 
+/// Returns poses (n, 3, 4) of places (n, 3) and quaternions (n, 4) or None.
+py::array make_poses(const py::array& places, const py::object& turns) {
+    const auto all = rows_of<Point3d, double>(places);
+    const auto quaternions = optional_rows_of<std::array<double, 4>, double>(turns);
+    std::vector<Pose> poses(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        poses[i] = quaternions.empty() ? make_pose(all[i]) : make_pose(all[i], quaternions[i]);
+    }
+    return array_of<double>(std::move(poses), {3, 4});
+}
+
 }  // namespace
 
 PythonShapes::PythonShapes(std::vector<Geometry> geometries, py::tuple columns)
@@ -77,26 +88,40 @@ py::tuple PythonShapes::boxes_with(const PythonShapes& second) const {
 
 void bind_shapes(py::module_& module) {
     py::class_<Geometry>(module, "Geometry")
-        .def_static("sphere", [](double radius) { return prepared(shape::Sphere{radius}); })
-        .def_static("box", [](const Point3d& half_extents) { return prepared(shape::Box{half_extents}); })
-        .def_static("capsule",
-                    [](double radius, double length) {
-                        return prepared(shape::Capsule{radius, length});
-                    })
-        .def_static("cylinder",
-                    [](double radius, double length) {
-                        return prepared(shape::Cylinder{radius, length});
-                    })
-        .def_static("cone",
-                    [](double radius, double length) {
-                        return prepared(shape::Cone{radius, length});
-                    })
-        .def_static("ellipsoid", [](const Point3d& radii) { return prepared(shape::Ellipsoid{radii}); })
-        .def_static("plane",
-                    [](const Point3d& normal, double offset) {
-                        return prepared(shape::Plane{normal, offset});
-                    })
-        .def_static("hull", [](const py::array& points) { return prepared(shape::ConvexHull{points_of(points)}); })
+        .def_static(
+            "sphere", [](double radius) { return prepared(shape::Sphere{radius}); }, py::arg("radius"))
+        .def_static(
+            "box", [](const Point3d& half_extents) { return prepared(shape::Box{half_extents}); },
+            py::arg("half_extents"))
+        .def_static(
+            "capsule",
+            [](double radius, double length) {
+                return prepared(shape::Capsule{radius, length});
+            },
+            py::arg("radius"), py::arg("length"))
+        .def_static(
+            "cylinder",
+            [](double radius, double length) {
+                return prepared(shape::Cylinder{radius, length});
+            },
+            py::arg("radius"), py::arg("length"))
+        .def_static(
+            "cone",
+            [](double radius, double length) {
+                return prepared(shape::Cone{radius, length});
+            },
+            py::arg("radius"), py::arg("length"))
+        .def_static(
+            "ellipsoid", [](const Point3d& radii) { return prepared(shape::Ellipsoid{radii}); }, py::arg("radii"))
+        .def_static(
+            "plane",
+            [](const Point3d& normal, double offset) {
+                return prepared(shape::Plane{normal, offset});
+            },
+            py::arg("normal"), py::arg("offset"))
+        .def_static(
+            "hull", [](const py::array& points) { return prepared(shape::ConvexHull{points_of(points)}); },
+            py::arg("points"))
         .def_static("mesh", &mesh, py::arg("vertices"), py::arg("triangles"), py::arg("weld") = 0.0)
         .def_property_readonly("closed", &Geometry::closed);
     py::class_<PythonShapes>(module, "Shapes")
@@ -104,15 +129,7 @@ void bind_shapes(py::module_& module) {
         .def("boxes", &PythonShapes::boxes)
         .def("boxes_with", &PythonShapes::boxes_with, py::arg("second"));
     module.def("triangle_boxes", &triangle_boxes, py::arg("triangles"));
-    module.def("make_poses", [](const py::array& places, const py::object& turns) {
-        const auto all = rows_of<Point3d, double>(places);
-        const auto quaternions = optional_rows_of<std::array<double, 4>, double>(turns);
-        std::vector<Pose> poses(all.size());
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            poses[i] = quaternions.empty() ? make_pose(all[i]) : make_pose(all[i], quaternions[i]);
-        }
-        return array_of<double>(std::move(poses), {3, 4});
-    });
+    module.def("make_poses", &make_poses, py::arg("places"), py::arg("turns"));
 }
 
 }  // namespace octopair::python
