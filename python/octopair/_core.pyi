@@ -114,9 +114,6 @@ class Pipeline:
     def count(self, engine: Engine, input: Input, options: Options, progress: _Progress) -> Tuple[Any, ...]: ...
 
 class OctalCode:
-    """An octant: the path of digits 0 to 7 from the root of an octree. Made from digits, from a text such as "{3,1,4}", or from an integer
-    such as 314; the last two have digits 1 to 8."""
-
     def __init__(self, form: Union[str, int, Sequence[int]] = ()) -> None: ...
     @property
     def level(self) -> int: ...

@@ -49,8 +49,11 @@ def main() -> None:
 
 def _run(arguments: Sequence[str], allowed: Sequence[int] = (0,)) -> int:
     """Runs the program. Raises the error that its exit status stands for, with its message."""
-    child = subprocess.Popen([program_path(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                             stderr=subprocess.PIPE)
+    program = program_path()
+    try:
+        child = subprocess.Popen([program, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    except OSError as error:
+        raise FileError(f"cannot run {program}: {error.strerror}") from error
     try:
         messages = child.communicate()[1].decode(errors="replace")
     except BaseException:
@@ -85,11 +88,17 @@ class Detection:
         Rows of the exact stages as in a ``.jsonl`` result: names, class, depth, contacts. None for the stage ``"pairs"``.
     stats : dict
         What ``--stats`` writes: counts, times, warnings.
+    frame_offsets : numpy.ndarray or None
+        Of a moving scene: the pairs of frame `i` are at ``frame_offsets[i]`` to ``frame_offsets[i + 1]``.
+    events : numpy.ndarray or None
+        With ``events=True``: rows of frame, event (``"begin"`` or ``"end"``), a, b, as a structured array.
     """
 
     pairs: Array
     collisions: Optional[List[Dict[str, Any]]]
     stats: Dict[str, Any]
+    frame_offsets: Optional[Array] = None
+    events: Optional[Array] = None
 
     @property
     def truncated(self) -> bool:
@@ -118,7 +127,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
         How far down the pipeline. Default: pairs for boxes, objects for meshes.
     **options
         Options of the command with underscores: ``margin=0.1``, ``objects="triangle"``, ``same_parent=True``, ``exclude="rules.json"``,
-        ``report="report.html"``. See ``man octopair``. A moving scene is not read here: pass its frames to a :class:`Scene`.
+        ``report="report.html"``, ``events=True``. See ``man octopair``.
 
     Raises
     ------
@@ -127,25 +136,42 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     """
     if not inputs:
         raise UsageError("inputs: there must be at least one file")
-    for name in ("output", "events", "count_only", "stats", "quiet", "fail_on_collision"):
+    for name in ("output", "count_only", "stats", "quiet", "fail_on_collision"):
         if name in options:
             raise UsageError(f"{name}: detect() returns its result; run the program for this option")
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
-        pairs, stats = os.path.join(folder, "found.npy"), os.path.join(folder, "stats.json")
-        rows = os.path.join(folder, "found.jsonl")
+        form = ".csv" if options.get("events") else ".jsonl" if _has_shapes(inputs) and stage != "pairs" else ".npy"
+        output, stats = os.path.join(folder, "found" + form), os.path.join(folder, "stats.json")
         arguments = ["detect", *(os.fspath(name) for name in inputs), *_option("against", against), *_option("stage", stage)]
         for name, value in options.items():
             arguments += _option(name, value)
-        exact = stage in ("objects", "features") or (stage is None and _has_shapes(inputs) and options.get("objects") is None)
-        _run([*arguments, "--quiet", "--output", rows if exact else pairs, "--stats", stats])
+        _run([*arguments, "--quiet", "--output", output, "--stats", stats])
         with open(stats, encoding="utf-8") as file:
             counts = json.load(file)
-        if not exact:
-            return Detection(np.load(pairs), None, counts)
-        with open(rows, encoding="utf-8") as file:
-            found = [json.loads(line) for line in file]
-        numbers = np.array([(row["a"], row["b"]) for row in found], dtype=np.uint32).reshape(-1, 2)
-        return Detection(numbers, found, counts)
+        if form == ".csv":
+            return _read_events(output, counts)
+        return _read_rows(output, counts) if form == ".jsonl" else _read_pairs(pathlib.Path(folder), counts)
+
+
+def _read_pairs(folder: pathlib.Path, counts: Dict[str, Any]) -> Detection:
+    """Reads found.npy, or the files of a moving scene, found.000000.npy and so on."""
+    frames = [np.load(path) for path in sorted(folder.glob("found*.npy"))]
+    if (folder / "found.npy").exists():
+        return Detection(frames[0], None, counts)
+    offsets = np.concatenate([[0], np.cumsum([len(frame) for frame in frames])])
+    return Detection(np.vstack([np.empty((0, 2), np.uint32), *frames]), None, counts, offsets)
+
+
+def _read_rows(path: str, counts: Dict[str, Any]) -> Detection:
+    with open(path, encoding="utf-8") as file:
+        found = [json.loads(line) for line in file]
+    return Detection(np.array([(row["a"], row["b"]) for row in found], dtype=np.uint32).reshape(-1, 2), found, counts)
+
+
+def _read_events(path: str, counts: Dict[str, Any]) -> Detection:
+    rows = np.dtype([("frame", np.uint64), ("event", "U5"), ("a", np.uint32), ("b", np.uint32)])
+    events = np.atleast_1d(np.loadtxt(path, dtype=rows, delimiter=",", skiprows=1, usecols=(0, 1, 2, 3), ndmin=1))
+    return Detection(np.column_stack([events["a"], events["b"]]), None, counts, events=events)
 
 
 def _has_shapes(inputs: Sequence[PathLike]) -> bool:

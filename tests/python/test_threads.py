@@ -1,0 +1,242 @@
+"""The GIL, Ctrl-C, signal handlers, forks, and the end of the interpreter."""
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import brute_force, random_boxes
+
+import octopair as op
+
+# A call that takes seconds: pairs of many equal boxes, only counted.
+CROWD = "np.zeros((400_000, 6), np.float32)"
+MOST_DELAY = 1.0  # seconds; a loaded machine needs more than the 0.2 of the promise
+
+
+def run(code, *, interrupt_after=None, timeout=60):
+    """Runs Python code that prints "ready" before the interesting call. Returns the output and the seconds after the interrupt."""
+    text = "import numpy as np, octopair as op, time, signal, sys, os, threading\n" + textwrap.dedent(code)
+    child = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    begin = time.monotonic()
+    if interrupt_after is not None:
+        assert child.stdout.readline() == "ready\n"
+        time.sleep(interrupt_after)
+        begin = time.monotonic()
+        child.send_signal(signal.SIGINT)
+    try:
+        output = child.communicate(timeout=timeout)[0]
+    except subprocess.TimeoutExpired:
+        child.kill()
+        pytest.fail("it hangs: " + child.communicate()[0])
+    return output, time.monotonic() - begin, child.returncode
+
+
+CALLS = {
+    "count": f"op.count_pairs({CROWD})",
+    "find": "op.find_pairs(np.zeros((60_000, 6), np.float32))",
+    "progress": f"op.count_pairs({CROWD}, progress=lambda done: None)",
+    "stream": f"[len(chunk) for chunk in op.stream_pairs({CROWD})]",
+    "job": f"op.Engine().submit({CROWD}, limit=10**9).wait()",
+    "processes": f"op.Engine('processes', workers=2).count_pairs({CROWD})",
+    "step": "s = op.Scene(); s.add(np.zeros((60_000, 6), np.float32)); s.step()",
+    "pipeline": f"op.Pipeline().keep(lambda batch: batch.a < 0).run({CROWD})",
+    "queries": "s = op.Scene(); s.add(np.random.rand(300_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
+               "s.nearest(np.random.rand(100_000, 3), k=2000)",
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_an_interrupt_ends_a_call(name):
+    output, seconds, _ = run(f"""
+        def call():
+            {CALLS[name]}
+        op.find_pairs(np.zeros((2, 6)))
+        print("ready", flush=True)
+        try:
+            call()
+            print("completed")
+        except KeyboardInterrupt:
+            print("interrupted")
+        assert op.find_pairs(np.zeros((2, 6))).tolist() == [[0, 1]]
+        """, interrupt_after=0.5)
+    assert output == "interrupted\n"
+    assert seconds < MOST_DELAY + (1 if name in ("processes", "job") else 0)
+
+
+def test_handlers_that_return_do_not_end_a_call():
+    output, _, code = run("""
+        seen = []
+        signal.signal(signal.SIGALRM, lambda *_: seen.append(1))
+        signal.setitimer(signal.ITIMER_REAL, 0.01, 0.01)
+        boxes = np.zeros((30_000, 6), np.float32)
+        for _ in range(3):
+            assert op.count_pairs(boxes) == 30_000 * 29_999 // 2
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        print(len(seen) > 5)
+        """)
+    assert (output, code) == ("True\n", 0)
+
+
+def test_event_loops_receive_signals_that_arrive_in_a_call():
+    output, _, code = run("""
+        import asyncio
+        async def main():
+            seen = asyncio.Event()
+            asyncio.get_running_loop().add_signal_handler(signal.SIGUSR1, seen.set)
+            threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+            op.count_pairs(np.zeros((60_000, 6), np.float32))
+            await asyncio.wait_for(seen.wait(), 5)
+            print("seen")
+        asyncio.run(main())
+        """)
+    assert (output, code) == ("seen\n", 0)
+
+
+def test_calls_release_the_gil():
+    boxes = np.zeros((60_000, 6), np.float32)
+    engine = op.Engine(threads=1)
+    thread = threading.Thread(target=engine.count_pairs, args=(boxes,))
+    thread.start()
+    ticks = 0
+    while thread.is_alive():
+        time.sleep(0.001)
+        ticks += 1
+    assert ticks > 20
+
+
+def test_threads_share_engines_and_scenes():
+    boxes = random_boxes(3000)
+    expected = brute_force(boxes)
+    engine, scene = op.Engine(), op.Scene()
+    ids = scene.add(boxes)
+    failures = []
+
+    def work():
+        own = op.Engine(threads=1)
+        for _ in range(30):
+            if not np.array_equal(engine.find_pairs(boxes), expected) or not np.array_equal(own.find_pairs(boxes), expected):
+                failures.append("engine")
+            scene.move(ids, boxes)
+            scene.step()
+            if not np.array_equal(scene.pairs(), expected):
+                failures.append("scene")
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failures
+
+
+def test_progress_is_reported_on_this_thread():
+    seen = []
+    op.count_pairs(np.zeros((60_000, 6), np.float32), progress=lambda done: seen.append((done, threading.get_ident())))
+    assert seen[-1][0] == 1 and {thread for _, thread in seen} == {threading.get_ident()}
+    assert [done for done, _ in seen] == sorted(done for done, _ in seen)
+
+
+def test_jobs():
+    boxes = random_boxes(5000)
+    engine = op.Engine(threads=1)
+    slow = engine.submit(np.zeros((100_000, 6), np.float32), limit=10**9)
+    job = engine.submit(boxes, margin=0.01)
+    assert job.state == "queued" and not job.wait(0.01) and not job.done()
+    with pytest.raises(TimeoutError):
+        job.result(timeout=0.01)
+    slow.cancel()
+    assert slow.wait(10) and slow.state == "cancelled"
+    with pytest.raises(op.CancelledError):
+        slow.result()
+    result = job.result()
+    assert job.state == "done" and job.progress == 1 and job.result() is result
+    assert result.pairs.tobytes() == op.find_pairs(boxes, margin=0.01).tobytes() and not result.truncated
+    boxes[7, 0] = np.nan
+    failed = engine.submit(boxes)
+    with pytest.raises(op.InputError) as caught:
+        failed.result()
+    assert caught.value.index == 7 and failed.state == "failed"
+    del engine, job
+    assert result.summary.pairs == len(result.pairs)
+
+
+def test_streams_end_early():
+    engine = op.Engine()
+    stream = engine.stream_pairs(np.zeros((60_000, 6), np.float32), order="octal", buffer_bytes=1 << 20)
+    assert len(next(stream)) > 0 and stream.summary is None
+    with pytest.raises(op.UsageError, match="stream"):
+        engine.count_pairs(np.zeros((2, 6)))
+    stream.close()
+    with pytest.raises(StopIteration):
+        next(stream)
+    assert engine.count_pairs(np.zeros((2, 6))) == 1
+    for chunk in engine.stream_pairs(np.zeros((60_000, 6), np.float32), order="octal"):
+        break
+    del chunk
+    assert engine.count_pairs(np.zeros((2, 6))) == 1
+    with pytest.raises(op.InputError):
+        next(engine.stream_pairs(np.full((5, 6), np.nan)))
+    assert engine.count_pairs(np.zeros((2, 6))) == 1
+
+
+@pytest.mark.parametrize("use", ["e.find_pairs(b)", "op.find_pairs(b)", "s.step()", "op.Scene()", "j.wait()", "op.Engine('processes')"])
+def test_a_fork_is_refused(use):
+    output, _, code = run(f"""
+        b = np.zeros((5000, 6), np.float32)
+        e, s = op.Engine(), op.Scene()
+        s.add(b)
+        e.find_pairs(b)
+        j = e.submit(b)
+        child = os.fork()
+        if child == 0:
+            try:
+                {use}
+            except op.UsageError as error:
+                print("refused", "spawn" in str(error), flush=True)
+            sys.exit(3)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 3
+        assert len(e.find_pairs(b)) == 5000 * 4999 // 2
+        """)
+    assert (output, code) == ("refused True\n", 0)
+
+
+def test_a_fork_before_the_first_use_works():
+    output, _, code = run("""
+        import multiprocessing
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            print(pool.map(op.count_pairs, [np.zeros((n, 6)) for n in (10, 100)]))
+        """)
+    assert (output, code) == ("[45, 4950]\n", 0)
+
+
+def test_spawn_works(tmp_path):
+    script = tmp_path / "spawned.py"
+    script.write_text(textwrap.dedent("""
+        import multiprocessing, numpy as np, octopair as op
+        if __name__ == "__main__":
+            op.count_pairs(np.zeros((5000, 6)))
+            with multiprocessing.get_context("spawn").Pool(2) as pool:
+                print(pool.map(op.count_pairs, [np.zeros((n, 6)) for n in (10, 100)]))
+        """))
+    found = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60, check=True)
+    assert found.stdout == "[45, 4950]\n"
+
+
+@pytest.mark.parametrize("ending", ["j = op.Engine().submit(b)", "s = op.stream_pairs(b, order='octal'); next(s)", "e = op.Engine('processes'); j = e.submit(b)",
+                                    "threading.Thread(target=op.count_pairs, args=(b,), daemon=True).start(); time.sleep(0.1)",
+                                    "s = op.Scene(); s.add(b[:9000]); s.step(); cycle = [s]; cycle.append(cycle)"])
+def test_the_interpreter_ends_in_the_middle_of_work(ending):
+    output, _, code = run(f"b = np.zeros((100_000, 6), np.float32)\n{ending}\nprint('end')")
+    assert (output, code) == ("end\n", 0)
+
+
+def test_engines_work_in_threads_that_are_not_the_main_thread():
+    found = []
+    thread = threading.Thread(target=lambda: found.append(op.find_pairs(np.zeros((3, 6)), progress=lambda done: None)))
+    thread.start()
+    thread.join()
+    assert len(found[0]) == 3
