@@ -8,11 +8,13 @@ fail() {
     exit 1
 }
 
-# Prints the packages of a component, one per line.
+# Prints the packages of a component, one per line. A line "+NAME" in its list stands for the component NAME.
 packages_of() {
-    local list="$root/scripts/packages/$1.txt"
+    local list="$root/scripts/packages/$1.txt" line
     [ -f "$list" ] || fail "no component '$1'; there are: $(cd "$root/scripts/packages" && ls ./*.txt | sed 's|./||; s|.txt||' | xargs)"
-    sed 's/#.*//' "$list" | awk 'NF { print $1 }'
+    for line in $(sed 's/#.*//' "$list" | awk 'NF { print $1 }'); do
+        if [[ $line == +* ]]; then packages_of "${line#+}"; else echo "$line"; fi
+    done
 }
 
 # Runs a command as root: directly, or through sudo.
@@ -34,8 +36,10 @@ update_package_lists() {
     export OCTOPAIR_LISTS_UPDATED=1
 }
 
-# Makes CMake compile through ccache, if installed. Checkouts share the cache, because paths are relative to the root.
+# Makes CMake compile through ccache, if installed. Checkouts share the cache, because paths are relative to the root. The
+# sloppiness lets precompiled headers in; no source uses the time of its compilation.
 compile_through_ccache() {
     command -v ccache > /dev/null || return 0
-    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1 \
+        CCACHE_SLOPPINESS=pch_defines,time_macros
 }

@@ -101,7 +101,7 @@ def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Seque
     if not array.flags.c_contiguous or not array.flags.aligned:
         if not copy:
             raise InputError(f"{name}: the array is not C-contiguous; pass numpy.ascontiguousarray({name}), {_TO_COPY}")
-        return np.ascontiguousarray(array)
+        return np.array(array, order="C")  # ascontiguousarray would return an array that is not aligned
     return array
 
 
@@ -125,7 +125,7 @@ def numbers(value: Any, name: str, shape: Sequence[Optional[int]], copy: bool = 
     if array.dtype == np.float32 or copy:
         if array.dtype.kind not in "biuf":
             raise InputTypeError(f"{name}: numbers of the dtype {array.dtype} cannot become float64")
-        return np.ascontiguousarray(array, dtype=np.float64)
+        return np.array(array, dtype=np.float64, order="C")
     return checked(array, name, shape, (np.float64,))
 
 

@@ -31,7 +31,9 @@ Boxes boxes_of(const py::array& array);
 template <typename Row, typename Number = Row>
 std::span<const Row> rows_of(const py::array& array) {
     constexpr std::size_t width = sizeof(Row) / sizeof(Number);
-    if (!py::isinstance<py::array_t<Number, py::array::c_style>>(array) || std::size_t(array.size()) % width != 0) {
+    const bool aligned = reinterpret_cast<std::uintptr_t>(array.data()) % alignof(Row) == 0;
+    if (!py::isinstance<py::array_t<Number, py::array::c_style>>(array) || !aligned ||
+        std::size_t(array.size()) % width != 0) {
         throw py::type_error("an array has the wrong dtype, order or shape");
     }
     return {static_cast<const Row*>(array.data()), std::size_t(array.size()) / width};
