@@ -107,6 +107,8 @@ public:
     /// Filters a batch. Requires: the effect on a pair depends only on that pair.
     /// Thread safety: several threads call this at once, with different batches.
     virtual void apply(Batch& batch) const = 0;
+    /// Returns how many pairs a batch should have at least, for a filter whose time is mostly per call. The last batch may have fewer.
+    virtual std::size_t least_batch() const { return 1; }
 };
 
 /// Returns a filter that keeps the pairs for which `keep` returns true.

@@ -6,6 +6,7 @@ Arrays of the right dtype and order are read where they lie. Other arrays are re
 
 from __future__ import annotations
 
+import math
 import operator
 from typing import Any, Optional, Sequence, Tuple
 
@@ -31,8 +32,25 @@ def real(value: Any, name: str) -> float:
         raise InputTypeError(f"{name}: {value!r} is not a number")
     try:
         return float(value)
+    except OverflowError:
+        raise InputError(f"{name}: {value} is beyond the range of float64") from None
     except (TypeError, ValueError):
         raise InputTypeError(f"{name}: {value!r} is not a number") from None
+
+
+def length(value: Any, name: str) -> float:
+    """Returns a finite number that is not below 0."""
+    number = real(value, name)
+    if not 0 <= number < math.inf:
+        raise InputError(f"{name}: {number} is not a finite number >= 0")
+    return number
+
+
+def text(value: Any, name: str) -> str:
+    """Returns a str."""
+    if not isinstance(value, str):
+        raise InputTypeError(f"{name}: {value!r} is not a str")
+    return value
 
 
 Array = npt.NDArray[Any]
@@ -82,6 +100,18 @@ def _check_shape(array: Array, name: str, shape: Sequence[Optional[int]]) -> Non
         raise InputError(f"{name}: the shape is {array.shape}; it must be {_shape_text(shape)}")
 
 
+def _converted(array: Array, name: str, dtype: Any) -> Array:
+    """Returns numbers as another dtype. Integers must keep their values."""
+    if dtype.kind == "f":
+        return np.ascontiguousarray(array, dtype=dtype)
+    with np.errstate(invalid="ignore"):
+        found = np.ascontiguousarray(array, dtype=dtype)
+    wrong = np.flatnonzero((found != array).reshape(-1))
+    if len(wrong):
+        raise InputError(f"{name}: element {wrong[0]} is {array.reshape(-1)[wrong[0]]}, which {dtype.name} cannot hold")
+    return found
+
+
 def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Sequence[Any], copy: bool = False) -> Array:
     """Returns an array of this shape (None: any size), C-contiguous, of one of the dtypes.
 
@@ -97,10 +127,12 @@ def checked(value: Any, name: str, shape: Sequence[Optional[int]], dtypes: Seque
                                  f"Pass {name}.astype(numpy.{first}), {_TO_COPY}")
         if array.dtype.kind not in "biuf":
             raise InputTypeError(f"{name}: numbers of the dtype {array.dtype} cannot become {wanted[0].name}")
-        return np.ascontiguousarray(array, dtype=wanted[0])
+        return _converted(array, name, wanted[0])
     if not array.flags.c_contiguous or not array.flags.aligned:
-        if not copy:
+        if not copy and array.flags.aligned:
             raise InputError(f"{name}: the array is not C-contiguous; pass numpy.ascontiguousarray({name}), {_TO_COPY}")
+        if not copy:
+            raise InputError(f"{name}: the array is not aligned; pass {name}.copy(), {_TO_COPY}")
         return np.array(array, order="C")  # ascontiguousarray would return an array that is not aligned
     return array
 

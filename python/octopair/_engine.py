@@ -24,11 +24,13 @@ _DEFAULT_OPTIONS = _core.Options()
 def call_options(margin: float = 0, order: str = "ascending", limit: Optional[int] = None, verify: bool = False,
                  buffer_bytes: Optional[int] = None) -> _core.Options:
     """Returns the options of a call."""
-    if margin == 0 and order == "ascending" and limit is None and not verify and buffer_bytes is None:
+    if type(margin) is not float:
+        margin = _arrays.real(margin, "margin")
+    if margin == 0 and isinstance(order, str) and order == "ascending" and limit is None and not verify and buffer_bytes is None:
         return _DEFAULT_OPTIONS
     options = _core.Options()
-    options.margin = _arrays.real(margin, "margin")
-    if order not in ("ascending", "octal"):
+    options.margin = margin
+    if _arrays.text(order, "order") not in ("ascending", "octal"):
         raise InputError(f"order: {order!r} is neither 'ascending' nor 'octal'")
     options.octal = order == "octal"
     if limit is not None:
@@ -66,7 +68,7 @@ class PairStream:
         try:
             return self._stream.next()
         except BaseException:
-            self._end()
+            self.close()
             raise
 
     def close(self) -> None:
@@ -175,6 +177,7 @@ class Engine:
     """Finds all pairs of overlapping boxes. Keeps its threads and its memory from call to call.
 
     Every engine returns the same bytes. Calls of several Python threads run one after another; engines are independent of each other.
+    While a stream of the engine is open, its other calls raise :class:`UsageError`. So do calls within a callback of the engine.
 
     Parameters
     ----------
@@ -200,7 +203,7 @@ class Engine:
     """
 
     def __init__(self, kind: str = "local", *, threads: int = 0, workers: int = 0, **client: Any) -> None:
-        if ":" in kind:
+        if ":" in _arrays.text(kind, "kind"):
             from . import remote
             self._start(remote._connect(kind, **client), kind)
             if threads or workers:
@@ -301,6 +304,19 @@ class Engine:
 
     def __repr__(self) -> str:
         return f"Engine({self._kind!r})"
+
+
+def path_text(path: Any, name: str) -> str:
+    """Returns a path as text that the system can use."""
+    try:
+        text = os.fspath(path)
+    except TypeError:
+        raise InputTypeError(f"{name}: {path!r} is not a path") from None
+    if isinstance(text, bytes):
+        text = os.fsdecode(text)
+    if "\0" in text:
+        raise InputError(f"{name}: {path!r} has a character that no path may have")
+    return str(text)
 
 
 def float_dtype(dtype: Any) -> np.dtype[Any]:
@@ -422,6 +438,8 @@ def stream_pairs(boxes: Any, against: Any = None, margin: float = 0, order: Orde
                  padding: Any = None, against_padding: Any = None, limit: Optional[int] = None, verify: bool = False,
                  buffer_bytes: int = 1 << 30, copy: bool = False) -> PairStream:
     """Finds all pairs, and returns an iterator over chunks of them, in order. Memory does not grow with the number of pairs.
+
+    The order ``"octal"`` yields the first chunk soonest; the ascending order counts the pairs of each object before.
 
     Parameters are those of :func:`find_pairs`, and:
 

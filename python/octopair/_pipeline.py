@@ -42,11 +42,22 @@ class Pipeline:
     def __init__(self, threads: int = 0) -> None:
         self._pipeline = _core.Pipeline(_arrays.whole(threads, "threads", MOST_THREADS))
         self._filters: list[str] = []
+        self._joins: list[Tuple[str, bool]] = []
         self._names: Tuple[Optional[Sequence[str]], Optional[Sequence[str]]] = (None, None)
 
-    def _added(self, name: str) -> "Pipeline":
+    def _added(self, name: str, join: Optional[bool] = None) -> "Pipeline":
+        """Notes a filter. `join`: whether it has a second set; None: it does not matter."""
         self._filters.append(name)
+        if join is not None:
+            self._joins.append((name, join))
         return self
+
+    def _check_join(self, against: Any) -> None:
+        for name, join in self._joins:
+            if join and against is None:
+                raise UsageError(f"filter {name!r} has a second set, but the boxes have none; pass against to run()")
+            if not join and against is not None:
+                raise UsageError(f"filter {name!r} has no second set, but the boxes have; pass against to the filter")
 
     def keep(self, condition: Callable[[Collisions], Any], name: str = "") -> "Pipeline":
         """Adds a filter of your own.
@@ -55,13 +66,14 @@ class Pipeline:
         ----------
         condition : callable
             Receives a batch of pairs with what earlier filters found, and returns an array of bool, one per pair: True keeps the pair. The
-            effect on a pair may depend only on that pair. Several threads call this, one at a time.
+            effect on a pair may depend only on that pair. Threads of the library call this, one at a time. It may not use this pipeline
+            and its engine. An interrupt takes effect after it returns.
         name : str
             Name in the summary. Default: the name of the callable.
         """
         if not callable(condition):
             raise InputTypeError(f"condition: a {type(condition).__name__} is not callable")
-        label = name or getattr(condition, "__name__", "keep")
+        label = str(name or getattr(condition, "__name__", "keep"))
 
         def keep_batch(columns: Dict[str, Any]) -> Array:
             batch = Collisions(**columns)
@@ -76,10 +88,12 @@ class Pipeline:
 
     def groups(self, groups: Any, mask: Any, against: Optional[Tuple[Any, Any]] = None) -> "Pipeline":
         """Keeps pairs where b's mask has a bit of a's groups, and a's mask has a bit of b's groups. Arrays of uint32."""
+        if against is not None and (not isinstance(against, (tuple, list)) or len(against) != 2):
+            raise InputTypeError("against: it must be (groups, mask)")
         first = (_column(groups, "groups"), _column(mask, "mask"))
         second = None if against is None else (_column(against[0], "groups"), _column(against[1], "mask"))
         self._pipeline.add_groups(first, second)
-        return self._added("groups")
+        return self._added("groups", against is not None)
 
     def ignored_pairs(self, pairs: Any, join: bool = False) -> "Pipeline":
         """Drops these pairs, integers of shape (m, 2). Without `join`, (a, b) also drops (b, a)."""
@@ -90,19 +104,24 @@ class Pipeline:
             raise InputError(f"pairs: {array.dtype} of the shape {array.shape}; it must have integers of the shape (m, 2)")
         if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
             raise InputError("pairs: an index is below 0 or above 4294967295")
-        self._pipeline.add_ignored_pairs(np.ascontiguousarray(array, dtype=np.uint32), join)
-        return self._added("ignored pairs")
+        self._pipeline.add_ignored_pairs(np.ascontiguousarray(array, dtype=np.uint32), bool(join))
+        return self._added("ignored pairs", bool(join))
 
     def name_rules(self, names: Sequence[str], rules: Sequence[Tuple[str, str]],
                    against: Optional[Sequence[str]] = None) -> "Pipeline":
         """Drops pairs whose names match a rule: a pair of patterns, where ``*`` stands for any characters and ``?`` for one."""
-        self._pipeline.add_names(list(names), [(str(a), str(b)) for a, b in rules], None if against is None else list(against))
-        return self._added("name rules")
+        try:
+            patterns = [(_arrays.text(a, "rules"), _arrays.text(b, "rules")) for a, b in rules]
+        except (TypeError, ValueError) as error:
+            raise InputTypeError(f"rules: each must be a pair of patterns: {error}") from error
+        second = None if against is None else [_arrays.text(name, "against") for name in against]
+        self._pipeline.add_names([_arrays.text(name, "names") for name in names], patterns, second)
+        return self._added("name rules", second is not None)
 
     def parents(self, parents: Any, against: Any = None) -> "Pipeline":
         """Keeps pairs of objects with different parents: any number per object, such as that of a body."""
         self._pipeline.add_parents(_column(parents, "parents"), None if against is None else _column(against, "against"))
-        return self._added("same parent")
+        return self._added("same parent", against is not None)
 
     def bounding_spheres(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
         """Drops pairs whose bounding spheres are further apart than margin and paddings."""
@@ -134,8 +153,8 @@ class Pipeline:
 
     def _shapes(self, kind: str, sets: Tuple[Shapes, Optional[Shapes]], options: Tuple[Any, ...]) -> "Pipeline":
         first, second = sets
-        for shapes in sets:
-            if shapes is not None and not isinstance(shapes, Shapes):
+        for shapes in (first,) if second is None else sets:
+            if not isinstance(shapes, Shapes):
                 raise InputTypeError(f"shapes: a {type(shapes).__name__} is not a Shapes")
         margin, contacts, tolerance, duplicate = options
         self._pipeline.add_shapes(kind, first._shapes, None if second is None else second._shapes,
@@ -143,11 +162,11 @@ class Pipeline:
                                    _arrays.real(tolerance, "tolerance"),
                                    None if duplicate is None else _arrays.real(duplicate, "duplicate_tolerance")))
         self._names = (first.names, None if second is None else second.names)
-        return self._added(kind)
+        return self._added(kind, second is not None)
 
     def min_depth(self, least: float) -> "Pipeline":
         """Drops pairs that are certainly less deep. Requires :meth:`exact_features` or :meth:`triangles` before it."""
-        self._pipeline.add_depth(_arrays.real(least, "least"))
+        self._pipeline.add_depth(_arrays.real(least, "min_depth"))
         return self._added("depth")
 
     def triangles(self, triangles: Any, owners: Any = None, *, adjacent: str = "beyond_shared", margin: float = 0,
@@ -156,8 +175,8 @@ class Pipeline:
 
         Parameters
         ----------
-        triangles : array, shape (n, 3, 3), float32 or float64
-            Corners of each triangle.
+        triangles : array, shape (n, 3, 3)
+            Corners of each triangle; converted to float64.
         owners : array, shape (n,), uint32, optional
             Number of each triangle's mesh. Default: all are of one mesh.
         adjacent : {"beyond_shared", "exclude", "include"}
@@ -171,6 +190,8 @@ class Pipeline:
         against : tuple, optional
             Triangles and owners of the second set; the owners may be None.
         """
+        if against is not None and (not isinstance(against, (tuple, list)) or len(against) != 2):
+            raise InputTypeError("against: it must be (triangles, owners)")
         if adjacent not in ADJACENT:
             raise InputError(f"adjacent: {adjacent!r} is none of {', '.join(ADJACENT)}")
         first = (_triangles(triangles), None if owners is None else _column(owners, "owners"))
@@ -178,8 +199,8 @@ class Pipeline:
         if against is not None:
             second = (_triangles(against[0]), None if against[1] is None else _column(against[1], "owners"))
         self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), _arrays.real(margin, "margin"), bool(features),
-                                                  _arrays.real(tolerance, "tolerance")))
-        return self._added("exact triangle")
+                                                  _arrays.length(tolerance, "tolerance")))
+        return self._added("exact triangle", second is not None)
 
     def run(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
             against_padding: Any = None, limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None,
@@ -197,18 +218,23 @@ class Pipeline:
         limit : int, optional
             Maximum number of collisions.
         """
+        self._check_join(against)
+        if sink is not None and not callable(sink):
+            raise InputTypeError(f"sink: a {type(sink).__name__} is not callable")
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
         receive = None if sink is None else lambda columns: sink(Collisions(**columns))
         with reporter(progress) as report:
             columns, summary = self._pipeline.run(_core_engine(engine), data, call_options(margin, order, limit, verify),
                                                   (report, receive))
-        return Collisions(**columns, summary=PipelineSummary._of(summary), names=_list(self._names[0]),
-                          against_names=_list(self._names[1]))
+        names, others = self._names
+        return Collisions(**columns, summary=PipelineSummary._of(summary), names=_list(names),
+                          against_names=_list(names if against is None else others))
 
     def count(self, boxes: Any, against: Any = None, margin: float = 0, *, padding: Any = None, against_padding: Any = None,
               limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None, progress: Progress = None,
               copy: bool = False) -> PipelineSummary:
         """Like :meth:`run`, but only counts the collisions, and returns the summary."""
+        self._check_join(against)
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
         with reporter(progress) as report:
             return PipelineSummary._of(self._pipeline.count(_core_engine(engine), data,
@@ -233,7 +259,7 @@ def _column(value: Any, name: str) -> Array:
 
 
 def _triangles(value: Any) -> Array:
-    return _arrays.numbers(value, "triangles", (None, 3, 3))
+    return _arrays.numbers(value, "triangles", (None, 3, 3), copy=True)
 
 
 def _core_engine(engine: Optional[Engine]) -> _core.Engine:
@@ -263,7 +289,7 @@ def collide(shapes: Shapes, against: Optional[Shapes] = None, *, margin: float =
     tolerance : float
         Objects are touching if a translation of at most this length is proven to separate them.
     min_depth : float, optional
-        Leaves out pairs that are certainly less deep.
+        Leaves out pairs that are certainly less deep. Pairs that do not meet, within the margin, have no depth and are kept.
     stage : {"features", "objects"}
         ``"objects"`` computes no depth and no contacts.
     keep : callable, optional
@@ -327,8 +353,8 @@ def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_sha
 
     Parameters
     ----------
-    vertices : array, shape (n, 3), float32 or float64
-        Corners.
+    vertices : array, shape (n, 3)
+        Corners; converted to float64.
     faces : array, shape (m, 3), integers
         Triangles.
     adjacent, margin, tolerance
@@ -350,8 +376,7 @@ def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_sha
     >>> op.self_intersections(vertices, [[0, 1, 2], [3, 4, 5]])
     array([[0, 1]], dtype=uint32)
     """
-    corners = _arrays.array_of(vertices, "vertices", copy=True)
-    corners = _arrays.numbers(corners, "vertices", (None, 3), copy=corners.dtype.kind in "iu" or not corners.flags.c_contiguous)
+    corners = _arrays.numbers(vertices, "vertices", (None, 3), copy=True)
     numbers = face_array(faces)
     if numbers.size and numbers.max() >= len(corners):
         wrong = int(np.flatnonzero((numbers >= len(corners)).any(axis=1))[0])

@@ -15,7 +15,9 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 import numpy as np
 
+from . import _arrays
 from ._arrays import Array
+from ._engine import path_text
 from ._errors import EngineError, Error, FileError, InputError, ResourceLimitError, UsageError
 from ._results import html_table
 
@@ -76,7 +78,7 @@ def _option(name: str, value: Any) -> List[str]:
     return [flag] if value is True else [flag, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Detection:
     """Result of :func:`detect`.
 
@@ -126,7 +128,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     stage : {"pairs", "objects", "features"}, optional
         How far down the pipeline. Default: pairs for boxes, objects for meshes.
     **options
-        Options of the command with underscores: ``margin=0.1``, ``objects="triangle"``, ``same_parent=True``, ``exclude="rules.json"``,
+        Options of the command with underscores: ``margin=0.1``, ``objects="triangle"``, ``same_parent="exclude"``, ``exclude="rules.json"``,
         ``report="report.html"``, ``events=True``. See ``man octopair``.
 
     Raises
@@ -136,13 +138,14 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     """
     if not inputs:
         raise UsageError("inputs: there must be at least one file")
-    for name in ("output", "count_only", "stats", "quiet", "fail_on_collision"):
+    files = [_file(name, "inputs") for name in inputs]
+    for name in ("help", "output", "count_only", "stats", "quiet", "fail_on_collision"):
         if name in options:
             raise UsageError(f"{name}: detect() returns its result; run the program for this option")
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
-        form = ".csv" if options.get("events") else ".jsonl" if _has_shapes(inputs) and stage != "pairs" else ".npy"
+        form = ".csv" if options.get("events") else ".jsonl" if _has_shapes(files) and stage != "pairs" else ".npy"
         output, stats = os.path.join(folder, "found" + form), os.path.join(folder, "stats.json")
-        arguments = ["detect", *(os.fspath(name) for name in inputs), *_option("against", against), *_option("stage", stage)]
+        arguments = ["detect", *files, *_option("against", None if against is None else _file(against, "against")), *_option("stage", stage)]
         for name, value in options.items():
             arguments += _option(name, value)
         _run([*arguments, "--quiet", "--output", output, "--stats", stats])
@@ -174,8 +177,14 @@ def _read_events(path: str, counts: Dict[str, Any]) -> Detection:
     return Detection(np.column_stack([events["a"], events["b"]]), None, counts, events=events)
 
 
-def _has_shapes(inputs: Sequence[PathLike]) -> bool:
-    return not any(os.fspath(name).lower().endswith((".npy", ".csv")) for name in inputs)
+def _file(path: Any, name: str) -> str:
+    """Returns a path that is not an option of the program."""
+    text = path_text(path, name)
+    return os.path.join(".", text) if text.startswith("-") else text
+
+
+def _has_shapes(inputs: Sequence[str]) -> bool:
+    return not any(name.lower().endswith((".npy", ".csv")) for name in inputs)
 
 
 def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = None) -> Array:
@@ -197,7 +206,10 @@ def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = 
     """
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
         path = os.path.join(folder, "boxes.npy")
-        _run(["generate", kind, "--objects", str(objects), "--seed", str(seed), *_option("frames", frames), "--quiet", "--output", path])
+        if _arrays.text(kind, "kind").startswith("-"):
+            raise UsageError(f"kind: {kind!r} is no kind of scene")
+        counts = ["--objects", str(_arrays.whole(objects, "objects")), "--seed", str(_arrays.whole(seed, "seed", (1 << 64) - 1))]
+        _run(["generate", kind, *counts, *_option("frames", frames), "--quiet", "--output", path])
         return np.load(path)
 
 
@@ -220,4 +232,4 @@ def replay(recording: PathLike, *, threads: int = 0, check: bool = True) -> None
     InputError
         If the file is not a valid recording.
     """
-    _run(["replay", os.fspath(recording), *_option("threads", threads), *_option("check", check), "--quiet"])
+    _run(["replay", _file(recording, "recording"), *_option("threads", threads), *_option("check", check), "--quiet"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import html
+import operator
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
@@ -84,7 +85,7 @@ class Summary:
             ("time", f"{self.seconds * 1e3:.3f} ms"), ("entries", f"{self.entries:,}")])
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class JobResult:
     """Result of a job.
 
@@ -111,7 +112,7 @@ class JobResult:
         return self.summary._repr_html_()
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class StepResult:
     """Result of a step of a scene.
 
@@ -147,7 +148,7 @@ class StepResult:
                                    ("persisting", f"{self.persisting:,}"), ("time", f"{self.seconds * 1e3:.3f} ms")])
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Answers:
     """Answers to many queries, flat.
 
@@ -170,7 +171,7 @@ class Answers:
 
     def __getitem__(self, query: int) -> Array:
         """Returns the indices that answer one query."""
-        size = len(self)
+        size, query = len(self), operator.index(query)
         if not -size <= query < size:
             raise IndexError(f"query {query} of {size}")
         query %= size
@@ -188,7 +189,7 @@ class Answers:
         return f"{type(self).__name__}({len(self.indices):,} answers to {len(self):,} queries)"
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Hits(Answers):
     """Boxes that rays hit.
 
@@ -201,7 +202,7 @@ class Hits(Answers):
     along: Array
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Neighbors(Answers):
     """Nearest objects.
 
@@ -277,7 +278,7 @@ class PipelineSummary:
         return html_table("collisions", rows)
 
 
-@dataclasses.dataclass(frozen=True, repr=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Collisions:
     """Pairs with what exact filters found, in columns of equal length.
 
@@ -295,7 +296,7 @@ class Collisions:
     nearest : numpy.ndarray
         Nearest points of objects that do not meet, shape (m, 2, 3), float64.
     depth : numpy.ndarray
-        Penetration depth of objects that meet, float64.
+        Penetration depth of objects that meet, float64. 0 for duplicates: equal objects in one place.
     depth_kind : numpy.ndarray
         Positions in ``DEPTH_KINDS``, uint8: whether the depth is the least one, or a lower bound.
     depth_at_most : numpy.ndarray
@@ -309,7 +310,7 @@ class Collisions:
     note : numpy.ndarray
         Free for filters of C++.
     contact_offsets : numpy.ndarray
-        The contacts of row `i` are at ``contact_offsets[i]`` to ``contact_offsets[i + 1]``; shape (m + 1,), int64.
+        Objects that are contained or duplicate have no contacts. The contacts of row `i` are at ``contact_offsets[i]`` to ``contact_offsets[i + 1]``; shape (m + 1,), int64.
     contact_points, contact_normals : numpy.ndarray
         Shape (contacts, 3), float64. A normal is a unit vector from a to b.
     contact_depths : numpy.ndarray
@@ -318,10 +319,8 @@ class Collisions:
         Indices of the triangles of a and b, shape (contacts, 2), uint32; 0xFFFFFFFF: the object is not a mesh.
     summary : PipelineSummary or None
         Counts and times of the whole run; None for a batch.
-    names : list of str or None
-        Names of the objects of the first set.
-    against_names : list of str or None
-        Names of the objects of the second set.
+    names, against_names : list of str or None
+        Names of the objects that `a` and `b` number. They are the same without a second set.
     """
 
     pairs: Array
@@ -361,22 +360,25 @@ class Collisions:
 
     def contacts(self, row: int) -> slice:
         """Returns the positions of the contacts of a row in the ``contact_`` arrays."""
+        if not -len(self) <= row < len(self):
+            raise IndexError(f"row {row} of {len(self)}")
+        row %= len(self)
         return slice(int(self.contact_offsets[row]), int(self.contact_offsets[row + 1]))
 
     def columns(self) -> Dict[str, Array]:
         """Returns the columns with one number or text per row, for example for ``pandas.DataFrame``."""
         found = {"a": self.a, "b": self.b}
         if self.names is not None:
-            second = self.names if self.against_names is None else self.against_names
             found["name_a"] = np.array(self.names, dtype=object)[self.a]
-            found["name_b"] = np.array(second, dtype=object)[self.b]
+        if self.against_names is not None:
+            found["name_b"] = np.array(self.against_names, dtype=object)[self.b]
         found.update({"class": self.class_, "distance": self.distance, "depth": self.depth,
                       "depth_kind": np.array(DEPTH_KINDS)[self.depth_kind], "depth_at_most": self.depth_at_most,
                       "time": self.time, "contacts": np.diff(self.contact_offsets)})
         return found
 
     def __getitem__(self, name: str) -> Array:
-        value = getattr(self, "class_" if name == "class" else name, None)
+        value = getattr(self, "class_" if name == "class" else name, None) if isinstance(name, str) else None
         if not isinstance(value, np.ndarray):
             raise KeyError(name)
         return value

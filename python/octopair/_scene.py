@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _arrays, _core
 from ._arrays import Array
-from ._engine import MOST_THREADS, float_dtype
+from ._engine import MOST_THREADS, float_dtype, path_text
 from ._errors import InputError, InputTypeError
 from ._results import Answers, Hits, Neighbors, StepResult
 
@@ -101,6 +101,8 @@ class SceneCalls:
     def ids(self, indices: Any) -> Array:
         """Returns the ids of the objects with these indices (uint32), for example of ``pairs()[:, 0]``."""
         array = np.ascontiguousarray(_arrays.array_of(indices, "indices", copy=True))
+        if array.size == 0:
+            array = array.reshape(-1).astype(np.uint32)
         if array.dtype.kind not in "iu" or array.ndim != 1:
             raise InputTypeError("indices: it must be an array of integers of the shape (n,)")
         if array.size and (array.min() < 0 or array.max() > ALL_GROUPS):
@@ -152,7 +154,7 @@ def _rows(value: Any, name: str, width: int) -> Array:
     array = _arrays.array_of(value, name, copy=True)
     if array.ndim == 1:
         array = array.reshape(1, -1)
-    return _arrays.numbers(array, name, (None, width), copy=array.dtype.kind in "iu")
+    return _arrays.numbers(array, name, (None, width), copy=True)
 
 
 class Scene(SceneCalls):
@@ -186,11 +188,11 @@ class Scene(SceneCalls):
     """
 
     def __init__(self, margin: float = 0, dtype: Any = "float32", *, threads: int = 0,
-                 recording: Union[str, "os.PathLike[str]"] = "", slack: float = 0) -> None:
+                 recording: Union[None, str, "os.PathLike[str]"] = None, slack: float = 0) -> None:
         self._dtype = float_dtype(dtype)
         self._margin = _arrays.real(margin, "margin")
         self._scene = _core.Scene({"threads": _arrays.whole(threads, "threads", MOST_THREADS), "float64": self._dtype == np.float64, "margin": self._margin,
-                                   "recording": os.fspath(recording), "slack": _arrays.real(slack, "slack")})
+                                   "recording": "" if recording is None else path_text(recording, "recording"), "slack": _arrays.real(slack, "slack")})
 
     def enlarged_pairs(self) -> Array:
         """Returns the pairs of the boxes that the last step searched: with slack, enlarged boxes. They contain :meth:`pairs`."""
@@ -201,8 +203,8 @@ class Scene(SceneCalls):
 
         Parameters
         ----------
-        queries : array, shape (n, 6) or (n, 4), float32 or float64
-            Boxes, or balls as centre x, y, z and radius. A single query may have one axis.
+        queries : array, shape (n, 6) or (n, 4)
+            Boxes, or balls as centre x, y, z and radius; converted to float64. A single query may have one axis.
         groups : int
             Considers only objects that have one of these bits in their groups.
 
@@ -220,8 +222,8 @@ class Scene(SceneCalls):
 
         Parameters
         ----------
-        origins, directions : array, shape (n, 3), float32 or float64
-            Directions of any length but 0.
+        origins, directions : array, shape (n, 3)
+            Converted to float64. Directions of any length but 0.
         longest : array, shape (n,), or float
             Largest `along`.
         groups : int
@@ -237,7 +239,9 @@ class Scene(SceneCalls):
         begins, ways = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         if len(begins) != len(ways):
             raise InputError(f"{len(begins)} origins and {len(ways)} directions; each ray needs both")
-        most: Any = _arrays.column(longest, "longest", len(begins), np.float64)
+        if longest is None:
+            raise InputTypeError("longest: None is not a number; leave it out for rays without end")
+        most: Any = _arrays.column(longest, "longest", len(begins), np.float64, copy=True)
         indices, along, offsets = self._scene.hits(np.column_stack([begins, ways, most]), *which)
         return Hits(indices, offsets, along)
 
@@ -246,8 +250,8 @@ class Scene(SceneCalls):
 
         Parameters
         ----------
-        places : array, shape (n, 3) or (n, 6), float32 or float64
-            Points or boxes.
+        places : array, shape (n, 3) or (n, 6)
+            Points or boxes; converted to float64.
         k : int
             Maximum number of objects.
         within : float

@@ -18,6 +18,8 @@ class Geometry:
     """
 
     def __init__(self, geometry: _core.Geometry, kind: str) -> None:
+        if not isinstance(geometry, _core.Geometry):
+            raise InputTypeError("a Geometry is made by its class methods: Geometry.sphere(1), Geometry.mesh(vertices, faces) ...")
         self._geometry = geometry
         self._kind = kind
 
@@ -75,7 +77,7 @@ class Geometry:
             Joins vertices at the edges of gaps that are at most this apart.
         """
         return cls(_core.Geometry.mesh(_arrays.numbers(vertices, "vertices", (None, 3), copy=True),
-                                       face_array(faces), _arrays.real(weld, "weld")), "mesh")
+                                       face_array(faces), _arrays.length(weld, "weld")), "mesh")
 
     @property
     def closed(self) -> bool:
@@ -118,7 +120,9 @@ def pose_array(poses: Any, name: str = "poses") -> Array:
     if array.shape[1] == 4 and not np.array_equal(array[:, 3], np.broadcast_to([0, 0, 0, 1], (len(array), 4))):
         wrong = int(np.flatnonzero((array[:, 3] != [0, 0, 0, 1]).any(axis=1))[0])
         raise InputError(f"{name}: object {wrong}: the last row of the matrix is {array[wrong, 3]}, not [0 0 0 1]")
-    return _arrays.numbers(np.ascontiguousarray(array[:, :3]), name, (None, 3, 4), copy=True)
+    found = np.array(_arrays.numbers(array[:, :3], name, (None, 3, 4), copy=True))
+    found.flags.writeable = False
+    return found
 
 
 def make_poses(places: Any, rotations: Any = None) -> Array:
@@ -145,7 +149,8 @@ def make_poses(places: Any, rotations: Any = None) -> Array:
 
 
 class Shapes:
-    """Objects with shapes: object `i` has the geometry ``geometries[geometry[i]]`` and the pose ``poses[i]``.
+    """Objects with shapes: object `i` has the geometry ``geometries[geometry[i]]`` and the pose ``poses[i]``. Never changes; arrays are
+    copied.
 
     Parameters
     ----------
@@ -172,25 +177,67 @@ class Shapes:
 
     def __init__(self, geometries: Sequence[Geometry], poses: Any, geometry: Any = None, *, end_poses: Any = None,
                  padding: Any = None, names: Optional[Sequence[str]] = None) -> None:
-        for number, shape in enumerate(geometries):
+        try:
+            shapes = list(geometries)
+        except TypeError:
+            raise InputTypeError(f"geometries: a {type(geometries).__name__} is not a sequence; pass [geometry]") from None
+        for number, shape in enumerate(shapes):
             if not isinstance(shape, Geometry):
                 raise InputTypeError(f"geometries: element {number} is a {type(shape).__name__}, not a Geometry")
-        self.geometries = list(geometries)
-        self.poses = pose_array(poses)
-        size = len(self.poses)
+        self._geometries = shapes
+        self._poses = pose_array(poses)
+        size = len(self._poses)
         numbers = np.arange(size) if geometry is None else _arrays.array_of(geometry, "geometry", copy=True)
         if numbers.ndim != 1 or len(numbers) != size:
             raise InputError(f"geometry: the shape is {numbers.shape}; it must be ({size},), one number per pose")
         if size and (numbers.dtype.kind not in "iu" or numbers.min() < 0 or numbers.max() > 0xFFFFFFFF):
             raise InputError("geometry: it must have integers that are not below 0")
-        self.geometry = np.ascontiguousarray(numbers, dtype=np.uint32)
-        self.end_poses = None if end_poses is None else pose_array(end_poses, "end_poses")
-        self.padding = _arrays.column(padding, "padding", size, np.float64, copy=True)
-        self.names = None if names is None else [str(name) for name in names]
-        if self.names is not None and len(self.names) != size:
-            raise InputError(f"names: {len(self.names)} names for {size} objects")
-        self._shapes = _core.Shapes([shape._geometry for shape in geometries],
-                                    (self.geometry, self.poses, self.end_poses, self.padding))
+        self._geometry = np.array(numbers, dtype=np.uint32)
+        self._end_poses = None if end_poses is None else pose_array(end_poses, "end_poses")
+        if self._end_poses is not None and len(self._end_poses) != size:
+            raise InputError(f"end_poses: {len(self._end_poses)} poses for {size} objects")
+        column = _arrays.column(padding, "padding", size, np.float64, copy=True)
+        self._padding = None if column is None else np.array(column)
+        for array in (self._geometry, self._padding):
+            if array is not None:
+                array.flags.writeable = False
+        if isinstance(names, str) or (names is not None and not hasattr(names, "__iter__")):
+            raise InputTypeError(f"names: {names!r} is not a sequence of str")
+        self._names = None if names is None else [str(name) for name in names]
+        if self._names is not None and len(self._names) != size:
+            raise InputError(f"names: {len(self._names)} names for {size} objects")
+        self._shapes = _core.Shapes([shape._geometry for shape in shapes],
+                                    (self._geometry, self._poses, self._end_poses, self._padding))
+
+    @property
+    def geometries(self) -> List[Geometry]:
+        """Shapes."""
+        return list(self._geometries)
+
+    @property
+    def poses(self) -> Array:
+        """Pose of each object, shape (n, 3, 4), float64; read-only."""
+        return self._poses
+
+    @property
+    def geometry(self) -> Array:
+        """Number of each object's shape, uint32; read-only."""
+        return self._geometry
+
+    @property
+    def end_poses(self) -> Optional[Array]:
+        """Poses at time 1, or None; read-only."""
+        return self._end_poses
+
+    @property
+    def padding(self) -> Optional[Array]:
+        """Clearance of each object, or None; read-only."""
+        return self._padding
+
+    @property
+    def names(self) -> Optional[List[str]]:
+        """Names of the objects, or None."""
+        return None if self._names is None else list(self._names)
 
     @classmethod
     def from_trimesh(cls, source: Any, *, weld: float = 0) -> "Shapes":

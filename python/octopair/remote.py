@@ -48,9 +48,11 @@ def client_options(*, token: str = "", server_user: str = "", token_in_clear: bo
     patience : float
         Longest later outage of the server, in seconds.
     """
+    for name, value in {"token": token, "server_user": server_user, "owner": owner}.items():
+        _arrays.text(value, name)
     return {"token": token, "server_user": server_user, "token_in_clear": bool(token_in_clear), "owner": owner, "authority": str(authority),
-            "certificate": str(certificate), "key": str(key), "tls": bool(tls), "connect_timeout": float(connect_timeout),
-            "patience": float(patience)}
+            "certificate": str(certificate), "key": str(key), "tls": bool(tls), "connect_timeout": _arrays.real(connect_timeout, "connect_timeout"),
+            "patience": _arrays.real(patience, "patience")}
 
 
 def _connect(address: str, **client: Any) -> _core.Engine:
@@ -130,7 +132,7 @@ class JobClient:
     """
 
     def __init__(self, address: str, **client: Any) -> None:
-        self._address = address
+        self._address = _arrays.text(address, "address")
         self._client = _remote.JobClient(address, client_options(**client))
 
     def submit(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
@@ -207,4 +209,4 @@ class RemoteScene(SceneCalls):
     def __init__(self, address: str, margin: float = 0, dtype: Any = "float32", **client: Any) -> None:
         self._dtype = float_dtype(dtype)
         self._margin = _arrays.real(margin, "margin")
-        self._scene = _remote.Scene(address, (self._dtype == np.float64, self._margin), client_options(**client))
+        self._scene = _remote.Scene(_arrays.text(address, "address"), (self._dtype == np.float64, self._margin), client_options(**client))

@@ -4,7 +4,8 @@ Meshes are any objects with ``vertices`` and ``faces``.
 
 What differs: meshes are solid where they are closed, so an object within another collides with it. Distances are exact, also far away.
 Where objects penetrate, a distance is negative; its size is the depth that :func:`octopair.collide` reports, the shortest translation
-that is known to be necessary to separate them.
+that is known to be necessary to separate them. Equal objects in one place have the depth 0. An object that lies within another has no
+contacts.
 
 >>> import numpy as np
 >>> from octopair.trimesh import CollisionManager
@@ -27,7 +28,7 @@ import numpy as np
 from . import _arrays
 from ._arrays import Array
 from ._engine import Engine
-from ._errors import InputError
+from ._errors import InputError, InputTypeError
 from ._pipeline import Pipeline, collide
 from ._results import Collisions
 from ._scene import Scene
@@ -101,11 +102,23 @@ class _Nearest(NamedTuple):
 def _matrix(transform: Any) -> Array:
     if transform is None:
         return np.eye(4)
-    matrix = _arrays.numbers(transform, "transform", (4, 4), copy=True)
-    return matrix.copy()
+    matrix = np.array(_arrays.numbers(transform, "transform", (4, 4), copy=True))
+    if not np.isfinite(matrix).all() or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        raise InputError(f"transform: it must have finite numbers and the last row 0, 0, 0, 1:\n{matrix}")
+    return matrix
+
+
+def _manager(other: Any) -> "CollisionManager":
+    if not isinstance(other, CollisionManager):
+        raise InputTypeError(f"other_manager: a {type(other).__name__} is not an octopair.trimesh.CollisionManager")
+    return other
 
 
 def _geometry(mesh: Any) -> Geometry:
+    if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
+        raise InputTypeError(f"mesh: a {type(mesh).__name__} has not both vertices and faces")
+    if len(mesh.faces) == 0:
+        raise InputError("mesh: it has no faces")
     return Geometry.mesh(mesh.vertices, mesh.faces)
 
 
@@ -129,7 +142,7 @@ class CollisionManager:
         transform : array, shape (4, 4), optional
             Homogeneous matrix. Default: identity.
         """
-        self._objects[name] = _Object(_geometry(mesh), _matrix(transform))
+        self._objects[_arrays.text(name, "name")] = _Object(_geometry(mesh), _matrix(transform))
         self._shapes = None
 
     def remove_object(self, name: str) -> None:
@@ -191,7 +204,7 @@ class CollisionManager:
         contacts : list of ContactData
             With `return_data`.
         """
-        table = self._collide(other_manager._all(), return_data)
+        table = self._collide(_manager(other_manager)._all(), return_data)
         names, others = list(self._objects), list(other_manager._objects)
         found = {(names[a], others[b]) for a, b in table.pairs}
         contacts = _contacts(table, names, others) if return_data else []
@@ -255,7 +268,7 @@ class CollisionManager:
         data : DistanceData
             With `return_data`, or None.
         """
-        nearest = self._nearest(self._all(), other_manager._all())
+        nearest = self._nearest(self._all(), _manager(other_manager)._all())
         pair = None
         if nearest.pair is not None:
             pair = (list(self._objects)[nearest.pair[0]], list(other_manager._objects)[nearest.pair[1]])

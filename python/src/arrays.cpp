@@ -1,5 +1,7 @@
 #include "arrays.hpp"
 
+#include "call.hpp"
+
 #include <algorithm>
 #include <thread>
 
@@ -70,7 +72,7 @@ py::array_t<std::uint32_t> pairs_array(std::span<const Pair> pairs) {
 py::array_t<std::uint32_t> pairs_array(const PairList& list) {
     py::array_t<std::uint32_t> array({py::ssize_t(list.size()), py::ssize_t(2)});
     auto* const out = reinterpret_cast<Pair*>(array.mutable_data());
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     copy_pairs(list, out);
     return array;
 }

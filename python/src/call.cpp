@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <condition_variable>
@@ -92,10 +93,18 @@ Helpers& helpers() {
     return *all;
 }
 
+std::atomic<bool> interpreter_ends = false;
+std::atomic<unsigned long> main_thread = 0;
+/// Turns of the calls whose callback this thread runs.
+thread_local std::vector<Turn*> callback_turns;
+
+bool is_main_thread_id() { return PyThread_get_thread_ident() == main_thread; }
+
+/// Requires: the GIL.
 bool is_main_thread() {
-    static const unsigned long main =
-        py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
-    return PyThread_get_thread_ident() == main;
+    if (main_thread == 0)
+        main_thread = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+    return is_main_thread_id();
 }
 
 /// Stops the call of the main thread when a signal arrives that Python handles. CPython writes the number of each such signal to the
@@ -170,7 +179,7 @@ bool call_watched(const std::function<void(std::stop_token)>& work) {
     std::exception_ptr failure;
     {
         const SignalWatcher::Scope scope(signal_watcher(), stop);
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         try {
             work(stop.get_token());
         } catch (...) {
@@ -218,7 +227,7 @@ void call_on_helper(const std::function<void(std::stop_token)>& work, Reporter& 
         for (;;) {
             bool ended = false;
             {
-                const py::gil_scoped_release released;
+                const Unlocked unlocked;
                 ended = helper->wait(signal_interval);
             }
             if (ended) break;
@@ -228,7 +237,7 @@ void call_on_helper(const std::function<void(std::stop_token)>& work, Reporter& 
     } catch (...) {
         stop.request_stop();
         {
-            const py::gil_scoped_release released;
+            const Unlocked unlocked;
             helper->wait();
         }
         helpers().give_back(helper);
@@ -258,7 +267,7 @@ void call(const CallMode& mode, const std::function<void(std::stop_token, Progre
     ProgressValue value;
     const auto stoppable = [&](const std::stop_token& stop) { work(stop, value); };
     if (mode.progress.is_none() && (mode.objects <= small_call || !is_main_thread())) {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         stoppable({});
         return;
     }
@@ -273,15 +282,39 @@ void call(const CallMode& mode, const std::function<void(std::stop_token, Progre
     reporter.report();
 }
 
+Unlocked::~Unlocked() noexcept(false) {
+    // A thread that takes the GIL while the interpreter ends is ended by pthread_exit. This thread may hold locks, so it waits for the
+    // end of the process instead.
+    while (interpreter_ends && !is_main_thread_id()) pause();
+    PyEval_RestoreThread(state_);
+}
+
+void watch_end_of_interpreter() {
+    is_main_thread();
+    py::module_::import("atexit").attr("register")(py::cpp_function([] { interpreter_ends = true; }));
+}
+
+Callback::Callback(std::vector<Turn*> turns) : before_(callback_turns.size()) {
+    callback_turns.insert(callback_turns.end(), turns.begin(), turns.end());
+}
+
+Callback::~Callback() { callback_turns.resize(before_); }
+
 Turn::Holder::Holder(Turn& turn) : turn_(turn) {
-    if (turn.owner_ == std::this_thread::get_id()) {
+    check_not_forked();
+    const bool in_callback = std::find(callback_turns.begin(), callback_turns.end(), &turn) != callback_turns.end();
+    if (in_callback || turn.owner_ == std::this_thread::get_id()) {
         throw Error(
             ErrorCode::usage,
             "a call of this object is running on this thread; a signal handler or callback may not make another");
     }
-    if (!turn.mutex_.try_lock()) {
-        const py::gil_scoped_release released;
-        turn.mutex_.lock();
+    bool mine = turn.mutex_.try_lock();
+    while (!mine) {
+        {
+            const Unlocked unlocked;
+            mine = turn.mutex_.try_lock_for(signal_interval);
+        }
+        if (!mine && PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
     turn.owner_ = std::this_thread::get_id();
 }

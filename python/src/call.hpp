@@ -16,6 +16,7 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 namespace octopair::python {
 
@@ -50,6 +51,18 @@ void check_not_forked();
 /// Returns true in such a forked process. Objects with threads must not be destroyed there.
 bool is_forked();
 
+/// Releases the GIL until its end. In contrast to pybind11's class, its end lets CPython end the thread while the interpreter ends.
+class Unlocked {
+public:
+    Unlocked() : state_(PyEval_SaveThread()) {}
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+    ~Unlocked() noexcept(false);
+
+private:
+    PyThreadState* state_;
+};
+
 /// Deletes an object without the GIL, because its destruction may wait for threads that need the GIL. Leaks it after a fork.
 struct ReleasedDelete {
     template <typename Object>
@@ -59,16 +72,18 @@ struct ReleasedDelete {
             delete object;
             return;
         }
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         delete object;
     }
 };
 
-/// Makes calls of one object run one after another. Threads wait for their turn without the GIL.
+/// Makes calls of one object run one after another. Threads wait for their turn without the GIL, and run signal handlers meanwhile.
 class Turn {
 public:
     class Holder {
     public:
+        /// Throws: Error{usage} within a call of this object, in a signal handler or a callback, and after a fork; exceptions of
+        /// signal handlers.
         explicit Holder(Turn& turn);
         Holder(const Holder&) = delete;
         Holder& operator=(const Holder&) = delete;
@@ -79,8 +94,23 @@ public:
     };
 
 private:
-    std::mutex mutex_;
+    std::timed_mutex mutex_;
     std::atomic<std::thread::id> owner_ = {};
 };
+
+/// While this exists, this thread runs a callback of a call that holds the turns. Holders of these turns throw instead of waiting.
+class Callback {
+public:
+    explicit Callback(std::vector<Turn*> turns);
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
+    ~Callback();
+
+private:
+    std::size_t before_;
+};
+
+/// Prepares a module for the end of the interpreter. To be called once, by each module.
+void watch_end_of_interpreter();
 
 }  // namespace octopair::python

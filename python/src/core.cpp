@@ -36,8 +36,12 @@ void bind_octal_code(py::module_& module) {
              "Returns the integer form, padded with zeros to `depth` digits.")
         .def("__str__", &OctalCode::text)
         .def("__repr__", [](OctalCode code) { return "OctalCode('" + code.text() + "')"; })
-        .def("__eq__", [](OctalCode a, OctalCode b) { return a == b; })
-        .def("__lt__", [](OctalCode a, OctalCode b) { return a < b; })
+        .def(
+            "__eq__", [](OctalCode a, OctalCode b) { return a == b; }, py::is_operator())
+        .def(
+            "__lt__", [](OctalCode a, OctalCode b) { return a < b; }, py::is_operator())
+        .def(
+            "__le__", [](OctalCode a, OctalCode b) { return a <= b; }, py::is_operator())
         .def("__hash__", [](OctalCode code) { return code.key() ^ code.level(); });
 }
 
@@ -48,6 +52,7 @@ void bind_octal_code(py::module_& module) {
 PYBIND11_MODULE(_core, module) {
     using namespace octopair::python;
     register_errors();
+    watch_end_of_interpreter();
     module.attr("__version__") = OCTOPAIR_VERSION;
     module.def("mark_used", &check_not_forked);
     bind_engines(module);

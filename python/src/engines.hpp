@@ -27,7 +27,7 @@ private:
 template <typename Make>
 std::shared_ptr<PythonEngine> wrap(Make make) {
     check_not_forked();
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return std::make_shared<PythonEngine>(make());
 }
 

@@ -27,6 +27,10 @@ void register_errors() {
             raise(error.code(), error.what());
         } catch (const std::bad_alloc&) {
             raise(ErrorCode::resource_limit, "out of memory");
+        } catch (const py::cast_error&) {
+            const py::object error =
+                py::module_::import("octopair._errors").attr("InputTypeError")("an argument has the wrong type");
+            PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
         }
     });
 }

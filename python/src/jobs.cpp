@@ -36,7 +36,7 @@ bool wait_for_end(double seconds, const std::function<bool(std::chrono::nanoseco
         if (!endless) time = std::min(time, std::chrono::nanoseconds(deadline - Clock::now()));
         bool done = false;
         {
-            const py::gil_scoped_release released;
+            const Unlocked unlocked;
             done = ended(std::max(time, std::chrono::nanoseconds(0)));
         }
         if (done || (!endless && time <= std::chrono::nanoseconds(0))) return done;
@@ -51,7 +51,7 @@ public:
         : engine_(engine), input_(input) {
         check_not_forked();
         JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         job_.reset(new Job(engine->engine().submit(std::move(borrowed), options)));
     }
     PythonJob(const PythonJob&) = delete;
@@ -170,8 +170,9 @@ public:
         auto sink = [this, end = std::make_shared<QueueEnd>(queue_)](std::span<const Pair> pairs) {
             queue_.put(pairs);
         };
-        const py::gil_scoped_release released;
-        job_.reset(new Job(engine->engine().submit_stream(std::move(borrowed), std::move(sink), options)));
+        const Unlocked unlocked;
+        job_ = std::shared_ptr<Job>(
+            new Job(engine->engine().submit_stream(std::move(borrowed), std::move(sink), options)), ReleasedDelete());
     }
     PythonStream(const PythonStream&) = delete;
     PythonStream& operator=(const PythonStream&) = delete;
@@ -179,28 +180,32 @@ public:
         if (!is_forked()) close();
     }
 
-    /// Returns the next chunk. Throws: StopIteration at the end; the Error of the search.
+    /// Returns the next chunk. Throws: StopIteration at the end; the Error of the search; Error{cancelled} if another thread closes
+    /// the stream meanwhile.
     py::array next() {
-        check_not_forked();
-        if (!job_) throw py::stop_iteration();
+        const Turn::Holder turn(turn_);
+        const std::shared_ptr<Job> job = current_job();
+        if (!job) throw py::stop_iteration();
         std::optional<std::vector<Pair>> chunk;
         wait_for_end(-1, [&](std::chrono::nanoseconds time) {
             chunk = queue_.take(time);
             return chunk.has_value();
         });
         if (!chunk->empty()) return array_of<std::uint32_t>(std::move(*chunk), {2});
-        summary_ = job_->summary();
-        close();
+        end();
+        summary_ = job->summary();
         throw py::stop_iteration();
     }
     void close() {
-        if (!job_) return;
+        if (const std::shared_ptr<Job> job = current_job()) job->cancel();
         queue_.close();
-        job_->cancel();
-        job_.reset();
+        end();
     }
     /// Returns the summary after the last chunk, before that None.
-    py::object summary() const { return summary_ ? py::object(summary_tuple(*summary_)) : py::none(); }
+    py::object summary() {
+        const Turn::Holder turn(turn_);
+        return summary_ ? py::object(summary_tuple(*summary_)) : py::none();
+    }
 
 private:
     static std::size_t chunk_pairs(const Options& options) {
@@ -208,11 +213,24 @@ private:
         return std::size_t(std::clamp(options.buffer_bytes / 8, least, most) / sizeof(Pair));
     }
 
+    std::shared_ptr<Job> current_job() {
+        const std::lock_guard lock(mutex_);
+        return job_;
+    }
+    void end() {
+        std::shared_ptr<Job> ended;
+        const std::lock_guard lock(mutex_);
+        ended = std::move(job_);
+        job_ = nullptr;
+    }
+
     std::shared_ptr<PythonEngine> engine_;
     py::object input_;
     ChunkQueue queue_;
+    Turn turn_;  // of next()
     std::optional<Summary> summary_;
-    std::unique_ptr<Job, ReleasedDelete> job_;  // last: it uses the queue
+    std::mutex mutex_;
+    std::shared_ptr<Job> job_;  // last: it uses the queue
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ py::tuple gather_pairs_of(PythonEngine& engine, const ArrayInput& input, const O
     {
         // On this thread: MPI may not allow calls from another one.
         check_not_forked();
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         summary = engine.engine().find_pairs(input.input(), engine.list(), options);
         gather_pairs(engine.engine(), engine.list());
     }
@@ -39,7 +39,7 @@ py::tuple find_pairs_here(PythonEngine& engine, const ArrayInput& input, const O
     Summary summary;
     {
         check_not_forked();
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         summary = engine.engine().find_pairs(input.input(), engine.list(), options);
     }
     return py::make_tuple(pairs_array(engine.list()), summary_tuple(summary));
@@ -57,7 +57,7 @@ py::tuple find_pairs64_here(PythonEngine& engine, const ArrayInput& input, const
     Summary summary;
     {
         check_not_forked();
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         summary = find_pairs64(engine.engine(), IndexedInput(first, second), pairs, options);
     }
     return py::make_tuple(array_of<std::uint64_t>(std::move(pairs), {2}), summary_tuple(summary));
@@ -93,6 +93,7 @@ PYBIND11_MODULE(_mpi, module) {
     // This module has Engine, Options and Input. It must also notice a fork.
     py::module_::import("octopair._core").attr("mark_used")();
     register_errors();
+    watch_end_of_interpreter();
     module.def("make_engine", &mpi_engine, py::arg("communicator"), py::arg("threads"), py::arg("paper"));
     module.def("find_pairs", &find_pairs_here, py::arg("engine"), py::arg("input"), py::arg("options"));
     module.def("gather_pairs", &gather_pairs_of, py::arg("engine"), py::arg("input"), py::arg("options"));

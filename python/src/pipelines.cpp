@@ -10,6 +10,7 @@
 #include "call.hpp"
 #include "collisions.hpp"
 #include "engines.hpp"
+#include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "shapes.hpp"
 
@@ -20,7 +21,9 @@ namespace {
 /// Calls a Python function with the columns of a whole batch. The function returns a bool per pair.
 class CallableFilter final : public Filter {
 public:
-    CallableFilter(std::string name, py::function keep) : name_(std::move(name)), keep_(std::move(keep)) {}
+    /// `turns`: those of the call that runs the filter.
+    CallableFilter(std::string name, py::function keep, const std::vector<Turn*>& turns)
+        : name_(std::move(name)), keep_(std::move(keep)), turns_(turns) {}
     CallableFilter(const CallableFilter&) = delete;
     CallableFilter& operator=(const CallableFilter&) = delete;
     ~CallableFilter() override {
@@ -29,12 +32,15 @@ public:
     }
 
     std::string_view name() const override { return name_; }
+    /// A call of Python takes as long as hundreds of pairs.
+    std::size_t least_batch() const override { return 256; }
     void apply(Batch& batch) const override {
         CollisionColumns columns;
         columns.append(batch);
         std::vector<std::uint32_t> kept;
         {
             const py::gil_scoped_acquire acquired;
+            const Callback callback(turns_);
             const py::object answer = keep_(columns.take());
             const auto mask = rows_of<bool>(answer.cast<py::array>());
             if (mask.size() != batch.pairs().size()) throw py::value_error("a filter must return a bool for each pair");
@@ -48,6 +54,13 @@ public:
 private:
     std::string name_;
     py::function keep_;
+    const std::vector<Turn*>& turns_;
+};
+
+/// Numbers of objects that a filter has shapes for.
+struct ShapeCounts {
+    std::string filter;
+    std::uint64_t first, second;
 };
 
 /// A pipeline, and references to the arrays of its filters.
@@ -56,18 +69,18 @@ public:
     explicit PythonPipeline(unsigned threads) : pipeline_(new Pipeline(threads)) {}
 
     void add_callable(const std::string& name, const py::function& keep) {
-        pipeline_->add(std::make_unique<CallableFilter>(name, keep));
+        add(std::make_unique<CallableFilter>(name, keep, turns_));
     }
     /// Groups and masks of the first set, and of the second or None.
     void add_groups(const py::tuple& first, const py::object& second) {
         keep(first, second);
         std::optional<GroupMasks> other;
         if (!second.is_none()) other = masks_of(second.cast<py::tuple>());
-        pipeline_->add(make_group_filter(masks_of(first), other));
+        add(make_group_filter(masks_of(first), other));
     }
     void add_ignored_pairs(const py::array& pairs, bool join) {
         const auto rows = rows_of<Pair, std::uint32_t>(pairs);
-        pipeline_->add(make_ignored_pairs_filter({rows.begin(), rows.end()}, join));
+        add(make_ignored_pairs_filter({rows.begin(), rows.end()}, join));
     }
     /// Rules are pairs of patterns.
     void add_names(std::vector<std::string> first, const std::vector<std::pair<std::string, std::string>>& rules,
@@ -81,13 +94,13 @@ public:
             names_.push_back(std::move(*second));
             other = names_.back();
         }
-        pipeline_->add(make_name_filter(names, std::move(patterns), other));
+        add(make_name_filter(names, std::move(patterns), other));
     }
     void add_parents(const py::array& first, const py::object& second) {
         keep(first, second);
         std::optional<std::span<const std::uint32_t>> other;
         if (!second.is_none()) other = rows_of<std::uint32_t>(second.cast<py::array>());
-        pipeline_->add(make_parent_filter(rows_of<std::uint32_t>(first), other));
+        add(make_parent_filter(rows_of<std::uint32_t>(first), other));
     }
     /// `kind` is the name of a filter of shapes. `options` is (margin, max_contacts, tolerance, duplicate_tolerance).
     void add_shapes(const std::string& kind, const py::object& first, const py::object& second,
@@ -97,10 +110,11 @@ public:
         const ShapedObjects* other = second.is_none() ? nullptr : &second.cast<const PythonShapes&>().objects();
         const ExactOptions exact{options[0].cast<double>(), options[1].cast<std::uint32_t>(), options[2].cast<double>(),
                                  options[3].cast<std::optional<double>>()};
-        if (kind == "bounding spheres") pipeline_->add(make_sphere_filter(objects, exact.margin, other));
-        if (kind == "oriented boxes") pipeline_->add(make_oriented_box_filter(objects, exact.margin, other));
-        if (kind == "exact object") pipeline_->add(make_exact_object_filter(objects, exact, other));
-        if (kind == "exact feature") pipeline_->add(make_exact_feature_filter(objects, exact, other));
+        if (kind == "bounding spheres") add(make_sphere_filter(objects, exact.margin, other));
+        if (kind == "oriented boxes") add(make_oriented_box_filter(objects, exact.margin, other));
+        if (kind == "exact object") add(make_exact_object_filter(objects, exact, other));
+        if (kind == "exact feature") add(make_exact_feature_filter(objects, exact, other));
+        shapes_.push_back({kind, objects.size(), (other == nullptr ? objects : *other).size()});
     }
     void add_depth(double least) { pipeline_->add(make_depth_filter(least)); }
     /// Sets are (triangles (n, 9), owners or None). `options` is (adjacent, margin, features, tolerance).
@@ -110,12 +124,14 @@ public:
                                         options[2].cast<bool>(), options[3].cast<double>(), 0};
         std::optional<TriangleSet> other;
         if (!second.is_none()) other = triangles_of(second.cast<py::tuple>());
-        pipeline_->add(make_triangle_filter(triangles_of(first), triangles, other ? &*other : nullptr));
+        add(make_triangle_filter(triangles_of(first), triangles, other ? &*other : nullptr));
     }
 
     /// Returns (columns, summary). With a sink, the sink receives the columns of each batch, and the result has none.
     py::tuple run(PythonEngine& engine, const ArrayInput& input, const Options& options, const py::tuple& callables) {
         const Turn::Holder turn(turn_), engine_turn(engine.turn());
+        turns_ = {&turn_, &engine.turn()};
+        check_sizes(input.input());
         const py::object progress = callables[0], sink = callables[1];
         CollisionColumns columns;
         PipelineSummary summary;
@@ -129,6 +145,8 @@ public:
     }
     py::tuple count(PythonEngine& engine, const ArrayInput& input, const Options& options, const py::object& progress) {
         const Turn::Holder turn(turn_), engine_turn(engine.turn());
+        turns_ = {&turn_, &engine.turn()};
+        check_sizes(input.input());
         PipelineSummary summary;
         call({.progress = progress, .repeatable = false}, [&](const std::stop_token& stop, ProgressValue& value) {
             summary = pipeline_->run(engine.engine(), input.input(), {}, with_progress(options, progress, value), stop);
@@ -144,10 +162,11 @@ private:
     static TriangleSet triangles_of(const py::tuple& set) {
         return {rows_of<Triangle3d, double>(set[0].cast<py::array>()), optional_rows_of<std::uint32_t>(set[1])};
     }
-    static void receive(const Batch& batch, CollisionColumns& columns, const py::object& sink) {
+    void receive(const Batch& batch, CollisionColumns& columns, const py::object& sink) const {
         columns.append(batch);
         if (sink.is_none()) return;
         const py::gil_scoped_acquire acquired;
+        const Callback callback(turns_);
         sink(columns.take());
     }
     static py::tuple summary_of(const PipelineSummary& summary) {
@@ -159,6 +178,23 @@ private:
                               summary.seconds, summary_tuple(summary.search), filters);
     }
 
+    void add(std::unique_ptr<Filter> filter) {
+        const Turn::Holder turn(turn_);
+        pipeline_->add(std::move(filter));
+    }
+    /// Filters of shapes do not check the indices of pairs. Throws: Error{bad_input} for objects without shapes.
+    void check_sizes(const Input& input) const {
+        const std::uint64_t first = input.first.size(), second = (input.second ? *input.second : input.first).size();
+        for (const ShapeCounts& shapes : shapes_) {
+            if (first <= shapes.first && second <= shapes.second) continue;
+            throw Error(ErrorCode::bad_input, "filter '" + shapes.filter + "': there are boxes of " +
+                                                  std::to_string(first) +
+                                                  (input.second ? " and " + std::to_string(second) : "") +
+                                                  " objects, but shapes of " + std::to_string(shapes.first) +
+                                                  (input.second ? " and " + std::to_string(shapes.second) : ""));
+        }
+    }
+
     void keep(const py::object& first, const py::object& second) {
         kept_.append(first);
         kept_.append(second);
@@ -166,8 +202,10 @@ private:
 
     py::list kept_;
     std::deque<std::vector<std::string>> names_;
-    std::unique_ptr<Pipeline, ReleasedDelete> pipeline_;  // last: its filters use the arrays and names
+    std::vector<ShapeCounts> shapes_;
+    std::vector<Turn*> turns_;  // of the call that runs
     Turn turn_;
+    std::unique_ptr<Pipeline, ReleasedDelete> pipeline_;  // last: its filters use the other members
 };
 
 }  // namespace

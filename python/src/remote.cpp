@@ -162,6 +162,7 @@ PYBIND11_MODULE(_remote, module) {
     // This module has Engine, Options and Input. It must also notice a fork.
     py::module_::import("octopair._core").attr("mark_used")();
     register_errors();
+    watch_end_of_interpreter();
     module.def("connect", &connect_engine, py::arg("address"), py::arg("settings"));
     py::class_<PythonJobClient>(module, "JobClient")
         .def(py::init<const std::string&, const py::dict&>(), py::arg("address"), py::arg("settings"))

@@ -79,7 +79,7 @@ private:
     template <typename Answer, typename Query, typename Find>
     Answers<Answer> in_batches(std::span<const Query> queries, Find find) {
         using Clock = std::chrono::steady_clock;
-        std::size_t batch_size = 1024;
+        std::size_t batch_size = 16;
         Answers<Answer> all, part;
         std::size_t end = 0;
         do {
@@ -92,8 +92,8 @@ private:
                 throw renumbered(error, begin);
             }
             const auto time = Clock::now() - start;
-            if (time < std::chrono::milliseconds(5)) batch_size *= 2;
-            if (time > std::chrono::milliseconds(20)) batch_size = std::max<std::size_t>(batch_size / 2, 1);
+            if (time < std::chrono::milliseconds(5)) batch_size *= 4;
+            if (time > std::chrono::milliseconds(20)) batch_size = std::max<std::size_t>(batch_size / 4, 1);
             const std::size_t before = all.all.size();
             all.all.insert(all.all.end(), part.all.begin(), part.all.end());
             for (const std::size_t answers : part.ends) all.ends.push_back(before + answers);
@@ -112,7 +112,7 @@ std::unique_ptr<LocalScene> make_scene(const py::dict& options) {
     scene.margin = options["margin"].cast<double>();
     scene.recording = options["recording"].cast<std::string>();
     scene.slack = options["slack"].cast<double>();
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return std::make_unique<LocalScene>(Scene(scene));
 }
 

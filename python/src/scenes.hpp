@@ -103,7 +103,7 @@ protected:
     void run(Work work) {
         const Turn::Holder turn(turn_);
         check_not_forked();
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         work();
     }
     template <typename Get>

@@ -12,7 +12,7 @@ namespace octopair::python {
 namespace {
 
 Geometry prepared(shape::Any shape) {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return Geometry(std::move(shape));
 }
 
@@ -28,7 +28,7 @@ shape::Mesh mesh_of(const py::array& vertices, const py::array& triangles) {
 
 Geometry mesh(const py::array& vertices, const py::array& triangles, double weld_tolerance) {
     shape::Mesh mesh = mesh_of(vertices, triangles);
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     if (weld_tolerance > 0) weld(mesh, weld_tolerance);
     return Geometry(std::move(mesh));
 }
@@ -38,7 +38,7 @@ py::array triangle_boxes(const py::array& triangles) {
     const auto rows = rows_of<Triangle3d, double>(triangles);
     std::vector<Box3f> boxes;
     {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         boxes = octopair::boxes_of(rows);
     }
     return array_of<float>(std::move(boxes), {6});
@@ -70,7 +70,7 @@ PythonShapes::PythonShapes(std::vector<Geometry> geometries, py::tuple columns)
 py::array PythonShapes::boxes() const {
     std::vector<Box3d> boxes;
     {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         boxes = octopair::boxes_of(objects_);
     }
     return array_of<double>(std::move(boxes), {6});
@@ -79,7 +79,7 @@ py::array PythonShapes::boxes() const {
 py::tuple PythonShapes::boxes_with(const PythonShapes& second) const {
     JoinBoxes boxes;
     {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         boxes = octopair::boxes_of(objects_, second.objects());
     }
     return py::make_tuple(array_of<double>(std::move(boxes.first), {6}),

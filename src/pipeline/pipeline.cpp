@@ -27,7 +27,8 @@ struct LimitReached {};
 /// Chooses the number of pairs of the next block from measured times.
 class BlockSize {
 public:
-    explicit BlockSize(std::size_t most) : most_(most), pairs_(std::min<std::size_t>(first, most)) {}
+    BlockSize(std::size_t least, std::size_t most)
+        : least_(std::min(least, most)), most_(most), pairs_(std::clamp<std::size_t>(first, least_, most)) {}
 
     std::size_t pairs() const { return pairs_; }
 
@@ -37,14 +38,14 @@ public:
         const double a_pair = seconds / double(pairs);
         seconds_ = seconds_ < 0 ? a_pair : 0.75 * seconds_ + 0.25 * a_pair;
         const double fitting = aim / std::max(seconds_, 1e-12);
-        pairs_ = std::size_t(std::clamp(fitting, 1.0, double(most_)));
+        pairs_ = std::size_t(std::clamp(fitting, double(least_), double(most_)));
     }
 
 private:
     static constexpr std::size_t first = 64;
     static constexpr double aim = 2e-4;  // seconds for a block; far more than it takes to pass a block between threads
 
-    std::size_t most_, pairs_;
+    std::size_t least_, most_, pairs_;
     double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet
 };
 
@@ -64,7 +65,7 @@ public:
           sink_(setup.sink),
           summary_(summary),
           left_(setup.options.limit.value_or(~std::uint64_t(0))),
-          size_(max_block_pairs(setup)),
+          size_(least_block_pairs(setup), max_block_pairs(setup)),
           forward_(setup.stop, Forward{abandon_}),
           ring_(
               setup.threads, [this](Block& block) { apply(block); }, [this](Block& block) { deliver(block); }) {}
@@ -109,6 +110,12 @@ private:
     static std::size_t max_block_pairs(const Setup& setup) {
         const std::uint64_t pairs = std::max<std::uint64_t>(setup.options.buffer_bytes, 1 << 20) / sizeof(Pair) / 4;
         return std::size_t(std::clamp<std::uint64_t>(pairs / BlockRing::length(setup.threads), 1, 4096));
+    }
+
+    static std::size_t least_block_pairs(const Setup& setup) {
+        std::size_t least = 1;
+        for (const auto& filter : setup.filters) least = std::max(least, filter->least_batch());
+        return least;
     }
 
     void begin_block() {

@@ -97,9 +97,10 @@ def test_unaligned_memory_is_refused_or_copied():
     raw[1:] = boxes.reshape(-1).view(np.uint8)
     unaligned = np.ndarray(boxes.shape, dtype=np.float32, buffer=raw, offset=1)
     assert not unaligned.flags.aligned
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="boxes.copy()"):
         op.find_pairs(unaligned)
     assert np.array_equal(op.find_pairs(unaligned, copy=True), brute_force(boxes))
+    assert np.array_equal(op.find_pairs(unaligned.copy()), brute_force(boxes))
 
 
 @pytest.mark.parametrize("value, words", [(np.nan, "nan"), (np.inf, "inf"), (-np.inf, "inf")])
@@ -116,6 +117,7 @@ def test_names_the_invalid_box(value, words):
 
 @pytest.mark.parametrize("arguments, kind", [
     ({"margin": -1}, ValueError), ({"margin": np.nan}, ValueError), ({"margin": "1"}, TypeError), ({"margin": None}, TypeError),
+    ({"margin": 10**400}, ValueError), ({"margin": np.ones(2)}, TypeError), ({"order": np.ones(2)}, TypeError),
     ({"order": "up"}, ValueError), ({"limit": -1}, ValueError), ({"limit": 1.5}, TypeError), ({"threads": -1}, ValueError),
     ({"threads": "2"}, TypeError), ({"padding": [1.0]}, TypeError), ({"padding": np.ones(3)}, ValueError),
     ({"padding": -1.0}, ValueError), ({"padding": np.ones(10, np.float32)}, TypeError), ({"against_padding": 1.0}, ValueError),

@@ -43,6 +43,10 @@ CALLS = {
     "processes": f"op.Engine('processes', workers=2).count_pairs({CROWD})",
     "step": "s = op.Scene(); s.add(np.zeros((60_000, 6), np.float32)); s.step()",
     "pipeline": f"op.Pipeline().keep(lambda batch: batch.a < 0).run({CROWD})",
+    "turn": "e = op.Engine(); t = threading.Thread(target=e.count_pairs, args=(np.zeros((300_000, 6), np.float32),), daemon=True); "
+            "t.start(); time.sleep(0.2); e.find_pairs(np.zeros((5, 6)))",
+    "few slow queries": "s = op.Scene(); s.add(np.random.rand(20_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
+                        "s.nearest(np.random.rand(3000, 3), k=20_000)",
     "queries": "s = op.Scene(); s.add(np.random.rand(300_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
                "s.nearest(np.random.rand(100_000, 3), k=2000)",
 }
@@ -107,6 +111,26 @@ def test_calls_release_the_gil():
     assert ticks > 20
 
 
+def test_a_fork_during_a_call_of_another_thread_is_refused():
+    output, _, code = run("""
+        e, s = op.Engine(), op.Scene()
+        s.add(np.zeros((20_000, 6), np.float32))
+        threading.Thread(target=e.count_pairs, args=(np.zeros((60_000, 6), np.float32),)).start()
+        threading.Thread(target=s.step).start()
+        time.sleep(0.1)
+        child = os.fork()
+        if child == 0:
+            for call in (lambda: e.count_pairs(np.zeros((3, 6))), s.step, s.pairs, lambda: op.Pipeline().count(np.zeros((3, 6)), engine=e)):
+                try:
+                    call()
+                except op.UsageError:
+                    print("refused", flush=True)
+            os._exit(3)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 3
+        """)
+    assert (output, code) == ("refused\n" * 4, 0)
+
+
 @pytest.mark.parametrize("use", ["e.find_pairs(b)", "op.find_pairs(b)", "s.step()", "op.Scene()", "j.wait()", "op.Engine('processes')"])
 def test_a_fork_is_refused(use):
     output, _, code = run(f"""
@@ -152,6 +176,12 @@ def test_spawn_works(tmp_path):
 
 @pytest.mark.parametrize("ending", ["j = op.Engine().submit(b)", "s = op.stream_pairs(b, order='octal'); next(s)", "e = op.Engine('processes'); j = e.submit(b)",
                                     "threading.Thread(target=op.count_pairs, args=(b,), daemon=True).start(); time.sleep(0.1)",
+                                    "j = op.Engine().submit(b); threading.Thread(target=j.wait, daemon=True).start(); time.sleep(0.1)",
+                                    "threading.Thread(target=lambda: list(op.stream_pairs(b)), daemon=True).start(); time.sleep(0.1)",
+                                    "threading.Thread(target=lambda: op.count_pairs(b, progress=lambda d: 0), daemon=True).start(); "
+                                    "time.sleep(0.1)",
+                                    "e = op.Engine(); c = np.zeros((50, 6)); f = lambda: [e.find_pairs(c) for _ in iter(int, 1)]; "
+                                    "threading.Thread(target=f, daemon=True).start(); time.sleep(0.1)",
                                     "s = op.Scene(); s.add(b[:9000]); s.step(); cycle = [s]; cycle.append(cycle)"])
 def test_the_interpreter_ends_in_the_middle_of_work(ending):
     output, _, code = run(f"b = np.zeros((100_000, 6), np.float32)\n{ending}\nprint('end')")

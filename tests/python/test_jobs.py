@@ -89,3 +89,33 @@ def test_engines_work_in_threads_that_are_not_the_main_thread():
     thread.start()
     thread.join()
     assert len(found[0]) == 3
+
+
+def test_a_stream_may_be_closed_by_another_thread():
+    for _ in range(5):
+        stream = op.stream_pairs(np.zeros((3000, 6)), buffer_bytes=1 << 20)
+        ends = []
+
+        def read():
+            try:
+                for _ in stream:
+                    pass
+                ends.append("end")
+            except op.CancelledError:
+                ends.append("cancelled")
+
+        thread = threading.Thread(target=read)
+        thread.start()
+        stream.close()
+        thread.join(20)
+        assert len(ends) == 1
+
+
+def test_a_pipeline_may_be_extended_by_another_thread():
+    pipeline = op.Pipeline()
+    boxes = np.zeros((500, 6))
+    thread = threading.Thread(target=lambda: [pipeline.parents(np.arange(500)) for _ in range(50)])
+    thread.start()
+    for _ in range(20):
+        assert pipeline.count(boxes).collisions == 500 * 499 // 2
+    thread.join()

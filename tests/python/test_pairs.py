@@ -114,7 +114,7 @@ def test_faults_of_workers():
         op.Engine().worker_faults()
 
 
-@pytest.mark.parametrize("arguments", [("other",), ("local", {"workers": 2}), ("processes", {"threads": 2}), ("local", {"token": "x"}),
+@pytest.mark.parametrize("arguments", [("other",), (None,), ("unix:/x", {"token": 1}), ("unix:/x", {"patience": "x"}), ("local", {"workers": 2}), ("processes", {"threads": 2}), ("local", {"token": "x"}),
                                        ("unix:/x", {"threads": 2, "connect_timeout": 0.1})])
 def test_refuses_other_engines(arguments):
     options = arguments[1] if len(arguments) > 1 else {}
@@ -127,5 +127,8 @@ def test_octal_codes():
     assert code.digits == (2, 0, 3) and code.level == 3 and code.integer() == 314 and code.integer(5) == 31400
     assert op.OctalCode(314) == code == op.OctalCode((2, 0, 3)) and str(code) == "{3,1,4}" and repr(code) == "OctalCode('{3,1,4}')"
     assert code.parent == op.OctalCode(31) and code.parent.contains(code) and code.parent < code
-    with pytest.raises(op.InputError):
-        op.OctalCode("{9}")
+    assert code <= code and code != 1 and code != "x"
+    for wrong, kind in (("{9}", ValueError), (-1, TypeError), (2**64, TypeError), (1.5, TypeError), (None, TypeError)):
+        with pytest.raises(op.Error) as caught:
+            op.OctalCode(wrong)
+        assert isinstance(caught.value, kind)

@@ -72,6 +72,7 @@ def test_detects_meshes(tmp_path):
     assert op.detect(path, stage="pairs").pairs.tolist() == [[0, 1]]
     assert op.detect(path).pairs.tolist() == [[0, 1]]
     assert len(op.detect(path, objects="triangle").pairs) > 0
+    assert op.detect(path, stage="objects", same_parent="include").pairs.tolist() == [[0, 1]]
     rules = tmp_path / "rules.json"
     rules.write_text(json.dumps({"exclude": [{"a": "*first*", "b": "*second*"}]}))
     assert len(op.detect(path, exclude=rules, stage="objects").pairs) == 0
@@ -87,6 +88,9 @@ def test_generates_the_same_bytes(tmp_path):
 @pytest.mark.parametrize("call, kind, words", [
     (lambda p: op.detect(), op.UsageError, "file"), (lambda p: op.detect(p / "none.npy"), op.FileError, "none.npy"),
     (lambda p: op.detect(p / "bad.npy"), op.InputError, "object 1"), (lambda p: op.detect(p / "bad.npy", nonsense=3), op.UsageError, "nonsense"),
+    (lambda p: op.detect(5), TypeError, "path"), (lambda p: op.detect("--help"), op.InputError, "help"),
+    (lambda p: op.detect("a\0b.npy"), op.InputError, "character"), (lambda p: op.generate("--help", 5), op.UsageError, "help"),
+    (lambda p: op.detect(p / "bad.npy", help=True), op.UsageError, "help"), (lambda p: op.generate(None, 5), TypeError, "kind"),
     (lambda p: op.detect(p / "bad.npy", output="x.npy"), op.UsageError, "output"), (lambda p: op.replay(p / "bad.npy"), op.InputError, "bad.npy"),
     (lambda p: op.generate("uniform", -1), op.Error, "objects")])
 def test_raises_the_errors_of_the_program(call, kind, words, tmp_path):

@@ -107,7 +107,8 @@ def test_refuses_wrong_calls(make_scene):
     cases = [lambda: scene.add(random_boxes(4, dtype=np.float64)), lambda: scene.move(ids, random_boxes(3)),
              lambda: scene.move(ids["index"], random_boxes(4)), lambda: scene.move(ids[::2], random_boxes(2)),
              lambda: scene.move(np.array([(77, 0)], op.id_dtype), random_boxes(1)),
-             lambda: scene.add(random_boxes(4), groups=-1), lambda: scene.add(random_boxes(4), fixed=np.zeros(4, int)),
+             lambda: scene.add(random_boxes(4), groups=-1), lambda: scene.add(random_boxes(4), groups=np.array([1.5, 1, 1, 1]), copy=True),
+             lambda: scene.add(random_boxes(4), mask=np.array([2**32, 1, 1, 1]), copy=True), lambda: scene.add(random_boxes(4), fixed=np.zeros(4, int)),
              lambda: scene.add(random_boxes(4), groups=np.zeros(3, np.uint32)), lambda: scene.ids([99]), lambda: scene.ids([-1]),
              lambda: make_scene(-1), lambda: make_scene(dtype="int32"), lambda: scene.remove(np.concatenate([ids, ids]))]
     for case in cases:
@@ -163,7 +164,7 @@ def test_queries_are_equal_to_brute_force():
 
 @pytest.mark.parametrize("call", [lambda s: s.overlaps(np.zeros((2, 5))), lambda s: s.nearest(np.zeros((2, 2))),
                                   lambda s: s.nearest(np.zeros((2, 3)), k=-1), lambda s: s.nearest(np.zeros((2, 3)), within=-1.0),
-                                  lambda s: s.first_hits(np.zeros((2, 3)), np.zeros((2, 3))), lambda s: s.overlaps("x"),
+                                  lambda s: s.first_hits(np.zeros((2, 3)), np.zeros((2, 3))), lambda s: s.overlaps("x"), lambda s: s.first_hits(np.zeros((2, 3)), np.ones((2, 3)), longest=None),
                                   lambda s: s.first_hits(np.zeros((2, 3)), np.ones((3, 3))), lambda s: s.overlaps(np.zeros((2, 6), "O")),
                                   lambda s: s.nearest(np.zeros((2, 3)), k=1.5), lambda s: s.overlaps(np.zeros((2, 6)), groups="a")])
 def test_refuses_wrong_queries(call):

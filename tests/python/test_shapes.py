@@ -1,4 +1,5 @@
 """Shapes, filters and self-intersections."""
+import time
 import types
 
 import numpy as np
@@ -181,3 +182,72 @@ def test_exceptions_of_callbacks_propagate():
 def test_refuses_wrong_shapes(make):
     with pytest.raises(op.Error):
         make()
+
+
+def test_filters_refuse_boxes_without_shapes():
+    balls = op.Shapes([op.Geometry.sphere(1)], op.make_poses(np.zeros((4, 3))), np.zeros(4, int))
+    for add in (lambda p: p.exact_objects(balls), lambda p: p.oriented_boxes(balls), lambda p: p.bounding_spheres(balls)):
+        assert add(op.Pipeline()).count(np.zeros((4, 6))).collisions == 6
+        with pytest.raises(op.InputError, match="5 objects, but shapes of 4"):
+            add(op.Pipeline()).run(np.zeros((5, 6)))
+        with pytest.raises(op.UsageError, match="second set"):
+            add(op.Pipeline()).run(np.zeros((4, 6)), np.zeros((4, 6)))
+    joined = op.Pipeline().exact_objects(balls, 0, balls)
+    assert joined.count(np.zeros((4, 6)), np.zeros((4, 6))).collisions == 16
+    for boxes in ((np.zeros((4, 6)), np.zeros((5, 6))), (np.zeros((5, 6)), np.zeros((4, 6)))):
+        with pytest.raises(op.InputError):
+            joined.run(*boxes)
+    with pytest.raises(op.UsageError):
+        joined.run(np.zeros((4, 6)))
+
+
+def test_callbacks_may_not_use_what_calls_them():
+    zeros = np.zeros((5, 6))
+    engine, pipeline = op.Engine(), op.Pipeline()
+    calls = [lambda: op.Pipeline().keep(lambda b: engine.find_pairs(zeros)).run(zeros, engine=engine),
+             lambda: op.Pipeline().run(zeros, engine=engine, sink=lambda b: engine.find_pairs(zeros)),
+             lambda: pipeline.run(zeros, sink=lambda b: pipeline.run(zeros)),
+             lambda: pipeline.run(zeros, sink=lambda b: pipeline.parents(np.arange(5)))]
+    for call in calls:
+        with pytest.raises(op.UsageError, match="callback"):
+            call()
+    assert pipeline.count(zeros, engine=engine).collisions == 10
+    other = op.Engine()
+    assert len(op.Pipeline().keep(lambda b: np.full(len(b), other.count_pairs(zeros) == 10)).run(zeros, engine=engine)) == 10
+
+
+def test_batches_of_slow_callables_are_large():
+    sizes = []
+    boxes = np.zeros((100, 6))
+
+    def slow(batch):
+        sizes.append(len(batch))
+        time.sleep(0.002)
+        return batch.a >= 0
+
+    assert len(op.Pipeline().keep(slow).run(boxes)) == 4950
+    assert sum(sizes) == 4950 and len(sizes) <= 4950 // 256 + 1
+
+
+def test_tables_are_right_at_their_edges():
+    ball = op.Geometry.sphere(1)
+    named, plain = op.Shapes([ball], op.make_poses([[0, 0, 0]]), names=["a"]), op.Shapes([ball] * 2, op.make_poses([[1, 0, 0], [1, 0, 1]]))
+    columns = op.collide(named, plain).columns()
+    assert columns["name_a"].tolist() == ["a", "a"] and "name_b" not in columns
+    assert op.collide(plain, named).columns()["name_b"].tolist() == ["a", "a"]
+    table = op.collide(plain)
+    assert table.contacts(-1) == table.contacts(0) == slice(0, 1) and (table == table) is True and hash(table)
+    for wrong in (lambda: table.contacts(1), lambda: table["nonsense"], lambda: table[0]):
+        with pytest.raises(LookupError):
+            wrong()
+    with pytest.raises(ValueError):
+        plain.poses[0] = 0
+    for wrong in (lambda: op.Shapes([ball], op.make_poses([[0, 0, 0]]), end_poses=np.empty((0, 4, 4))),
+                  lambda: op.Geometry.mesh(CUBE_VERTICES, CUBE_FACES, weld=-1), lambda: op.Shapes(ball, op.make_poses([[0, 0, 0]])),
+                  lambda: op.self_intersections(CUBE_VERTICES, CUBE_FACES, tolerance=np.nan), lambda: op.Geometry(1, "x"),
+                  lambda: op.Pipeline().bounding_spheres(None), lambda: op.Pipeline().groups([1], [1], against=3),
+                  lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
+                  lambda: op.Pipeline().run(np.zeros((2, 6)), sink=5), lambda: op.Geometry.sphere(10**400)):
+        with pytest.raises(op.Error):
+            wrong()
+    assert len(op.collide(op.Shapes((shape for shape in [ball] * 2), op.make_poses(np.zeros((2, 3)))))) == 1

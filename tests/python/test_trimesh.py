@@ -101,8 +101,13 @@ def test_empty_and_unknown():
     manager.add_object("a", cube_mesh())
     assert manager.min_distance_internal("a") == np.inf and repr(manager) == "CollisionManager(1 objects)"
     for call in (lambda: manager.remove_object("x"), lambda: manager.set_transform("x", np.eye(4)),
+                 lambda: manager.add_object("y", cube_mesh(), np.full((4, 4), np.nan)), lambda: manager.add_object("y", cube_mesh(), np.ones((4, 4))),
+                 lambda: manager.add_object("y", type("Empty", (), {"vertices": np.empty((0, 3)), "faces": np.empty((0, 3), int)})),
                  lambda: manager.min_distance_internal("x"), lambda: manager.add_object("y", cube_mesh(), np.eye(3))):
         with pytest.raises(ValueError):
+            call()
+    for call in (lambda: manager.add_object(3, cube_mesh()), lambda: manager.add_object("z", None), lambda: manager.in_collision_other(3)):
+        with pytest.raises(TypeError):
             call()
 
 
