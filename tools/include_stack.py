@@ -6,7 +6,8 @@
 A layer is a folder of src/ with the public headers (include/octopair) that it implements. A file that includes a public
 header uses the layer of this header. The folders of bench/ that octopair-bench is made of are layers, too; nothing in
 src/ may use these layers. Public headers use only public headers and the standard library. Headers of an adapter use only
-public headers, headers of their host, and the standard library. Prints one line for each
+public headers, headers of their host, and the standard library. Sources of the Python package use only public headers, pybind11, Python and
+the system's headers. Prints one line for each
 include that breaks a rule, and exits 1. With --print, prints the current stack for docs/design.md.
 """
 import pathlib
@@ -107,6 +108,8 @@ THIRD_PARTY = {
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}
 # Hosts of adapters: the first parts of includes of their headers.
 ADAPTERS = {"cgal": set(), "fcl": {"fcl", "Eigen"}, "bullet": {"BulletCollision", "LinearMath"}}
+# Host of the Python package: the first parts of includes of its headers.
+PYTHON = {"pybind11", "Python.h"}
 SYSTEM = {"sys", "linux", "netinet", "arpa", "sanitizer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
@@ -182,6 +185,22 @@ def check_adapters(root):
     return complaints, count
 
 
+def check_python(root):
+    """Returns violations of the Python package as text, and its number of files."""
+    complaints, count = [], 0
+    for path in sorted((root / "python" / "src").glob("*.[ch]pp")):
+        count += 1
+        for line, quoted, name in includes_of(path):
+            folder, _, file = name.rpartition("/")
+            if quoted:
+                right = (folder == "octopair" and file.removesuffix(".hpp") in LAYER_OF_HEADER) or (path.parent / name).is_file()
+            else:
+                right = (name.endswith(".h") and not folder) or "." not in name or name.partition("/")[0] in PYTHON
+            if not right:
+                complaints.append(f"{path.relative_to(root)}:{line}: {name}: the Python package uses only public headers and pybind11")
+    return complaints, count
+
+
 def files_of(root):
     """Yields (path, layer or None, whether it is a public header) for each checked file."""
     for path in sorted((root / "include").rglob("*.hpp")):
@@ -228,9 +247,9 @@ def main():
     arguments = [a for a in sys.argv[1:] if a != "--print"]
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent).resolve()
     complaints, used, count = check(root)
-    of_adapters, adapter_files = check_adapters(root)
-    complaints += of_adapters
-    count += adapter_files
+    for found, files in (check_adapters(root), check_python(root)):
+        complaints += found
+        count += files
     for complaint in complaints:
         print(complaint)
     if "--print" in sys.argv:

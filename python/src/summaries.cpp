@@ -1,3 +1,4 @@
+// What all modules return of a call's Summary, and how they report progress.
 #include "bindings.hpp"
 #include "engines.hpp"
 

@@ -1,3 +1,4 @@
+// Traits of a scene's objects from columns. Shared by the modules with scenes.
 #include <algorithm>
 
 #include "scenes.hpp"

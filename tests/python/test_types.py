@@ -26,6 +26,17 @@ def test_examples_of_docstrings(name):
     assert doctest.testmod(module).failed == 0
 
 
+def test_examples_of_the_guide():
+    assert doctest.testfile(str(ROOT / "docs" / "python.md"), module_relative=False).failed == 0
+
+
+def test_the_example_of_the_readme(capsys):
+    example = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+    exec(example, {})
+    words = capsys.readouterr().out.split()
+    assert words[1] == "pairs;" and int(words[0]) > 50_000 and int(words[2]) + int(words[5]) > 0
+
+
 def run(*command):
     environment = {**os.environ, "PYTHONPATH": str(PACKAGE.parent), "MYPYPATH": str(PACKAGE.parent)}
     found = subprocess.run(command, capture_output=True, text=True, cwd=PACKAGE.parent, env=environment)
