@@ -259,6 +259,37 @@ TEST(Pipeline, BatchesAreNeverEmpty) {
     EXPECT_GT(seen, 0u);
 }
 
+/// Keeps everything, slowly, and counts the batches that are smaller than it asks for.
+class SlowCallFilter final : public Filter {
+public:
+    SlowCallFilter(std::size_t least, std::atomic<int>& small) : least_(least), small_(small) {}
+    std::string_view name() const override { return "slow call"; }
+    std::size_t least_batch() const override { return least_; }
+    void apply(Batch& batch) const override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (batch.pairs().size() < 200) ++small_;
+    }
+
+private:
+    std::size_t least_;
+    std::atomic<int>& small_;
+};
+
+TEST(Pipeline, BatchesAreAsLargeAsAFilterAsks) {
+    const std::vector<Box3f> boxes(60);  // 1,770 pairs
+    const auto engine = make_local_engine(1);
+    const auto small_batches = [&](std::size_t least) {
+        std::atomic<int> small = 0;
+        Pipeline pipeline(2);
+        pipeline.add(std::make_unique<SlowCallFilter>(least, small));
+        EXPECT_EQ(pipeline.run(*engine, {boxes}, {}).collisions, 1770u);
+        return small.load();
+    };
+    EXPECT_LE(small_batches(200), 1);  // the last batch
+    EXPECT_GT(small_batches(1), 20);
+    EXPECT_LE(small_batches(std::size_t(1) << 40), 1);
+}
+
 TEST(Pipeline, SinkIsCalledOnTheCallingThread) {
     const auto boxes = samples::make_scene("dense", 5000, 1);
     Pipeline pipeline = two_filters(4);
