@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Literal, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Callable, Dict, Literal, Mapping, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 
@@ -117,6 +117,43 @@ class Pipeline:
         second = None if against is None else [_arrays.text(name, "against") for name in against]
         self._pipeline.add_names([_arrays.text(name, "names") for name in names], patterns, second)
         return self._added("name rules", second is not None)
+
+    def column_rules(self, columns: Mapping[str, Sequence[str]], rules: Sequence[Tuple[Mapping[str, str], Mapping[str, str]]],
+                     against: Optional[Mapping[str, Sequence[str]]] = None) -> "Pipeline":
+        """Drops pairs whose objects match a rule in several columns of texts.
+
+        Parameters
+        ----------
+        columns : dict of str to sequence of str
+            Texts of each object, for example names and types; empty: the object has none.
+        rules : sequence of (dict, dict)
+            Patterns of one object and of the other by column, as in :meth:`name_rules`. Columns without a pattern do not matter.
+        against : dict, optional
+            The same columns of the second set.
+
+        Examples
+        --------
+        >>> import numpy as np, octopair as op
+        >>> parts = {"name": ["wall", "pipe 1", "pipe 2"], "level": ["1", "1", "2"]}
+        >>> rule = ({"name": "pipe*"}, {"name": "wall", "level": "1"})
+        >>> op.Pipeline().column_rules(parts, [rule]).run(np.zeros((3, 6))).pairs
+        array([[1, 2]], dtype=uint32)
+        """
+        names = list(columns)
+        if against is not None and set(against) != set(names):
+            raise InputError(f"against: its columns are {', '.join(against)}; they must be {', '.join(names)}")
+        patterns = []
+        for rule in rules:
+            if not isinstance(rule, (tuple, list)) or len(rule) != 2 or not all(isinstance(side, Mapping) for side in rule):
+                raise InputTypeError("rules: each must be a pair of dicts")
+            for name in (*rule[0], *rule[1]):
+                if name not in names:
+                    raise InputError(f"rules: there is no column {name!r}; there are {', '.join(names)}")
+            a, b = ([_arrays.text(side[name], "rules") if name in side else None for name in names] for side in rule)
+            patterns.append((a, b))
+        self._pipeline.add_columns(_text_columns(columns, names, "columns"), patterns,
+                                   None if against is None else _text_columns(against, names, "against"))
+        return self._added("name rules", against is not None)
 
     def parents(self, parents: Any, against: Any = None) -> "Pipeline":
         """Keeps pairs of objects with different parents: any number per object, such as that of a body."""
@@ -242,6 +279,13 @@ class Pipeline:
 
     def __repr__(self) -> str:
         return f"Pipeline({' > '.join(self._filters)})"
+
+
+def _text_columns(columns: Mapping[str, Sequence[str]], names: Sequence[str], name: str) -> list[list[str]]:
+    found = [[_arrays.text(text, f"{name}[{column!r}]") for text in columns[column]] for column in names]
+    if len({len(texts) for texts in found}) > 1:
+        raise InputError(f"{name}: the columns have different lengths")
+    return found
 
 
 def _list(names: Optional[Sequence[str]]) -> Optional[list[str]]:

@@ -121,7 +121,11 @@ public:
         Scope(const Scope&) = delete;
         Scope& operator=(const Scope&) = delete;
         ~Scope() {
-            set_wakeup_descriptor(former_);
+            try {
+                set_wakeup_descriptor(former_);
+            } catch (const py::error_already_set&) {
+                former_ = -1;  // another thread closed the descriptor meanwhile
+            }
             for (const char number : watcher_.watch(nullptr)) {
                 // The event loop that has the former descriptor receives the signal, too. If its buffer is full, it will wake up anyway.
                 if (former_ >= 0) static_cast<void>(!write(former_, &number, 1));

@@ -96,6 +96,17 @@ public:
         }
         add(make_name_filter(names, std::move(patterns), other));
     }
+    /// Columns are lists of texts, one per object. A rule is two lists with a pattern or None for each column.
+    void add_columns(const std::vector<std::vector<std::string>>& first,
+                     const std::vector<std::pair<ColumnPatterns, ColumnPatterns>>& rules,
+                     const std::optional<std::vector<std::vector<std::string>>>& second) {
+        std::vector<ColumnRule> patterns;
+        for (const auto& [a, b] : rules) patterns.push_back({a, b});
+        const TextColumns here = texts_of(first);
+        std::optional<TextColumns> there;
+        if (second) there = texts_of(*second);
+        add(make_column_filter(here, patterns, there ? &*there : nullptr));
+    }
     void add_parents(const py::array& first, const py::object& second) {
         keep(first, second);
         std::optional<std::span<const std::uint32_t>> other;
@@ -159,6 +170,13 @@ private:
         return {rows_of<std::uint32_t>(columns[0].cast<py::array>()),
                 rows_of<std::uint32_t>(columns[1].cast<py::array>())};
     }
+    /// Borrows `columns`.
+    static TextColumns texts_of(const std::vector<std::vector<std::string>>& columns) {
+        return {columns.empty() ? 0 : columns[0].size(),
+                [&columns](std::uint32_t object, std::size_t column) -> std::string_view {
+                    return columns[column][object];
+                }};
+    }
     static TriangleSet triangles_of(const py::tuple& set) {
         return {rows_of<Triangle3d, double>(set[0].cast<py::array>()), optional_rows_of<std::uint32_t>(set[1])};
     }
@@ -217,6 +235,7 @@ void bind_pipeline(py::module_& module) {
         .def("add_groups", &PythonPipeline::add_groups, py::arg("first"), py::arg("second"))
         .def("add_ignored_pairs", &PythonPipeline::add_ignored_pairs, py::arg("pairs"), py::arg("join"))
         .def("add_names", &PythonPipeline::add_names, py::arg("first"), py::arg("rules"), py::arg("second"))
+        .def("add_columns", &PythonPipeline::add_columns, py::arg("first"), py::arg("rules"), py::arg("second"))
         .def("add_parents", &PythonPipeline::add_parents, py::arg("first"), py::arg("second"))
         .def("add_shapes", &PythonPipeline::add_shapes, py::arg("kind"), py::arg("first"), py::arg("second"),
              py::arg("options"))

@@ -67,7 +67,8 @@ def server():
 def test_same_bytes_as_the_program(kind, dtype, tmp_path, server):
     boxes = op.generate(kind, 1500, 5).astype(dtype)
     np.save(tmp_path / "boxes.npy", boxes)
-    engines = [op.Engine(threads=1), op.Engine(threads=3), op.Engine("processes", workers=2), op.Engine(server)]
+    engines = [op.Engine(threads=1), op.Engine(threads=3), op.Engine("processes", workers=2), op.Engine(server),
+               op.Engine("processes", workers=2, arrangement="paper")]
     for options in ({}, {"order": "octal"}, {"margin": 0.01}, {"limit": 100}):
         arguments = [text for name, value in options.items() for text in (f"--{name}", str(value))]
         subprocess.run([program_path(), "detect", str(tmp_path / "boxes.npy"), "--output", str(tmp_path / "pairs.npy"), "--quiet",
@@ -114,7 +115,8 @@ def test_faults_of_workers():
         op.Engine().worker_faults()
 
 
-@pytest.mark.parametrize("arguments", [("other",), (None,), ("unix:/x", {"token": 1}), ("unix:/x", {"patience": "x"}), ("local", {"workers": 2}), ("processes", {"threads": 2}), ("local", {"token": "x"}),
+@pytest.mark.parametrize("arguments", [("other",), (None,), ("unix:/x", {"token": 1}), ("unix:/x", {"patience": "x"}), ("local", {"workers": 2}), ("processes", {"threads": 2}), ("local", {"token": "x"}), ("local", {"arrangement": "paper"}),
+                                       ("processes", {"arrangement": "x"}),
                                        ("unix:/x", {"threads": 2, "connect_timeout": 0.1})])
 def test_refuses_other_engines(arguments):
     options = arguments[1] if len(arguments) > 1 else {}

@@ -122,6 +122,9 @@ def test_filters():
         (op.Pipeline().parents(parents), parents[a] != parents[b]),
         (op.Pipeline().ignored_pairs(all_pairs[::2, ::-1]), np.arange(len(all_pairs)) % 2 == 1),
         (op.Pipeline().name_rules(names, [("wall*", "wall*")]), ~(is_wall[a] & is_wall[b])),
+        (op.Pipeline().column_rules({"name": names, "parity": ["odd" if i % 2 else "" for i in range(400)]},
+                                    [({"name": "wall*", "parity": "odd"}, {"name": "pipe*"})]),
+         ~((is_wall[a] & (a % 2 == 1) & ~is_wall[b]) | (is_wall[b] & (b % 2 == 1) & ~is_wall[a]))),
         (op.Pipeline().keep(lambda batch: (batch.a + batch.b) % 2 == 0, "even"), (a + b) % 2 == 0),
     ]
     for pipeline, kept in cases:
@@ -246,7 +249,9 @@ def test_tables_are_right_at_their_edges():
                   lambda: op.Geometry.mesh(CUBE_VERTICES, CUBE_FACES, weld=-1), lambda: op.Shapes(ball, op.make_poses([[0, 0, 0]])),
                   lambda: op.self_intersections(CUBE_VERTICES, CUBE_FACES, tolerance=np.nan), lambda: op.Geometry(1, "x"),
                   lambda: op.Pipeline().bounding_spheres(None), lambda: op.Pipeline().groups([1], [1], against=3),
-                  lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
+                  lambda: op.Pipeline().column_rules({"n": ["a"]}, [({"x": "a"}, {})]), lambda: op.Pipeline().column_rules({"n": ["a"]}, [3]),
+                  lambda: op.Pipeline().column_rules({"n": ["a"], "m": []}, []), lambda: op.Pipeline().column_rules({"n": [1]}, []),
+                  lambda: op.Pipeline().column_rules({"n": ["a"]}, [], {"m": ["a"]}), lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
                   lambda: op.Pipeline().run(np.zeros((2, 6)), sink=5), lambda: op.Geometry.sphere(10**400)):
         with pytest.raises(op.Error):
             wrong()
