@@ -13,7 +13,7 @@ import octopair as op
 
 # A call that takes seconds: pairs of many equal boxes, only counted.
 CROWD = "np.zeros((400_000, 6), np.float32)"
-MOST_DELAY = 1.0  # seconds; a loaded machine needs more than the 0.2 of the promise
+MOST_DELAY = 2.0  # seconds; a loaded machine needs more than the 0.2 of the promise, and the calls take much longer
 
 
 def run(code, *, interrupt_after=None, timeout=60):
