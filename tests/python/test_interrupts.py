@@ -115,7 +115,7 @@ def test_a_fork_during_a_call_of_another_thread_is_refused():
     output, _, code = run("""
         e, s = op.Engine(), op.Scene()
         s.add(np.zeros((20_000, 6), np.float32))
-        threading.Thread(target=e.count_pairs, args=(np.zeros((60_000, 6), np.float32),)).start()
+        threading.Thread(target=e.count_pairs, args=(np.zeros((40_000, 6), np.float32),)).start()
         threading.Thread(target=s.step).start()
         time.sleep(0.1)
         child = os.fork()
