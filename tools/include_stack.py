@@ -6,8 +6,8 @@
 A layer is a folder of src/ with the public headers (include/octopair) that it implements. A file that includes a public
 header uses the layer of this header. The folders of bench/ that octopair-bench is made of are layers, too; nothing in
 src/ may use these layers. Public headers use only public headers and the standard library. Headers of an adapter use only
-public headers, headers of their host, and the standard library. Sources of the Python package use only public headers, pybind11, Python and
-the system's headers. Prints one line for each
+public headers, headers of their host, and the standard library. Sources of the Python package and of the interface for C use only public
+headers, pybind11, Python and the system's headers. Prints one line for each
 include that breaks a rule, and exits 1. With --print, prints the current stack for docs/design.md.
 """
 import pathlib
@@ -185,19 +185,19 @@ def check_adapters(root):
     return complaints, count
 
 
-def check_python(root):
-    """Returns violations of the Python package as text, and its number of files."""
+def check_bindings(root):
+    """Returns violations of the Python package and the interface for C as text, and their number of files."""
     complaints, count = [], 0
-    for path in sorted((root / "python" / "src").glob("*.[ch]pp")):
+    for path in sorted([*(root / "python" / "src").glob("*.[ch]pp"), *(root / "c" / "src").glob("*.[ch]pp")]):
         count += 1
         for line, quoted, name in includes_of(path):
             folder, _, file = name.rpartition("/")
             if quoted:
-                right = (folder == "octopair" and file.removesuffix(".hpp") in LAYER_OF_HEADER) or (path.parent / name).is_file()
+                right = (folder == "octopair" and file.removesuffix(".hpp") in LAYER_OF_HEADER) or name == "octopair.h" or (path.parent / name).is_file()
             else:
                 right = (name.endswith(".h") and not folder) or "." not in name or name.partition("/")[0] in PYTHON
             if not right:
-                complaints.append(f"{path.relative_to(root)}:{line}: {name}: the Python package uses only public headers and pybind11")
+                complaints.append(f"{path.relative_to(root)}:{line}: {name}: a binding uses only public headers, and those of its language")
     return complaints, count
 
 
@@ -247,7 +247,7 @@ def main():
     arguments = [a for a in sys.argv[1:] if a != "--print"]
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent).resolve()
     complaints, used, count = check(root)
-    for found, files in (check_adapters(root), check_python(root)):
+    for found, files in (check_adapters(root), check_bindings(root)):
         complaints += found
         count += files
     for complaint in complaints:

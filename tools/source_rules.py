@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["include", "src", "python", "bench", "tests", "examples", "tools", "cmake", "scripts", "docs"]
+FOLDERS = ["include", "src", "c", "python", "bench", "tests", "examples", "tools", "cmake", "scripts", "docs"]
 CODE = {".hpp", ".cpp"}
 TEXT = CODE | {".py", ".cmake", ".txt", ".md", ".sh", ".in", ""}
 LONGEST_FILE = 500

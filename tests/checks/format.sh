@@ -4,7 +4,7 @@ set -euo pipefail
 clang_format=$1 root=$2 how=${3:---dry-run}
 cd "$root"
 folders=()
-for folder in include src python bench tests examples; do [ ! -d $folder ] || folders+=("$folder"); done
+for folder in include src c python bench tests examples; do [ ! -d $folder ] || folders+=("$folder"); done
 mapfile -t files < <(find "${folders[@]}" -name wrong_tree -prune -o -name '*.[ch]pp' -print | sort)
 "$clang_format" "$how" --Werror "${files[@]}"
 echo "${#files[@]} files have the format of .clang-format"

@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/peak_memory.hpp"
+
 namespace octopair::test {
 namespace {
 
@@ -74,6 +76,25 @@ TEST_P(TeamOf, LeadsOnTheCallingThread) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, TeamOf, ::testing::Values(1u, 2u, 5u));
+
+/// oneTBB keeps memory of each arena that threads entered, so teams must use arenas again.
+TEST(Team, ManyTeamsOneAfterAnotherTakeNoMemory) {
+    const auto work = [] {
+        Team team(2);
+        std::atomic<int> calls = 0;
+        const std::function<void(std::size_t, unsigned)> body = [&](std::size_t, unsigned) { ++calls; };
+        team.for_each(64, body);
+        EXPECT_EQ(calls, 64);
+    };
+    for (int i = 0; i < 300; ++i) work();
+    const std::uint64_t before = peak_rss();
+    for (int i = 0; i < 2000; ++i) work();
+#ifndef OCTOPAIR_TEST_SANITIZED
+    EXPECT_LT(peak_rss() - before, 4u << 20);  // new arenas would take 14 MB
+#else
+    static_cast<void>(before);
+#endif
+}
 
 TEST(Team, HasAThreadForEachCoreByDefault) { EXPECT_GE(Team(0).threads(), 1u); }
 

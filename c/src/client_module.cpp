@@ -1,0 +1,29 @@
+// The module with gRPC that connection.cpp loads.
+#include <chrono>
+
+#include "connection.hpp"
+#include "octopair/client.hpp"
+
+namespace {
+
+std::string text_of(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+
+std::chrono::milliseconds milliseconds_of(double seconds) {
+    return std::chrono::milliseconds(std::int64_t(seconds * 1e3));
+}
+
+}  // namespace
+
+extern "C" OCTOPAIR_API void octopair_c_connect(const std::string& address, const octopair_engine_options& options,
+                                                std::unique_ptr<octopair::Engine>& engine) {
+    octopair::ClientOptions client;
+    client.token = text_of(options.token);
+    client.authority = text_of(options.authority);
+    client.certificate = text_of(options.certificate);
+    client.key = text_of(options.key);
+    client.tls = options.tls != 0;
+    client.token_in_clear = options.token_in_clear != 0;
+    client.connect_timeout = milliseconds_of(options.connect_timeout);
+    client.patience = milliseconds_of(options.patience);
+    engine = octopair::connect(address, client);
+}
