@@ -6,13 +6,9 @@
 #include <oneapi/tbb/task_group.h>
 
 #include <exception>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/floating_point_scope.hpp"
 #include "octopair/error.hpp"
@@ -41,36 +37,6 @@ void allow_threads(unsigned threads) {
     if (threads <= global_control::active_value(limit)) return;
     allowed = nullptr;  // if several limits exist, the lowest counts
     allowed = std::make_unique<global_control>(limit, threads);
-}
-
-/// Arenas that no team uses, for teams of the same size. oneTBB 2021.8 never returns about 7 KB of an arena that worker threads have
-/// entered, so a program that makes an engine for each call would grow without end.
-///
-/// Never destroyed: oneTBB may have ended before the destructors of static objects run.
-class IdleArenas {
-public:
-    std::unique_ptr<TbbThreads::Arena> take(unsigned threads) {
-        const std::lock_guard lock(mutex_);
-        auto& idle = idle_[threads];
-        if (idle.empty())
-            return std::make_unique<TbbThreads::Arena>(TbbThreads::Arena{oneapi::tbb::task_arena(int(threads))});
-        auto arena = std::move(idle.back());
-        idle.pop_back();
-        return arena;
-    }
-    void give_back(unsigned threads, std::unique_ptr<TbbThreads::Arena> arena) {
-        const std::lock_guard lock(mutex_);
-        idle_[threads].push_back(std::move(arena));
-    }
-
-private:
-    std::mutex mutex_;
-    std::map<unsigned, std::vector<std::unique_ptr<TbbThreads::Arena>>> idle_;
-};
-
-IdleArenas& idle_arenas() {
-    static auto* const arenas = new IdleArenas();
-    return *arenas;
 }
 
 /// Tells the thread sanitizer the order of one call: everything before the call happens before its tasks, and the tasks happen
@@ -141,12 +107,12 @@ void start(Body&& body) {
 
 }  // namespace
 
-TbbThreads::TbbThreads(unsigned threads) : threads_(threads) {
+TbbThreads::TbbThreads(unsigned threads) {
     allow_threads(threads);
-    arena_ = idle_arenas().take(threads);
+    arena_ = std::make_unique<Arena>(Arena{oneapi::tbb::task_arena(int(threads))});
 }
 
-TbbThreads::~TbbThreads() { idle_arenas().give_back(threads_, std::move(arena_)); }
+TbbThreads::~TbbThreads() = default;
 
 void TbbThreads::run(unsigned count, const std::function<void(unsigned)>& body) {
     TaskOrder order;

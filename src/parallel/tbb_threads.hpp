@@ -15,8 +15,6 @@ class TbbThreads {
 public:
     /// Makes an arena of `threads` threads, the calling thread included.
     explicit TbbThreads(unsigned threads);
-    TbbThreads(const TbbThreads&) = delete;
-    TbbThreads& operator=(const TbbThreads&) = delete;
     ~TbbThreads();
 
     /// Calls body(i) once for each i below `count`, on several threads. Returns when all bodies have returned.
@@ -27,10 +25,8 @@ public:
     /// Throws: Error{resource_limit} if no threads can be started.
     void run_with_helpers(unsigned helpers, const std::function<void()>& lead, const std::function<void()>& help);
 
-    struct Arena;  // of oneTBB
-
 private:
-    unsigned threads_;
+    struct Arena;
     std::unique_ptr<Arena> arena_;
 };
 
