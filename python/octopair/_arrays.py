@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import operator
-from typing import Any, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -47,10 +47,21 @@ def length(value: Any, name: str) -> float:
 
 
 def text(value: Any, name: str) -> str:
-    """Returns a str."""
+    """Returns a str that has a UTF-8 form."""
     if not isinstance(value, str):
         raise InputTypeError(f"{name}: {value!r} is not a str")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise InputError(f"{name}: {value!r} has a surrogate, which no text may have") from None
     return value
+
+
+def texts(values: Any, name: str) -> List[str]:
+    """Returns a list of str."""
+    if isinstance(values, (str, bytes)) or not hasattr(values, "__iter__"):
+        raise InputTypeError(f"{name}: {values!r} is not a sequence of str")
+    return [text(value, name) for value in values]
 
 
 Array = npt.NDArray[Any]
@@ -77,11 +88,12 @@ def array_of(value: Any, name: str, copy: bool = False) -> Array:
             return np.from_dlpack(value)
         except Exception as error:
             raise InputTypeError(f"{name}: NumPy cannot read this {type(value).__name__}: {error}") from error
-    if not isinstance(value, (str, bytes, bytearray)):
-        try:
-            return np.asarray(memoryview(value))
-        except TypeError:
-            pass
+    if isinstance(value, (str, bytes, bytearray)):
+        raise InputTypeError(f"{name}: a {type(value).__name__} is not an array; numpy.load() reads a file")
+    try:
+        return np.asarray(memoryview(value))
+    except TypeError:
+        pass
     if copy:
         try:
             return np.array(value)

@@ -67,6 +67,8 @@ class PairStream:
         """Returns the next chunk."""
         try:
             return self._stream.next()
+        except UsageError:
+            raise  # the call was refused, and the stream goes on
         except BaseException:
             self.close()
             raise
@@ -140,7 +142,10 @@ class Job:
         bool
             True if the job has ended.
         """
-        return self._job.wait(-1.0 if timeout is None else max(_arrays.real(timeout, "timeout"), 0.0))
+        seconds = -1.0 if timeout is None else _arrays.real(timeout, "timeout")
+        if seconds != seconds:
+            raise InputError("timeout: nan is not a number of seconds")
+        return self._job.wait(seconds if timeout is None else max(seconds, 0.0))
 
     def cancel(self) -> None:
         """Requests that the job ends, and returns at once. A running job ends within 200 ms."""
@@ -211,10 +216,10 @@ class Engine:
         if arrangement == "paper" and kind != "processes":
             raise UsageError("arrangement: only engines of worker processes have one here; for MPI see octopair.mpi.make_engine")
         if ":" in _arrays.text(kind, "kind"):
-            from . import remote
-            self._start(remote._connect(kind, **client), kind)
             if threads or workers:
                 raise UsageError("threads and workers are settings of the server, not of a connection")
+            from . import remote
+            self._start(remote._connect(kind, **client), kind)
             return
         if client:
             raise UsageError(f"{', '.join(client)}: only connections to servers have such options")

@@ -110,12 +110,12 @@ class Pipeline:
     def name_rules(self, names: Sequence[str], rules: Sequence[Tuple[str, str]],
                    against: Optional[Sequence[str]] = None) -> "Pipeline":
         """Drops pairs whose names match a rule: a pair of patterns, where ``*`` stands for any characters and ``?`` for one."""
-        try:
-            patterns = [(_arrays.text(a, "rules"), _arrays.text(b, "rules")) for a, b in rules]
-        except (TypeError, ValueError) as error:
-            raise InputTypeError(f"rules: each must be a pair of patterns: {error}") from error
-        second = None if against is None else [_arrays.text(name, "against") for name in against]
-        self._pipeline.add_names([_arrays.text(name, "names") for name in names], patterns, second)
+        patterns = []
+        for rule in _pairs(rules, "rules"):
+            a, b = (_arrays.text(pattern, "rules") for pattern in rule)
+            patterns.append((a, b))
+        second = None if against is None else _arrays.texts(against, "against")
+        self._pipeline.add_names(_arrays.texts(names, "names"), patterns, second)
         return self._added("name rules", second is not None)
 
     def column_rules(self, columns: Mapping[str, Sequence[str]], rules: Sequence[Tuple[Mapping[str, str], Mapping[str, str]]],
@@ -127,7 +127,8 @@ class Pipeline:
         columns : dict of str to sequence of str
             Texts of each object, for example names and types; empty: the object has none.
         rules : sequence of (dict, dict)
-            Patterns of one object and of the other by column, as in :meth:`name_rules`. Columns without a pattern do not matter.
+            Patterns of one object and of the other by column, as in :meth:`name_rules`. Columns without a pattern do not matter; ``*`` also
+            matches an empty text.
         against : dict, optional
             The same columns of the second set.
 
@@ -139,12 +140,17 @@ class Pipeline:
         >>> op.Pipeline().column_rules(parts, [rule]).run(np.zeros((3, 6))).pairs
         array([[1, 2]], dtype=uint32)
         """
-        names = list(columns)
+        for given in (columns,) if against is None else (columns, against):
+            if not isinstance(given, Mapping):
+                raise InputTypeError(f"columns: a {type(given).__name__} is not a dict of columns")
+        names = _arrays.texts(columns, "columns")
+        if not names:
+            raise InputError("columns: there are none")
         if against is not None and set(against) != set(names):
             raise InputError(f"against: its columns are {', '.join(against)}; they must be {', '.join(names)}")
         patterns = []
-        for rule in rules:
-            if not isinstance(rule, (tuple, list)) or len(rule) != 2 or not all(isinstance(side, Mapping) for side in rule):
+        for rule in _pairs(rules, "rules"):
+            if not all(isinstance(side, Mapping) for side in rule):
                 raise InputTypeError("rules: each must be a pair of dicts")
             for name in (*rule[0], *rule[1]):
                 if name not in names:
@@ -281,8 +287,19 @@ class Pipeline:
         return f"Pipeline({' > '.join(self._filters)})"
 
 
+def _pairs(values: Any, name: str) -> list[Tuple[Any, Any]]:
+    """Returns a list of pairs."""
+    if isinstance(values, (str, bytes)) or not hasattr(values, "__iter__"):
+        raise InputTypeError(f"{name}: {values!r} is not a sequence of pairs")
+    found = list(values)
+    for value in found:
+        if not isinstance(value, (tuple, list)) or len(value) != 2:
+            raise InputTypeError(f"{name}: {value!r} is not a pair")
+    return [(a, b) for a, b in found]
+
+
 def _text_columns(columns: Mapping[str, Sequence[str]], names: Sequence[str], name: str) -> list[list[str]]:
-    found = [[_arrays.text(text, f"{name}[{column!r}]") for text in columns[column]] for column in names]
+    found = [_arrays.texts(columns[column], f"{name}[{column!r}]") for column in names]
     if len({len(texts) for texts in found}) > 1:
         raise InputError(f"{name}: the columns have different lengths")
     return found

@@ -253,7 +253,7 @@ class Scene(SceneCalls):
         places : array, shape (n, 3) or (n, 6)
             Points or boxes; converted to float64.
         k : int
-            Maximum number of objects.
+            Maximum number of objects. A single query is not interrupted, so Ctrl-C may take longer for a very large `k`.
         within : float
             Maximum distance.
         groups : int

@@ -271,6 +271,8 @@ class Shapes:
 
         The box of a moving object contains its whole motion.
         """
+        if against is not None and not isinstance(against, Shapes):
+            raise InputTypeError(f"against: a {type(against).__name__} is not a Shapes")
         return self._shapes.boxes() if against is None else self._shapes.boxes_with(against._shapes)
 
     def __len__(self) -> int:

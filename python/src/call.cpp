@@ -94,6 +94,8 @@ Helpers& helpers() {
 }
 
 std::atomic<bool> interpreter_ends = false;
+/// Threads that take the GIL, or run a callback. They started before interpreter_ends was set.
+std::atomic<int> threads_at_gil = 0;
 std::atomic<unsigned long> main_thread = 0;
 /// Turns of the calls whose callback this thread runs.
 thread_local std::vector<Turn*> callback_turns;
@@ -125,6 +127,7 @@ public:
                 set_wakeup_descriptor(former_);
             } catch (const py::error_already_set&) {
                 former_ = -1;  // another thread closed the descriptor meanwhile
+                set_wakeup_descriptor(former_);
             }
             for (const char number : watcher_.watch(nullptr)) {
                 // The event loop that has the former descriptor receives the signal, too. If its buffer is full, it will wake up anyway.
@@ -289,13 +292,42 @@ void call(const CallMode& mode, const std::function<void(std::stop_token, Progre
 Unlocked::~Unlocked() noexcept(false) {
     // A thread that takes the GIL while the interpreter ends is ended by pthread_exit. This thread may hold locks, so it waits for the
     // end of the process instead.
-    while (interpreter_ends && !is_main_thread_id()) pause();
+    ++threads_at_gil;
+    while (interpreter_ends && !is_main_thread_id()) {
+        --threads_at_gil;
+        pause();
+        ++threads_at_gil;
+    }
     PyEval_RestoreThread(state_);
+    --threads_at_gil;
+}
+
+Locked::Locked() {
+    ++threads_at_gil;
+    if (interpreter_ends) {
+        --threads_at_gil;
+        throw Error(ErrorCode::cancelled, "the interpreter ends");
+    }
+    state_ = PyGILState_Ensure();
+}
+
+Locked::~Locked() {
+    PyGILState_Release(state_);
+    --threads_at_gil;
 }
 
 void watch_end_of_interpreter() {
     is_main_thread();
-    py::module_::import("atexit").attr("register")(py::cpp_function([] { interpreter_ends = true; }));
+    const auto wait_for_threads = [] {
+        interpreter_ends = true;
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+        while (threads_at_gil > 0 && std::chrono::steady_clock::now() < deadline) {
+            PyThreadState* const state = PyEval_SaveThread();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            PyEval_RestoreThread(state);
+        }
+    };
+    py::module_::import("atexit").attr("register")(py::cpp_function(wait_for_threads));
 }
 
 Callback::Callback(std::vector<Turn*> turns) : before_(callback_turns.size()) {
@@ -304,21 +336,28 @@ Callback::Callback(std::vector<Turn*> turns) : before_(callback_turns.size()) {
 
 Callback::~Callback() { callback_turns.resize(before_); }
 
-Turn::Holder::Holder(Turn& turn) : turn_(turn) {
+void Turn::check_free() const {
     check_not_forked();
-    const bool in_callback = std::find(callback_turns.begin(), callback_turns.end(), &turn) != callback_turns.end();
-    if (in_callback || turn.owner_ == std::this_thread::get_id()) {
+    const bool in_callback = std::find(callback_turns.begin(), callback_turns.end(), this) != callback_turns.end();
+    if (in_callback || owner_ == std::this_thread::get_id()) {
         throw Error(
             ErrorCode::usage,
             "a call of this object is running on this thread; a signal handler or callback may not make another");
     }
+}
+
+Turn::Holder::Holder(Turn& turn) : turn_(turn) {
+    turn.check_free();
     bool mine = turn.mutex_.try_lock();
     while (!mine) {
         {
             const Unlocked unlocked;
             mine = turn.mutex_.try_lock_for(signal_interval);
         }
-        if (!mine && PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (mine) break;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (interpreter_ends)
+            throw Error(ErrorCode::usage, "the interpreter ends, and another thread uses this object");
     }
     turn.owner_ = std::this_thread::get_id();
 }

@@ -63,6 +63,20 @@ private:
     PyThreadState* state_;
 };
 
+/// Takes the GIL on a thread of the library, for a callback. At its end the interpreter waits until no thread is in such a callback: it would
+/// end the thread by pthread_exit, which the library does not expect.
+class Locked {
+public:
+    /// Throws: Error{cancelled} if the interpreter ends.
+    Locked();
+    Locked(const Locked&) = delete;
+    Locked& operator=(const Locked&) = delete;
+    ~Locked();
+
+private:
+    PyGILState_STATE state_;
+};
+
 /// Deletes an object without the GIL, because its destruction may wait for threads that need the GIL. Leaks it after a fork.
 struct ReleasedDelete {
     template <typename Object>
@@ -92,6 +106,9 @@ public:
     private:
         Turn& turn_;
     };
+
+    /// Throws: Error{usage} within a call of this object, in a signal handler or a callback, and after a fork.
+    void check_free() const;
 
 private:
     std::timed_mutex mutex_;

@@ -10,7 +10,7 @@ namespace octopair::python {
 namespace {
 
 std::shared_ptr<PythonEngine> local_engine(unsigned threads) {
-    return wrap([&] { return make_local_engine(threads); });
+    return wrap([&] { return make_local_engine(threads); }, false);
 }
 
 std::shared_ptr<PythonEngine> process_engine(unsigned workers, const std::string& worker_program, bool paper) {
@@ -23,7 +23,7 @@ py::tuple find_pairs(PythonEngine& engine, const ArrayInput& input, const Option
                      const py::object& progress) {
     const Turn::Holder turn(engine.turn());
     Summary summary;
-    call({input.size(), progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+    call({engine.size_of(input.size()), progress}, [&](const std::stop_token& stop, ProgressValue& value) {
         summary =
             engine.engine().find_pairs(input.input(), engine.list(), with_progress(options, progress, value), stop);
     });
@@ -35,7 +35,7 @@ py::tuple count_pairs(PythonEngine& engine, const ArrayInput& input, const Optio
                       const py::object& progress) {
     const Turn::Holder turn(engine.turn());
     Summary summary;
-    call({input.size(), progress}, [&](const std::stop_token& stop, ProgressValue& value) {
+    call({engine.size_of(input.size()), progress}, [&](const std::stop_token& stop, ProgressValue& value) {
         summary = engine.engine().stream_pairs(input.input(), {}, with_progress(options, progress, value), stop);
     });
     return summary_tuple(summary);

@@ -1,6 +1,7 @@
 // Engines as Python objects. The modules for MPI and servers make engines of their own kinds with wrap().
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "call.hpp"
@@ -11,24 +12,31 @@ namespace octopair::python {
 /// An engine, and a list that keeps its memory from call to call. Python threads take turns.
 class PythonEngine {
 public:
-    explicit PythonEngine(std::unique_ptr<Engine> engine) : engine_(engine.release()) {}
+    /// `waits`: calls may wait for other processes.
+    explicit PythonEngine(std::unique_ptr<Engine> engine, bool waits = false)
+        : engine_(engine.release()), waits_(waits) {}
 
     Engine& engine() { return *engine_; }
     PairList& list() { return list_; }
     Turn& turn() { return turn_; }
+    /// Notes that the engine has jobs, for which calls wait.
+    void note_job() { waits_ = true; }
+    /// Returns the size of a call for CallMode.
+    std::uint64_t size_of(std::uint64_t objects) const { return waits_ ? ~std::uint64_t(0) : objects; }
 
 private:
     std::unique_ptr<Engine, ReleasedDelete> engine_;
     PairList list_;
     Turn turn_;
+    std::atomic<bool> waits_;
 };
 
 /// Returns an engine that `make` makes without the GIL. Throws: exceptions of `make`; Error{usage} after a fork.
 template <typename Make>
-std::shared_ptr<PythonEngine> wrap(Make make) {
+std::shared_ptr<PythonEngine> wrap(Make make, bool waits = true) {
     check_not_forked();
     const Unlocked unlocked;
-    return std::make_shared<PythonEngine>(make());
+    return std::make_shared<PythonEngine>(make(), waits);
 }
 
 /// Summary as a tuple for octopair/_results.py.

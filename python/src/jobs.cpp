@@ -49,7 +49,8 @@ class PythonJob {
 public:
     PythonJob(const std::shared_ptr<PythonEngine>& engine, const py::object& input, const Options& options)
         : engine_(engine), input_(input) {
-        check_not_forked();
+        engine->turn().check_free();
+        engine->note_job();
         JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
         const Unlocked unlocked;
         job_.reset(new Job(engine->engine().submit(std::move(borrowed), options)));
@@ -60,6 +61,7 @@ public:
     ~PythonJob() { job_.reset(); }
 
     const char* state() const {
+        check_not_forked();
         switch (job_->state()) {
             case JobState::queued:
                 return "queued";
@@ -74,8 +76,13 @@ public:
         }
         return "cancelled";
     }
-    double progress() const { return job_->progress(); }
-    void cancel() { job_->cancel(); }
+    double progress() const {
+        check_not_forked();
+        return job_->progress();
+    }
+    void cancel() {
+        if (!is_forked()) job_->cancel();
+    }
     bool wait(double seconds) {
         check_not_forked();
         return wait_for_end(seconds, [&](std::chrono::nanoseconds time) { return job_->wait_for(time); });
@@ -164,7 +171,8 @@ class PythonStream {
 public:
     PythonStream(const std::shared_ptr<PythonEngine>& engine, const py::object& input, Options options)
         : engine_(engine), input_(input), queue_(chunk_pairs(options)) {
-        check_not_forked();
+        engine->turn().check_free();
+        engine->note_job();
         JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
         options.buffer_bytes /= 2;
         auto sink = [this, end = std::make_shared<QueueEnd>(queue_)](std::span<const Pair> pairs) {
@@ -197,6 +205,7 @@ public:
         throw py::stop_iteration();
     }
     void close() {
+        if (is_forked()) return;
         if (const std::shared_ptr<Job> job = current_job()) job->cancel();
         queue_.close();
         end();

@@ -27,8 +27,12 @@ public:
     CallableFilter(const CallableFilter&) = delete;
     CallableFilter& operator=(const CallableFilter&) = delete;
     ~CallableFilter() override {
-        const py::gil_scoped_acquire acquired;
-        keep_ = py::function();
+        try {
+            const Locked locked;
+            keep_ = py::function();
+        } catch (const Error&) {
+            keep_.release();  // the interpreter ends
+        }
     }
 
     std::string_view name() const override { return name_; }
@@ -39,7 +43,7 @@ public:
         columns.append(batch);
         std::vector<std::uint32_t> kept;
         {
-            const py::gil_scoped_acquire acquired;
+            const Locked locked;
             const Callback callback(turns_);
             const py::object answer = keep_(columns.take());
             const auto mask = rows_of<bool>(answer.cast<py::array>());
@@ -127,7 +131,7 @@ public:
         if (kind == "exact feature") add(make_exact_feature_filter(objects, exact, other));
         shapes_.push_back({kind, objects.size(), (other == nullptr ? objects : *other).size()});
     }
-    void add_depth(double least) { pipeline_->add(make_depth_filter(least)); }
+    void add_depth(double least) { add(make_depth_filter(least)); }
     /// Sets are (triangles (n, 9), owners or None). `options` is (adjacent, margin, features, tolerance).
     void add_triangles(const py::tuple& first, const py::object& second, const py::tuple& options) {
         keep(first, second);
@@ -183,7 +187,7 @@ private:
     void receive(const Batch& batch, CollisionColumns& columns, const py::object& sink) const {
         columns.append(batch);
         if (sink.is_none()) return;
-        const py::gil_scoped_acquire acquired;
+        const Locked locked;
         const Callback callback(turns_);
         sink(columns.take());
     }

@@ -49,7 +49,8 @@ void call_server(const py::object& progress, Work work) {
 std::shared_ptr<PythonEngine> connect_engine(const std::string& address, const py::dict& settings) {
     const ClientOptions options = options_of(settings);
     std::shared_ptr<PythonEngine> engine;
-    call_server(py::none(), [&](auto&&...) { engine = std::make_shared<PythonEngine>(connect(address, options)); });
+    call_server(py::none(),
+                [&](auto&&...) { engine = std::make_shared<PythonEngine>(connect(address, options), true); });
     return engine;
 }
 

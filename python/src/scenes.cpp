@@ -79,7 +79,7 @@ private:
     template <typename Answer, typename Query, typename Find>
     Answers<Answer> in_batches(std::span<const Query> queries, Find find) {
         using Clock = std::chrono::steady_clock;
-        std::size_t batch_size = 16;
+        std::size_t batch_size = 1;
         Answers<Answer> all, part;
         std::size_t end = 0;
         do {

@@ -47,6 +47,8 @@ CALLS = {
             "t.start(); time.sleep(0.2); e.find_pairs(np.zeros((5, 6)))",
     "few slow queries": "s = op.Scene(); s.add(np.random.rand(20_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
                         "s.nearest(np.random.rand(3000, 3), k=20_000)",
+    "small call behind a job": "e = op.Engine(threads=1); j = e.submit(np.zeros((60_000, 6)));\n            "
+                               "while j.state != 'running': time.sleep(0.001)\n            e.find_pairs(np.zeros((10, 6)))",
     "queries": "s = op.Scene(); s.add(np.random.rand(300_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
                "s.nearest(np.random.rand(100_000, 3), k=2000)",
 }
@@ -182,7 +184,43 @@ def test_spawn_works(tmp_path):
                                     "time.sleep(0.1)",
                                     "e = op.Engine(); c = np.zeros((50, 6)); f = lambda: [e.find_pairs(c) for _ in iter(int, 1)]; "
                                     "threading.Thread(target=f, daemon=True).start(); time.sleep(0.1)",
+                                    "p = op.Pipeline(threads=2).keep(lambda t: np.ones(len(t), bool)); z = b[:1500]; "
+                                    "f = lambda: [p.run(z) for _ in iter(int, 1)]; "
+                                    "threading.Thread(target=f, daemon=True).start(); time.sleep(0.3)",
+                                    "z = b[:1500]; f = lambda: [op.Pipeline().run(z, sink=len) for _ in iter(int, 1)]; "
+                                    "threading.Thread(target=f, daemon=True).start(); time.sleep(0.3)",
+                                    "z = b[:10]; f = lambda: [op.find_pairs(z) for _ in iter(int, 1)]; "
+                                    "[threading.Thread(target=f, daemon=True).start() for _ in range(4)]; time.sleep(0.3)",
                                     "s = op.Scene(); s.add(b[:9000]); s.step(); cycle = [s]; cycle.append(cycle)"])
 def test_the_interpreter_ends_in_the_middle_of_work(ending):
     output, _, code = run(f"b = np.zeros((100_000, 6), np.float32)\n{ending}\nprint('end')")
     assert (output, code) == ("end\n", 0)
+
+
+def test_an_exit_handler_does_not_wait_for_daemon_threads():
+    # The handler is registered before octopair is imported, so that it runs after octopair's own. The engine may be free by chance.
+    text = textwrap.dedent("""
+        import atexit, threading, time
+        import numpy as np
+        kept = []
+
+        def at_end():
+            try:
+                kept[0].find_pairs(kept[1])
+            except ValueError:
+                pass
+
+        atexit.register(at_end)
+        import octopair as op
+        kept += [op.Engine(), np.zeros((3000, 6))]
+
+        def work():
+            while True:
+                kept[0].find_pairs(kept[1])
+
+        for _ in range(2):
+            threading.Thread(target=work, daemon=True).start()
+        time.sleep(0.3)
+        """)
+    found = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60)
+    assert (found.stderr, found.returncode) == ("", 0)

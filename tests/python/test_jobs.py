@@ -52,6 +52,8 @@ def test_jobs():
     assert slow.wait(10) and slow.state == "cancelled"
     with pytest.raises(op.CancelledError):
         slow.result()
+    with pytest.raises(op.InputError):
+        job.wait(float("nan"))
     result = job.result()
     assert job.state == "done" and job.progress == 1 and job.result() is result
     assert result.pairs.tobytes() == op.find_pairs(boxes, margin=0.01).tobytes() and not result.truncated

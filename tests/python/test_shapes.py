@@ -210,7 +210,10 @@ def test_callbacks_may_not_use_what_calls_them():
     calls = [lambda: op.Pipeline().keep(lambda b: engine.find_pairs(zeros)).run(zeros, engine=engine),
              lambda: op.Pipeline().run(zeros, engine=engine, sink=lambda b: engine.find_pairs(zeros)),
              lambda: pipeline.run(zeros, sink=lambda b: pipeline.run(zeros)),
-             lambda: pipeline.run(zeros, sink=lambda b: pipeline.parents(np.arange(5)))]
+             lambda: pipeline.run(zeros, sink=lambda b: pipeline.parents(np.arange(5))),
+             lambda: pipeline.run(zeros, sink=lambda b: pipeline.min_depth(0)),
+             lambda: op.Pipeline().keep(lambda b: engine.submit(zeros)).run(zeros, engine=engine),
+             lambda: op.Pipeline().keep(lambda b: engine.stream_pairs(zeros)).run(zeros, engine=engine)]
     for call in calls:
         with pytest.raises(op.UsageError, match="callback"):
             call()
@@ -249,6 +252,11 @@ def test_tables_are_right_at_their_edges():
                   lambda: op.Geometry.mesh(CUBE_VERTICES, CUBE_FACES, weld=-1), lambda: op.Shapes(ball, op.make_poses([[0, 0, 0]])),
                   lambda: op.self_intersections(CUBE_VERTICES, CUBE_FACES, tolerance=np.nan), lambda: op.Geometry(1, "x"),
                   lambda: op.Pipeline().bounding_spheres(None), lambda: op.Pipeline().groups([1], [1], against=3),
+                  lambda: op.Pipeline().column_rules(3, []), lambda: op.Pipeline().column_rules({"n": None}, []),
+                  lambda: op.Pipeline().column_rules({}, []), lambda: op.Pipeline().column_rules({"n": "abc"}, []),
+                  lambda: op.Pipeline().column_rules({"n": ["a"]}, None), lambda: op.Pipeline().column_rules({"n": ["a"]}, [], 3),
+                  lambda: op.Pipeline().name_rules(None, []), lambda: op.Pipeline().name_rules("abc", []),
+                  lambda: op.Pipeline().name_rules(["\ud800"], []), lambda: op.Pipeline().name_rules(["a"], 3), lambda: plain.boxes(3),
                   lambda: op.Pipeline().column_rules({"n": ["a"]}, [({"x": "a"}, {})]), lambda: op.Pipeline().column_rules({"n": ["a"]}, [3]),
                   lambda: op.Pipeline().column_rules({"n": ["a"], "m": []}, []), lambda: op.Pipeline().column_rules({"n": [1]}, []),
                   lambda: op.Pipeline().column_rules({"n": ["a"]}, [], {"m": ["a"]}), lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
