@@ -122,12 +122,12 @@ def import_seconds(rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("library")
+    parser.add_argument("calls", metavar="LIBRARY")
     parser.add_argument("--objects", type=int, default=1_000_000)
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--json")
     arguments = parser.parse_args()
-    library = load(arguments.library)
+    library = load(arguments.calls)
     boxes, few = op.generate("uniform", arguments.objects, 1), op.generate("uniform", min(10_000, arguments.objects), 1)
     results = {"objects": arguments.objects, "calls": compare_calls(library, boxes, arguments.rounds),
                "calls with 10,000 boxes": compare_calls(library, few, arguments.rounds * 20),

@@ -1,4 +1,4 @@
-// What the functions of octopair.h share: errors, structs that begin with their size, and conversions of inputs.
+// Helpers of all functions of octopair.h: errors, structs that begin with their size, and conversions of inputs.
 #pragma once
 
 #include <cstddef>

@@ -41,6 +41,14 @@ def call_options(margin: float = 0, order: str = "ascending", limit: Optional[in
     return options
 
 
+def _find(engine: _core.Engine, data: _core.Input, options: _core.Options, progress: Progress) -> Tuple[Array, Tuple[Any, ...]]:
+    """Returns the pairs and the row of the summary."""
+    if not progress:
+        return engine.find_pairs(data, options)
+    with reporter(progress) as report:
+        return engine.find_pairs(data, options, report)
+
+
 def worker_program() -> str:
     """Returns the path of the worker program in this package; empty if the library finds it."""
     program = pathlib.Path(__file__).parent / "bin" / "octopair-worker"
@@ -269,14 +277,8 @@ class Engine:
                    against_padding: Any = None, limit: Optional[int] = None, verify: bool = False, progress: Progress = None,
                    copy: bool = False, return_summary: bool = False) -> Union[Array, Tuple[Array, Summary]]:
         """Like :func:`octopair.find_pairs`, on this engine."""
-        engine = self._ready()
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
-        options = call_options(margin, order, limit, verify)
-        if not progress:
-            pairs, summary = engine.find_pairs(data, options)
-        else:
-            with reporter(progress) as report:
-                pairs, summary = engine.find_pairs(data, options, report)
+        pairs, summary = _find(self._ready(), data, call_options(margin, order, limit, verify), progress)
         return (pairs, Summary._of(summary)) if return_summary else pairs
 
     def count_pairs(self, boxes: Any, against: Any = None, margin: float = 0, *, padding: Any = None, against_padding: Any = None,
@@ -420,12 +422,7 @@ def find_pairs(boxes: Any, against: Any = None, margin: float = 0, order: Order 
     """
     engine = _core.Engine.local(_arrays.whole(threads, "threads", MOST_THREADS))
     data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
-    options = call_options(margin, order, limit, verify)
-    if not progress:
-        pairs, summary = engine.find_pairs(data, options)
-    else:
-        with reporter(progress) as report:
-            pairs, summary = engine.find_pairs(data, options, report)
+    pairs, summary = _find(engine, data, call_options(margin, order, limit, verify), progress)
     return (pairs, Summary._of(summary)) if return_summary else pairs
 
 

@@ -49,7 +49,7 @@ def main() -> None:
     os.execv(program, ["octopair", *sys.argv[1:]])
 
 
-def _run(arguments: Sequence[str], allowed: Sequence[int] = (0,)) -> int:
+def _run(arguments: Sequence[str]) -> None:
     """Runs the program. Raises the error that its exit status stands for, with its message."""
     program = program_path()
     try:
@@ -62,8 +62,8 @@ def _run(arguments: Sequence[str], allowed: Sequence[int] = (0,)) -> int:
         child.send_signal(signal.SIGINT)
         child.wait()
         raise
-    if child.returncode in allowed:
-        return child.returncode
+    if child.returncode == 0:
+        return
     lines = [line for line in messages.strip().splitlines() if line]
     text = lines[-1] if lines else f"octopair {arguments[0]} ended with status {child.returncode}"
     prefix = "octopair: "

@@ -1,9 +1,9 @@
 #include "arrays.hpp"
 
-#include "call.hpp"
-
 #include <algorithm>
 #include <thread>
+
+#include "call.hpp"
 
 namespace octopair::python {
 

@@ -2,7 +2,8 @@
 //
 // Inputs    Read where they lie. The Python layer (octopair/_arrays.py) has checked dtype, shape and order, and reports errors. The
 //           functions here check again, because a wrong array would be read beyond its end.
-// Results   Arrays that own their memory. Large results of C++ are not copied: the array keeps them alive.
+// Results   Arrays that own their memory. An array takes a vector of C++ over. Pairs of a PairList are copied, because they lie in many
+//           pieces.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -27,7 +28,7 @@ namespace py = pybind11;
 /// Returns the boxes of an array of shape (n, 6), float32 or float64. Throws: TypeError.
 Boxes boxes_of(const py::array& array);
 
-/// Returns the elements of a C-contiguous array as rows of type `Row`: `Width` numbers of type `Number`. Throws: TypeError.
+/// Returns the elements of an aligned, C-contiguous array of `Number` as rows of type `Row`. Throws: TypeError.
 template <typename Row, typename Number = Row>
 std::span<const Row> rows_of(const py::array& array) {
     constexpr std::size_t width = sizeof(Row) / sizeof(Number);

@@ -3,6 +3,7 @@
 // - Python runs signal handlers only on the main thread, and only between its instructions. While the main thread is in a call, a
 //   watcher thread receives the signals and stops the call. Then the handlers run. If one raises (KeyboardInterrupt), the exception
 //   propagates. Otherwise the call is repeated on a helper thread, while the main thread runs handlers every few milliseconds.
+// - A call with few objects is not stopped, because it is short.
 // - A call that cannot be repeated, or that reports progress, runs on a helper thread at once.
 // - After a fork, calls in the child throw Error{usage}, because the threads of the library do not exist there.
 #pragma once
@@ -51,7 +52,8 @@ void check_not_forked();
 /// Returns true in such a forked process. Objects with threads must not be destroyed there.
 bool is_forked();
 
-/// Releases the GIL until its end. In contrast to pybind11's class, its end lets CPython end the thread while the interpreter ends.
+/// Releases the GIL until its end. If the interpreter ends meanwhile, threads other than the main thread wait here for the end of the
+/// process; pybind11's class would abort it.
 class Unlocked {
 public:
     Unlocked() : state_(PyEval_SaveThread()) {}
@@ -63,8 +65,8 @@ private:
     PyThreadState* state_;
 };
 
-/// Takes the GIL on a thread of the library, for a callback. At its end the interpreter waits until no thread is in such a callback: it would
-/// end the thread by pthread_exit, which the library does not expect.
+/// Takes the GIL on a thread of the library, for a callback. The interpreter waits with its end until no thread is in a callback: otherwise
+/// CPython would end the thread by pthread_exit, which the library does not expect.
 class Locked {
 public:
     /// Throws: Error{cancelled} if the interpreter ends.

@@ -39,8 +39,11 @@ std::shared_ptr<PythonEngine> wrap(Make make, bool waits = true) {
     return std::make_shared<PythonEngine>(make(), waits);
 }
 
-/// Summary as a tuple for octopair/_results.py.
+/// Returns a summary as a tuple for octopair/_results.py.
 py::tuple summary_tuple(const Summary& summary);
+
+/// Returns the name of a state for Python.
+const char* state_name(JobState state);
 
 /// Returns `options` with a progress function that sets `value`, if `progress` is not None.
 Options with_progress(Options options, const py::object& progress, ProgressValue& value);

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "octopair/error.hpp"
 
@@ -27,6 +28,8 @@ void register_errors() {
             raise(error.code(), error.what());
         } catch (const std::bad_alloc&) {
             raise(ErrorCode::resource_limit, "out of memory");
+        } catch (const std::system_error& error) {
+            raise(ErrorCode::resource_limit, error.what());  // no thread can be started
         } catch (const py::cast_error&) {
             const py::object error =
                 py::module_::import("octopair._errors").attr("InputTypeError")("an argument has the wrong type");

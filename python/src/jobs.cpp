@@ -62,19 +62,7 @@ public:
 
     const char* state() const {
         check_not_forked();
-        switch (job_->state()) {
-            case JobState::queued:
-                return "queued";
-            case JobState::running:
-                return "running";
-            case JobState::done:
-                return "done";
-            case JobState::failed:
-                return "failed";
-            case JobState::cancelled:
-                break;
-        }
-        return "cancelled";
+        return state_name(job_->state());
     }
     double progress() const {
         check_not_forked();

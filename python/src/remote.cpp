@@ -54,16 +54,11 @@ std::shared_ptr<PythonEngine> connect_engine(const std::string& address, const p
     return engine;
 }
 
-const char* name_of(JobState state) {
-    constexpr std::array names = {"queued", "running", "done", "failed", "cancelled"};
-    return names[std::size_t(state)];
-}
-
-/// Status as a dict for octopair/remote.py.
+/// Returns a status as a dict for octopair/remote.py.
 py::dict status_dict(const JobStatus& status) {
     py::dict row;
     row["id"] = status.id;
-    row["state"] = name_of(status.state);
+    row["state"] = state_name(status.state);
     row["detached"] = status.detached;
     row["count_only"] = status.count_only;
     row["progress"] = status.progress;

@@ -1,4 +1,6 @@
-// What all modules return of a call's Summary, and how they report progress.
+// Conversions that all modules share: summaries, states of jobs, and progress functions.
+#include <array>
+
 #include "bindings.hpp"
 #include "engines.hpp"
 
@@ -9,6 +11,11 @@ py::tuple summary_tuple(const Summary& summary) {
     return py::make_tuple(summary.pairs, summary.truncated, summary.seconds, summary.entries,
                           py::make_tuple(steps.encode, steps.count, steps.scatter, steps.scan, steps.merge),
                           summary.verification.done, summary.verification.seconds, summary.verification.not_checked);
+}
+
+const char* state_name(JobState state) {
+    constexpr std::array names = {"queued", "running", "done", "failed", "cancelled"};
+    return names[std::size_t(state)];
 }
 
 Options with_progress(Options options, const py::object& progress, ProgressValue& value) {

@@ -101,6 +101,19 @@ def test_event_loops_receive_signals_that_arrive_in_a_call():
     assert (output, code) == ("seen\n", 0)
 
 
+def test_a_wakeup_descriptor_may_be_closed_during_a_call():
+    output, _, code = run("""
+        import socket
+        mine, other = socket.socketpair()
+        mine.setblocking(False)
+        signal.set_wakeup_fd(mine.fileno())
+        threading.Timer(0.1, mine.close).start()
+        op.count_pairs(np.zeros((60_000, 6), np.float32))
+        print(signal.set_wakeup_fd(-1))
+        """)
+    assert (output, code) == ("-1\n", 0)
+
+
 def test_calls_release_the_gil():
     boxes = np.zeros((60_000, 6), np.float32)
     engine = op.Engine(threads=1)
