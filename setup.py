@@ -18,6 +18,7 @@ setup(
     include_package_data=False,
     zip_safe=False,
     cmake_args=["-DOCTOPAIR_WITH_PYTHON=ON", "-DOCTOPAIR_PYTHON_WHEEL=ON", "-DOCTOPAIR_BUILD_TESTS=OFF",
-                "-DOCTOPAIR_WITH_ADAPTERS=OFF", "-DOCTOPAIR_WITH_C=OFF", "-DOCTOPAIR_WITH_SYSTEMD=OFF"],
+                "-DOCTOPAIR_WITH_ADAPTERS=OFF", "-DOCTOPAIR_WITH_C=OFF", "-DOCTOPAIR_WITH_SYSTEMD=OFF",
+                "-DOCTOPAIR_SHARED_LIBS=OFF"],
     cmake_install_target="install_python",
 )

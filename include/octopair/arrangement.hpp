@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 enum class Arrangement : std::uint8_t {
     shared,  ///< workers or ranks share the work of every step

@@ -9,7 +9,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Owns boxes, aligned to 64 bytes and uninitialised. Engine::allocate_boxes makes them. The array may outlive the engine.
 /// Empty after default construction or a move from it. Thread safety: none.

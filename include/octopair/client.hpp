@@ -17,7 +17,7 @@
 
 #include "octopair/engine.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 struct ClientOptions {
     std::chrono::milliseconds connect_timeout = std::chrono::seconds(5);  ///< longest wait for the first connection

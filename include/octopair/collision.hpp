@@ -11,7 +11,7 @@
 
 #include "octopair/pose.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Relation of two objects.
 enum class CollisionClass : std::uint8_t {

@@ -28,7 +28,7 @@
 #include "octopair/pair_list.hpp"
 #include "octopair/summary.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 namespace detail {  // not for users
 class JobQueue;

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 enum class ErrorCode : std::uint8_t {
     usage,           ///< options contradict each other, or the call is not supported here

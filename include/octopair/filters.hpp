@@ -19,7 +19,7 @@
 #include "octopair/pose.hpp"
 #include "octopair/shapes.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Group bits of one set of objects. Both arrays have one element per object.
 struct GroupMasks {

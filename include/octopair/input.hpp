@@ -11,7 +11,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Two sets of objects. In the pairs of a call, `a` is in the first set and `b` in the second.
 template <typename Set>

@@ -25,7 +25,7 @@
 #include "octopair/pair_list.hpp"
 #include "octopair/summary.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 class Job;
 

@@ -33,7 +33,7 @@
 #include "octopair/input.hpp"
 #include "octopair/job.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// State of a job on the server.
 struct JobStatus {
@@ -94,7 +94,7 @@ public:
                    std::stop_token stop = {});
 
 private:
-    class State;
+    class [[gnu::visibility("hidden")]] State;
     std::unique_ptr<State> state_;
 };
 

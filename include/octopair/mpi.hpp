@@ -30,7 +30,7 @@
 #include "octopair/engine.hpp"
 #include "octopair/input.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 struct MpiOptions {
     unsigned threads = 1;  ///< threads of each rank; 0: one per core

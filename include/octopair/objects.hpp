@@ -15,7 +15,7 @@
 #include <span>
 #include <variant>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// A closed axis-aligned box: a row of an (n, 6) array. min[i] <= max[i], all finite.
 template <typename Real>

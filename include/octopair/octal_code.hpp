@@ -18,7 +18,7 @@
 #include <string>
 #include <string_view>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 class OctalCode {
 public:

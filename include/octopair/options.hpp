@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Order of the result. `ascending` sorts by a, then b. `octal` is the order of the linear octree, and is the cheapest. Both
 /// are deterministic.

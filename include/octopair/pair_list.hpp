@@ -8,7 +8,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 class PairList;
 

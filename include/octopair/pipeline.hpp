@@ -27,7 +27,7 @@
 #include "octopair/engine.hpp"
 #include "octopair/input.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 namespace detail {  // not for users
 struct BatchAccess;

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 using Point3d = std::array<double, 3>;
 

@@ -19,7 +19,7 @@
 
 #include "octopair/objects.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// A closed ball. All numbers are finite; radius >= 0.
 struct Sphere {

@@ -26,7 +26,7 @@
 #include "octopair/client.hpp"
 #include "octopair/scene.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// A part of SceneOptions (scene.hpp), with the same meaning.
 struct RemoteSceneOptions {
@@ -62,7 +62,7 @@ public:
     ObjectId id(std::uint32_t index) const;
 
 private:
-    class State;
+    class [[gnu::visibility("hidden")]] State;
     friend RemoteScene connect_scene(std::string_view, const RemoteSceneOptions&, const ClientOptions&);
     explicit RemoteScene(std::unique_ptr<State> state);
 

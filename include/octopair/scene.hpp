@@ -32,7 +32,7 @@
 #include "octopair/pair_list.hpp"
 #include "octopair/queries.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Identifies an object of a scene.
 struct ObjectId {
@@ -152,7 +152,7 @@ public:
     ObjectId id(std::uint32_t index) const;
 
 private:
-    class State;
+    class [[gnu::visibility("hidden")]] State;
     std::unique_ptr<State> state_;
 };
 

@@ -20,7 +20,7 @@
 #include "octopair/objects.hpp"
 #include "octopair/pose.hpp"
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 namespace shape {
 

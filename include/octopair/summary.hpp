@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace octopair {
+namespace [[gnu::visibility("default")]] octopair {
 
 /// Wall-clock seconds of each step of a call, summed over repetitions of the step.
 struct StepSeconds {

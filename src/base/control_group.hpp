@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "base/private_export.hpp"
+
 namespace octopair {
 
 /// Empty: no limit, or none that can be read.
@@ -18,6 +20,6 @@ ControlGroupLimits control_group_limits(const std::string& root = "");
 
 /// Returns how many threads can run at a time: the cores of the machine, or fewer if the control group has less processor time. At
 /// least 1. The limits are read once.
-unsigned available_cores();
+OCTOPAIR_PRIVATE_EXPORT unsigned available_cores();
 
 }  // namespace octopair

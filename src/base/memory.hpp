@@ -9,6 +9,8 @@
 #include <span>
 #include <type_traits>
 
+#include "base/private_export.hpp"
+
 namespace octopair {
 
 /// Returns `bytes` of uninitialised memory, aligned to 64 bytes (2 MiB if it is large). Throws: std::bad_alloc.
@@ -31,7 +33,7 @@ public:
 
 /// Returns the source of this process's memory. Memory that is committed in pieces below 2 MiB uses no huge pages, so that it
 /// takes no more than these pieces.
-PageSource& own_pages();
+OCTOPAIR_PRIVATE_EXPORT PageSource& own_pages();
 
 template <typename T>
 class Buffer {

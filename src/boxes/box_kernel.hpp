@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "base/private_export.hpp"
 #include "boxes/entry.hpp"
 #include "boxes/pair_rule.hpp"
 #include "geometry/rounding.hpp"
@@ -107,6 +108,6 @@ std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<floa
 std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out);
 
 /// Sets boxes[i] to the smallest float32 box that holds triangles[i]. Returns false if any number is not finite.
-bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes);
+OCTOPAIR_PRIVATE_EXPORT bool bound_triangles(std::span<const Triangle3d> triangles, std::span<Box3f> boxes);
 
 }  // namespace octopair

@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 
+#include "base/private_export.hpp"
 #include "boxes/box_kernel.hpp"
 #include "boxes/entry.hpp"
 #include "boxes/pair_rule.hpp"
@@ -33,7 +34,7 @@ struct PlainBoxes {
 };
 
 /// Source of the entries of an octree: the caller's boxes, or the entries of a crowded octant (octree/scan.cpp).
-class EntrySource {
+class OCTOPAIR_PRIVATE_EXPORT EntrySource {
 public:
     virtual ~EntrySource() = default;
     virtual std::size_t size() const = 0;
@@ -60,7 +61,7 @@ bool is_plain(const Objects& set);
 
 /// Positions of the objects that give the origin of outward rounding: the median of their low corners. The median is near the
 /// bulk of the objects, even if a few objects are far away.
-struct OriginSample {
+struct OCTOPAIR_PRIVATE_EXPORT OriginSample {
     using Corner = std::array<double, 3>;
     std::size_t objects;
 
@@ -78,7 +79,7 @@ struct SetBegins {
     std::uint64_t first = 0, second = 0;
 };
 
-class BoxSource final : public EntrySource, public PairRule {
+class OCTOPAIR_PRIVATE_EXPORT BoxSource final : public EntrySource, public PairRule {
 public:
     /// Borrows both sets. If `second` is null, pairs are those within `first`.
     BoxSource(const Objects& first, const Objects* second, double margin);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/private_export.hpp"
 #include "boxes/entry.hpp"
 #include "octopair/objects.hpp"
 
@@ -28,7 +29,7 @@ struct DoubtfulPairs {
     std::size_t size() const { return positions.size(); }
 };
 
-class PairRule {
+class OCTOPAIR_PRIVATE_EXPORT PairRule {
 public:
     virtual ~PairRule() = default;
     /// True if only pairs between two sets count. The masks of entries separate the sets.

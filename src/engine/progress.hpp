@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <mutex>
 
+#include "base/private_export.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair {
@@ -12,7 +13,7 @@ namespace octopair {
 /// Part of a pass in ascending order that its scan takes where objects have many pairs; the rest sorts pairs.
 inline constexpr double ascending_scan_part = 0.6;
 
-class Progress {
+class OCTOPAIR_PRIVATE_EXPORT Progress {
 public:
     /// Requires: `sink` outlives this object. `sink` may be empty.
     explicit Progress(const ProgressSink& sink) : sink_(sink) {}

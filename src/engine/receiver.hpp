@@ -6,11 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "engine/request.hpp"
 
 namespace octopair {
 
-class Receiver {
+class OCTOPAIR_PRIVATE_EXPORT Receiver {
 public:
     Receiver(const detail::Output& output, std::optional<std::uint64_t> limit) : output_(output), limit_(limit) {}
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "base/private_export.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::detail {
@@ -30,7 +31,7 @@ inline Request request_of(const Input& input, const Options& options) {
 
 /// Checks options and sizes.
 /// Throws: Error{bad_input}, or Error{resource_limit} for too many objects.
-void check_request(const Request& request);
+OCTOPAIR_PRIVATE_EXPORT void check_request(const Request& request);
 
 struct Control {
     std::stop_token stop;

@@ -14,6 +14,7 @@
 #include <span>
 #include <stop_token>
 
+#include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
 #include "engine/ascending_bounds.hpp"
 #include "engine/pair_list.hpp"
@@ -25,7 +26,7 @@ namespace octopair {
 class Receiver;
 
 /// State of one call, apart from the engine's own memory.
-struct Call {
+struct OCTOPAIR_PRIVATE_EXPORT Call {
     const detail::Request& request;
     const detail::Output& output;
     const BoxSource& source;
@@ -43,7 +44,7 @@ using Deliver = std::function<void(std::span<const Pair>)>;
 /// The passes of a call. Search calls build() first, then other passes. Each pass adds its times to the summary and advances
 /// the progress to the fraction `progress`.
 /// Throws: Error.
-class Passes {
+class OCTOPAIR_PRIVATE_EXPORT Passes {
 public:
     virtual ~Passes() = default;
     /// Ends the call: frees references to the caller's data.
@@ -66,7 +67,7 @@ public:
                                 double progress) = 0;
 };
 
-class Search {
+class OCTOPAIR_PRIVATE_EXPORT Search {
 public:
     explicit Search(Passes& passes) : passes_(passes) {}
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control);

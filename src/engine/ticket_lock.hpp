@@ -11,9 +11,11 @@
 #include <mutex>
 #include <stop_token>
 
+#include "base/private_export.hpp"
+
 namespace octopair {
 
-class TicketLock {
+class OCTOPAIR_PRIVATE_EXPORT TicketLock {
 public:
     /// Holds the lock while it exists.
     class Guard {

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "base/test_hooks.hpp"
 #include "octree/build/split_rule.hpp"
 #include "octree/space.hpp"
@@ -50,7 +51,7 @@ struct Octant {
     }
 };
 
-class Directory {
+class OCTOPAIR_PRIVATE_EXPORT Directory {
 public:
     /// Makes the root alone.
     Directory() : Directory({}, {0}) {}

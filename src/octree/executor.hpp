@@ -14,6 +14,7 @@
 #include <span>
 
 #include "base/memory.hpp"
+#include "base/private_export.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -22,7 +23,7 @@ class Executor;
 
 /// Receives the pairs of one share, in order.
 /// Thread safety: one thread at a time.
-class ShareWriter {
+class OCTOPAIR_PRIVATE_EXPORT ShareWriter {
 public:
     virtual ~ShareWriter() = default;
     /// True if pairs are counted only: the share then calls write_count in place of write.
@@ -39,7 +40,7 @@ struct BuildPlace {
     PageSource& pages;
 };
 
-class Executor {
+class OCTOPAIR_PRIVATE_EXPORT Executor {
 public:
     virtual ~Executor() = default;
     /// Returns the number of shares that can run concurrently.

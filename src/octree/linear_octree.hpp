@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
+#include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
 #include "octree/build/build_steps.hpp"
 #include "octree/build/sorted_list.hpp"
@@ -42,9 +43,9 @@ struct OctreeLayout {
 };
 
 /// Returns the positions of the objects that an octree of `objects` objects is planned from.
-Sample octant_sample(std::uint64_t objects);
+OCTOPAIR_PRIVATE_EXPORT Sample octant_sample(std::uint64_t objects);
 /// Returns the rule that divides octants by such a sample.
-SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop);
 /// Space and shape of an octree, small enough to be sent to other processes.
 struct OctreePlan {
     Space space;
@@ -54,12 +55,13 @@ struct OctreePlan {
 };
 /// Plans an octree of `objects` objects. `sampled`: the entries at the positions octant_sample(objects).
 /// Throws: Error{cancelled}.
-OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop);
-OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects,
+                                               const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop);
 /// Returns the layout of plan_octree().
-OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop);
 
-class LinearOctree {
+class OCTOPAIR_PRIVATE_EXPORT LinearOctree {
 public:
     LinearOctree() = default;
     /// Stores entries in `pages`. Requires: `pages` outlives the octree. If several processes build one octree together, all of

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/private_export.hpp"
 #include "boxes/entry.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
@@ -64,7 +65,7 @@ struct SpaceMap {
 
 /// The subset of the sampled boxes that a space is fitted to, and the three measures taken of it on each axis. Measures do not
 /// depend on the order of boxes. Each can be taken in another process.
-class SpaceSample {
+class OCTOPAIR_PRIVATE_EXPORT SpaceSample {
 public:
     /// `sampled`: number of boxes in the sample.
     explicit SpaceSample(std::size_t sampled);
@@ -91,7 +92,7 @@ private:
     std::size_t stride_;
 };
 
-class Space {
+class OCTOPAIR_PRIVATE_EXPORT Space {
 public:
     Space() = default;
     /// Returns a space for the `objects` objects that the sample represents. The sample may be empty.

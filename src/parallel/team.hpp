@@ -10,11 +10,13 @@
 #include <functional>
 #include <memory>
 
+#include "base/private_export.hpp"
+
 namespace octopair {
 
 class TbbThreads;
 
-class Team {
+class OCTOPAIR_PRIVATE_EXPORT Team {
 public:
     /// Makes a team of `threads` threads, the calling thread included; 0: one per core.
     explicit Team(unsigned threads);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/growing_array.hpp"
+#include "base/private_export.hpp"
 #include "base/reserve.hpp"
 #include "boxes/box_kernel.hpp"
 #include "octopair/objects.hpp"
@@ -34,7 +35,7 @@ struct ObjectState {
     Traits traits;
 };
 
-class ObjectTable {
+class OCTOPAIR_PRIVATE_EXPORT ObjectTable {
 public:
     /// `slack`: as in SceneOptions.
     explicit ObjectTable(Precision precision, double slack = 0) : precision_(precision), slack_(slack) {}

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "base/radix_sort.hpp"
 #include "engine/pair_list.hpp"
 
@@ -35,7 +36,7 @@ struct PairChanges {
 inline std::uint64_t key_of(const Pair& pair) { return std::uint64_t(pair.a) << 32 | pair.b; }
 inline Pair pair_of(std::uint64_t key) { return {std::uint32_t(key >> 32), std::uint32_t(key)}; }
 
-class PairHistory {
+class OCTOPAIR_PRIVATE_EXPORT PairHistory {
 public:
     using Room = std::function<void(std::uint64_t bytes)>;
 
@@ -83,6 +84,6 @@ private:
 };
 
 /// Stores in `out` the pairs of `all` that are not in `less`. Requires: both are ascending; `all` has every pair of `less`.
-void subtract(const PairList& all, std::span<const Pair> less, PairList& out);
+OCTOPAIR_PRIVATE_EXPORT void subtract(const PairList& all, std::span<const Pair> less, PairList& out);
 
 }  // namespace octopair

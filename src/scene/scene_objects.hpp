@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "octopair/scene.hpp"
 #include "scene/change_log.hpp"
 #include "scene/object_table.hpp"
@@ -16,7 +17,7 @@
 
 namespace octopair {
 
-class SceneObjects {
+class OCTOPAIR_PRIVATE_EXPORT SceneObjects {
 public:
     /// Whether the previous states of changed objects are logged until the next step.
     enum class Changes : std::uint8_t { kept, forgotten };

@@ -8,6 +8,7 @@
 #include <memory>
 #include <stop_token>
 
+#include "base/private_export.hpp"
 #include "engine/ascending_bounds.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/threads/writers.hpp"
@@ -15,7 +16,7 @@
 namespace octopair {
 
 /// Appends the pairs whose `a` is in the range of rows to a list, in ascending order.
-class AscendingExecutor final : public TeamExecutor {
+class OCTOPAIR_PRIVATE_EXPORT AscendingExecutor final : public TeamExecutor {
 public:
     AscendingExecutor(Team& team, detail::PairStorage& list, const AscendingBounds& bounds);
     ~AscendingExecutor() override;

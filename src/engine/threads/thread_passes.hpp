@@ -1,6 +1,7 @@
 // ThreadPasses: scans a linear octree on the threads of this process.
 #pragma once
 
+#include "base/private_export.hpp"
 #include "engine/search.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/scan.hpp"
@@ -9,7 +10,7 @@
 
 namespace octopair {
 
-class ThreadPasses : public Passes {
+class OCTOPAIR_PRIVATE_EXPORT ThreadPasses : public Passes {
 public:
     explicit ThreadPasses(unsigned threads) : team_(threads) {}
 

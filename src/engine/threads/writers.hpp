@@ -11,6 +11,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "engine/pair_list.hpp"
 #include "octree/executor.hpp"
 #include "parallel/team.hpp"
@@ -18,7 +19,7 @@
 namespace octopair {
 
 /// Base of writers that need the pairs, not only their number.
-class FullWriter : public ShareWriter {
+class OCTOPAIR_PRIVATE_EXPORT FullWriter : public ShareWriter {
 public:
     bool counting() const final { return false; }
     void write_count(std::uint64_t) final;
@@ -36,7 +37,7 @@ private:
 };
 
 /// Runs steps that write no pairs. Derived classes run steps that write pairs.
-class TeamExecutor : public Executor {
+class OCTOPAIR_PRIVATE_EXPORT TeamExecutor : public Executor {
 public:
     explicit TeamExecutor(Team& team) : team_(team) {}
     unsigned width() const override { return team_.threads(); }

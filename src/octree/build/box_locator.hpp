@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
 #include "boxes/entry.hpp"
 #include "octree/directory.hpp"
@@ -46,7 +47,7 @@ using BatchEntries = std::array<Entry, max_encoded>;
 /// Stores boxes as entries without mask. Returns false if one of them is no valid box.
 bool make_entries(const PlainBoxes& plain, BatchEntries& entries);
 
-class BoxLocator {
+class OCTOPAIR_PRIVATE_EXPORT BoxLocator {
 public:
     /// Borrows both.
     BoxLocator(const Space& space, const Directory& directory);

@@ -17,6 +17,7 @@
 #include <stop_token>
 
 #include "base/memory.hpp"
+#include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
 #include "octree/build/chunk_lists.hpp"
 #include "octree/directory.hpp"
@@ -27,7 +28,7 @@ namespace octopair {
 inline constexpr std::size_t max_entries_per_object = 8;
 
 /// Data that steps pass to later steps.
-struct BuildMemory {
+struct OCTOPAIR_PRIVATE_EXPORT BuildMemory {
     explicit BuildMemory(PageSource& pages)
         : lists(pages), begins(pages), totals(pages), valid(pages), seconds(pages) {}
 
@@ -62,7 +63,7 @@ struct NumberedOctants {
 };
 
 /// The steps over some objects and octants. Borrows all members.
-struct BuildSteps {
+struct OCTOPAIR_PRIVATE_EXPORT BuildSteps {
     const EntrySource& source;
     const Space& space;
     const Directory& directory;

@@ -8,6 +8,7 @@
 #include <span>
 #include <stop_token>
 
+#include "base/private_export.hpp"
 #include "octree/build/build_steps.hpp"
 #include "octree/cell_sweep/cell_entry.hpp"
 
@@ -26,13 +27,14 @@ struct MergedList {
 };
 
 /// Returns the number of entries of a block of objects, in all its lists.
-std::uint64_t entry_count(const BuildMemory& memory, std::size_t block);
+OCTOPAIR_PRIVATE_EXPORT std::uint64_t entry_count(const BuildMemory& memory, std::size_t block);
 /// Copies the entries of a block of objects to one sorted list. Requires: `sorted` has room for entry_count() entries.
-void sort_block(const BuildMemory& memory, std::size_t block, const MergedList& sorted);
+OCTOPAIR_PRIVATE_EXPORT void sort_block(const BuildMemory& memory, std::size_t block, const MergedList& sorted);
 
 /// Merges lists of the same octants, one octant after another. Returns the number of entries.
 /// Requires: the objects of each list precede those of the next.
 /// Throws: Error{cancelled}.
-std::uint64_t merge_lists(std::span<const SortedList> lists, const MergedList& merged, const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT std::uint64_t merge_lists(std::span<const SortedList> lists, const MergedList& merged,
+                                                  const std::stop_token& stop);
 
 }  // namespace octopair

@@ -16,12 +16,13 @@
 #include <stop_token>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "octree/space.hpp"
 
 namespace octopair {
 
 /// An octant by its position alone: first cell on each axis, and level. The side is 2^(21 - level) cells.
-struct OctantCube {
+struct OCTOPAIR_PRIVATE_EXPORT OctantCube {
     Cell lo = {};
     unsigned level = 0;
 
@@ -73,7 +74,7 @@ struct OctantCounts {
     static OctantCounts of(const SampledOctant& sampled, const std::array<SampledOctant, 8>& below);
 };
 
-class SplitRule {
+class OCTOPAIR_PRIVATE_EXPORT SplitRule {
 public:
     /// `weight`: number of objects that a sampled box represents.
     SplitRule(double weight, std::stop_token stop) : weight_(weight), stop_(std::move(stop)) {}

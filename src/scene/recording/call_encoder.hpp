@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/private_export.hpp"
 #include "scene/recording/recording.hpp"
 
 namespace octopair {
@@ -16,9 +17,9 @@ struct RecordEnvelope {
 };
 
 /// Returns the envelope of a record. Its payload is the concatenation of `pieces`.
-RecordEnvelope envelope_of(RecordKind kind, std::initializer_list<Bytes> pieces);
+OCTOPAIR_PRIVATE_EXPORT RecordEnvelope envelope_of(RecordKind kind, std::initializer_list<Bytes> pieces);
 
-class CallEncoder {
+class OCTOPAIR_PRIVATE_EXPORT CallEncoder {
 public:
     virtual ~CallEncoder() = default;
 

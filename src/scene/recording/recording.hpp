@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/private_export.hpp"
 #include "octopair/scene.hpp"
 
 namespace octopair {
@@ -67,7 +68,7 @@ struct RecordingHead {
 static_assert(sizeof(RecordingHead) == 32);
 
 /// Returns the head of a recording, including its checksum.
-RecordingHead recording_head(const SceneOptions& options);
+OCTOPAIR_PRIVATE_EXPORT RecordingHead recording_head(const SceneOptions& options);
 
 struct RecordHead {
     RecordKind kind;

@@ -1,5 +1,6 @@
 #include "engine/processes/client/worker_program.hpp"
 
+#include <dlfcn.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -15,6 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the path of the file that contains this code: a library, or the program. Empty if unknown.
+fs::path own_file() {
+    Dl_info info = {};
+    if (dladdr(reinterpret_cast<const void*>(&find_worker_program), &info) == 0 || info.dli_fname == nullptr) return {};
+    return info.dli_fname;
+}
+
 std::vector<std::string> candidate_paths(const std::string& packaged) {
     std::vector<std::string> found;
     std::error_code error;
@@ -25,6 +33,8 @@ std::vector<std::string> candidate_paths(const std::string& packaged) {
         found.push_back(folder.parent_path() / OCTOPAIR_WORKER_FOLDER / "octopair-worker");
     }
     if (!packaged.empty()) found.push_back(packaged);
+    if (const fs::path library = own_file(); library.is_absolute())
+        found.push_back((library.parent_path() / OCTOPAIR_WORKER_FROM_LIBRARY / "octopair-worker").lexically_normal());
     found.emplace_back(OCTOPAIR_WORKER_INSTALLED);
     found.emplace_back(OCTOPAIR_WORKER_BUILT);
     return found;
