@@ -43,3 +43,28 @@ compile_through_ccache() {
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1 \
         CCACHE_SLOPPINESS=pch_defines,time_macros
 }
+
+# Prints the version of the project.
+project_version() { sed -n 's/^project(octopair VERSION \([0-9.]*\) .*/\1/p' "$root/CMakeLists.txt"; }
+
+# Prints the time of all files that a release contains, in seconds since 1970: SOURCE_DATE_EPOCH, else the time of the last
+# commit, else that of CHANGELOG.md.
+source_epoch() {
+    if [ -n "${SOURCE_DATE_EPOCH:-}" ]; then
+        echo "$SOURCE_DATE_EPOCH"
+    else
+        git -C "$root" log -1 --format=%ct 2> /dev/null || stat -c %Y "$root/CHANGELOG.md"
+    fi
+}
+
+# Writes the last commit as the archive FILE (.tar.gz), with the same bytes each time. Outside of git: this folder without build/.
+source_archive() {
+    local name
+    name="octopair-$(project_version)"
+    if git -C "$root" rev-parse --verify -q HEAD > /dev/null 2>&1; then
+        git -C "$root" archive --format=tar --prefix="$name/" HEAD
+    else
+        tar -C "$root" --exclude=./build --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$(source_epoch)" \
+            --transform="s|^\.|$name|" -c .
+    fi | gzip -n -9 > "$1"
+}

@@ -42,7 +42,7 @@ typedef enum octopair_status {
 
 /* Returns the message of the last failed call of this thread; "" if there was none. Valid until the thread's next call. */
 OCTOPAIR_API const char *octopair_error_message(void);
-/* Returns the version of the library, for example "0.1.0". Static text. */
+/* Returns the version of the library, for example "0.2.0". Static text. */
 OCTOPAIR_API const char *octopair_version(void);
 
 /* Indices of two objects; a < b, or a in the first set and b in the second. */

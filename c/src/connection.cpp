@@ -8,25 +8,24 @@ namespace octopair::c {
 
 namespace {
 
-/// Returns the path of the module: the folder of this library, else its name alone, which the system searches.
-std::string module_path() {
-    const std::string name = "liboctopair_c_client.so.0";
+/// Returns the folder of this library, with a slash at the end. Empty if unknown: then the system searches for the module.
+std::string library_folder() {
     Dl_info info = {};
-    if (dladdr(reinterpret_cast<const void*>(&connect_through_module), &info) == 0 || info.dli_fname == nullptr)
-        return name;
+    if (dladdr(reinterpret_cast<const void*>(&connect_through_module), &info) == 0 || info.dli_fname == nullptr) return "";
     const std::string library = info.dli_fname;
-    const std::size_t slash = library.rfind('/');
-    return slash == std::string::npos ? name : library.substr(0, slash + 1) + name;
+    return library.substr(0, library.rfind('/') + 1);
 }
 
+/// Loads the module from the installation, or else from the build tree.
 ConnectFunction load() {
-    void* module = dlopen(module_path().c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (module == nullptr) module = dlopen("liboctopair_c_client.so.0", RTLD_NOW | RTLD_LOCAL);
+    const std::string folder = library_folder();
+    void* module = dlopen((folder + OCTOPAIR_C_MODULE_FOLDER "/octopair_c_client.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (module == nullptr) module = dlopen((folder + "octopair_c_client.so").c_str(), RTLD_NOW | RTLD_LOCAL);
     if (module == nullptr) {
         throw Error(ErrorCode::usage, std::string("connections to servers are not installed: ") + dlerror());
     }
     void* const function = dlsym(module, "octopair_c_connect");
-    if (function == nullptr) throw Error(ErrorCode::usage, "liboctopair_c_client is of another version");
+    if (function == nullptr) throw Error(ErrorCode::usage, "octopair_c_client.so is of another version");
     return reinterpret_cast<ConnectFunction>(function);
 }
 

@@ -33,7 +33,7 @@ struct ProcessOptions {
     Arrangement arrangement = Arrangement::shared;  ///< with `paper` the application merges and scans
     /// Path of octopair-worker, of the same version. If empty, the path in the environment variable OCTOPAIR_WORKER. If that is
     /// not set either, the first octopair-worker found in: the folder of the application's program; ../libexec/octopair from
-    /// there; the package; the installation of this library; the configured installation; the build tree.
+    /// there; the installation of this library; the package; the configured installation; the build tree.
     std::string worker_program = {};
 };
 

@@ -32,11 +32,11 @@ std::vector<std::string> candidate_paths(const std::string& packaged) {
         found.push_back(folder / "octopair-worker");
         found.push_back(folder.parent_path() / OCTOPAIR_WORKER_FOLDER / "octopair-worker");
     }
-    if (!packaged.empty()) found.push_back(packaged);
     if (const fs::path library = own_file(); library.is_absolute())
         found.push_back((library.parent_path() / OCTOPAIR_WORKER_FROM_LIBRARY / "octopair-worker").lexically_normal());
+    if (!packaged.empty()) found.push_back(packaged);
     found.emplace_back(OCTOPAIR_WORKER_INSTALLED);
-    found.emplace_back(OCTOPAIR_WORKER_BUILT);
+    if constexpr (sizeof OCTOPAIR_WORKER_BUILT > 1) found.emplace_back(OCTOPAIR_WORKER_BUILT);
     return found;
 }
 
