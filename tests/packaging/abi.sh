@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Checks that programs which were linked with an earlier release run with the shared libraries of these packages.
+#
+#     abi.sh PACKAGES             compares the interfaces of the libraries in PACKAGES/*.deb with abi/*.abi
+#     abi.sh --update PACKAGES    writes abi/*.abi; only for a release, or with a new SONAME
+#
+# An interface may grow. A function that is missing, and a type with another layout, are errors. The descriptions are those of
+# abidw, which reads debug information (packages *-dbgsym).
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+update=
+if [ "${1:-}" = --update ]; then update=1 && shift; fi
+packages=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+for package in "$packages"/liboctopair*.deb; do dpkg-deb -x "$package" "$work"; done
+
+# Describes the interface of a library: describe LIBRARY FILE.
+describe() {
+    abidw --headers-dir "$work/usr/include" --drop-private-types --exported-interfaces-only \
+        --suppressions "$here/abi/suppressions" --debug-info-dir "$work/usr/lib/debug" --no-corpus-path --no-comp-dir-path \
+        --no-show-locs --no-elf-needed --no-parameter-names --out-file "$2" "$1"
+}
+
+# Compares two descriptions. Succeeds if programs for the first one run with the second one.
+fits() { abidiff --suppressions "$here/abi/suppressions" --no-added-syms "$1" "$2" > "$work/report" 2>&1; }
+
+bad=0
+for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline octopair_processes; do
+    library=$(find "$work" -path "*/debug/*" -prune -o -name "lib$name.so.*.*" -print)
+    [ -n "$library" ] || { echo "lib$name is in no package" && exit 1; }
+    [ "$(objdump -p "$library" | awk '$1 == "SONAME" { print $2 }')" = "lib$name.so.0" ] || { echo "lib$name has another SONAME" && exit 1; }
+    describe "$library" "$work/$name.abi"
+    grep -q "<function-decl" "$work/$name.abi" || { echo "lib$name: no debug information" && exit 1; }
+    if [ -n "$update" ]; then
+        cp "$work/$name.abi" "$here/abi/$name.abi"
+    elif ! fits "$here/abi/$name.abi" "$work/$name.abi"; then
+        echo "lib$name: programs of an earlier release may fail with this library"
+        cat "$work/report"
+        bad=1
+    fi
+done
+[ -z "$update" ] || exit 0
+
+# A planted change must be found: one more member in Options.
+sed "/class-decl name='Options'/s/size-in-bits='[0-9]*'/size-in-bits='4096'/" "$work/octopair.abi" > "$work/planted.abi"
+! cmp -s "$work/octopair.abi" "$work/planted.abi" || { echo "no struct Options to change" && exit 1; }
+! fits "$work/planted.abi" "$work/octopair.abi" || { echo "a struct of another size was not found" && exit 1; }
+exit $bad
