@@ -17,7 +17,7 @@ def page(path):
     pieces = HEADING.split(fragment(path))[1:]
     for level, title, body in zip(pieces[::3], pieces[1::3], pieces[2::3]):
         body = REST.sub("", body).strip()
-        parts.append(f"#{'#' * int(level)} {title.capitalize()}\n")
+        parts.append(f"#{'#' * int(level)} {' '.join(title.split()).capitalize()}\n")
         if body:
             parts.append(f"~~~{{raw}} html\n<div class=\"manual\">{body}</div>\n~~~\n")
     return "\n".join(parts)

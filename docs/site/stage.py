@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Collects the sources of the site: the pages of the repository, at their paths, and generated pages.
 
-    stage.py ROOT TARGET
+    stage.py ROOT XML TARGET     XML: the folder that Doxygen wrote
 
 Copied pages   README.md, docs/*.md and the others of PAGES. They stay as they are, but for links to files that are not
                pages: those lead to pages that show the file.
@@ -27,8 +27,8 @@ LONGEST_SHOWN = 50_000  # bytes; of a longer file, a page shows the beginning
 
 
 class Site:
-    def __init__(self, root, target):
-        self.root, self.target = root, target
+    def __init__(self, root, xml, target):
+        self.root, self.xml, self.target = root, xml, target
         self.pages = {str(path.relative_to(root)) for pattern in PAGES for path in root.glob(pattern)}
         self.shown = set()  # repository files and folders that need a page
         self.errors = []
@@ -57,9 +57,9 @@ class Site:
             shown = f"files/{name}.md"
         return posixpath.relpath(shown, folder or ".") + hash_sign + anchor
 
-    def copy_page(self, name):
+    def add_page(self, name, text):
         lines, inside = [], False
-        for place, line in enumerate((self.root / name).read_text(encoding="utf-8").split("\n"), 1):
+        for place, line in enumerate(text.split("\n"), 1):
             if FENCE.match(line):
                 inside = not inside
             if not inside:
@@ -102,17 +102,18 @@ class Site:
                 copy = self.target / path.relative_to(self.root)
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(path, copy)
+        generated = [*api_pages.pages(self.root, self.xml), *man_pages.pages(self.root)]
         for name in sorted(self.pages):
-            self.copy_page(name)
+            self.add_page(name, (self.root / name).read_text(encoding="utf-8"))
+        for name, text in generated:
+            self.add_page(name, text)
         for name in sorted(self.shown):
             self.show(name)
-        for name, text in [*api_pages.pages(self.root), *man_pages.pages(self.root)]:
-            self.write(name, text)
         shutil.copyfile(self.root / "docs/site/index.md", self.target / "index.md")
 
 
 def main():
-    site = Site(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve())
+    site = Site(*(pathlib.Path(argument).resolve() for argument in sys.argv[1:4]))
     site.build()
     for error in site.errors:
         print(error, file=sys.stderr)
