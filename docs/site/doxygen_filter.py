@@ -20,7 +20,7 @@ def filter_cpp(text):
 def filter_c(text):
     head, separator, body = text.partition('extern "C" {\n#endif\n')
     body = re.sub(r"^( *)/\* (?!(?:(?!\*/).)*\*/\n\n)", r"\1/** ", body, flags=re.MULTILINE | re.DOTALL)
-    return head + separator + re.sub(r"^(.*[;,].*?)/\* ", r"\1/**< ", body, flags=re.MULTILINE)
+    return head + separator + re.sub(r"^( *[^ /*\n].*?)/\* ", r"\1/**< ", body, flags=re.MULTILINE)
 
 
 def main():
