@@ -75,11 +75,12 @@ class Session:
 
 class Shell(Session):
     def command(self, answers):
-        return ["bash", "--norc", "-euo", "pipefail"]
+        return ["bash", "--norc", "-Eeuo", "pipefail"]
 
     def line(self, name, answers):
         # Without the pipe in the block, its end is seen when the shell ends, also if a program of the block stays.
-        return f"{{ . '{name}'; }} > '{name}.out' 2>&1 < /dev/null {answers}>&-; echo $? >&{answers}"
+        trap = "trap 'echo line $LINENO: exit status $? >&2' ERR"
+        return f"{trap}; {{ . '{name}'; }} > '{name}.out' 2>&1 < /dev/null {answers}>&-; echo $? >&{answers}"
 
 
 class Python(Session):
