@@ -2,18 +2,19 @@
 import os
 import pathlib
 import re
+import sys
 
 SITE = pathlib.Path(__file__).parent
+sys.path.insert(0, str(SITE))
 ROOT = SITE.parents[1]
 
 project = "octopair"
 version = release = re.search(r"project\(octopair VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 copyright = "the authors of octopair; BSD-3-Clause"
 
-extensions = ["myst_parser", "breathe"]
+extensions = ["myst_parser", "breathe", "mend_theme"]
 myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 4
-nitpicky = False
 # A file that a page shows, such as a template, may not follow its language to the letter.
 suppress_warnings = ["misc.highlighting_failure"]
 
