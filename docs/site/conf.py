@@ -24,6 +24,8 @@ breathe_domain_by_extension = {"hpp": "cpp", "h": "c"}
 breathe_show_include = False
 cpp_id_attributes = ["OCTOPAIR_EXPORT"]
 
+smartquotes = False
+
 html_theme = "furo"
 html_title = f"octopair {version}"
 html_static_path = [str(SITE / "_static")]

@@ -25,7 +25,7 @@ def mend_style(folder):
     dark = DARK.search(text)
     if dark and "prefers-color-scheme" not in text:
         # Before the rules that follow, so that they still have the last word.
-        rule = f'@media not print and (prefers-color-scheme: dark) {{\n  body:not([data-theme="light"]) {{{dark[1]}}} }}\n\n'
+        rule = f'@media screen and (prefers-color-scheme: dark) {{\n  body:not([data-theme="light"]) {{{dark[1]}}} }}\n\n'
         at = text.index("@media not print")
         path.write_text(text[:at] + rule + text[at:], encoding="utf-8")
 
