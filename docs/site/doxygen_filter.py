@@ -4,6 +4,7 @@
     doxygen_filter.py HEADER
 
 C++: the words that open a part of a contract, such as "Throws:", become bold and begin a paragraph.
+Friends are left out.
 C: a comment directly before a declaration, or behind a member, becomes a comment of Doxygen.
 """
 import re
@@ -13,6 +14,7 @@ WORDS = r"(Requires|Throws|Thread safety|Complexity|Ownership|Units)"
 
 
 def filter_cpp(text):
+    text = re.sub(r"^ *friend [^({]*;$", "", text, flags=re.MULTILINE)
     text = re.sub(rf"^( *)/// {WORDS}: ", r"\1///\n\1/// **\2:** ", text, flags=re.MULTILINE)
     return re.sub(rf"^( *)(///.*?[.:)]) {WORDS}: ", r"\1\2\n\1///\n\1/// **\3:** ", text, flags=re.MULTILINE)
 
