@@ -1,0 +1,42 @@
+"""Mends what the package furo of Debian 12 lacks, after the pages are written. Other packages of Furo stay as they are.
+
+Script   Its script imports another script. Browsers refuse this in scripts that are no modules, and modules in files.
+Style    Its style sheet has no dark colours for readers whose system is dark.
+"""
+import pathlib
+import re
+
+IMPORT = re.compile(r'^import Gumshoe from "\./gumshoe-patched\.js";\n', re.MULTILINE)
+EXPORT = re.compile(r"^export default Gumshoe;\n?", re.MULTILINE)
+DARK = re.compile(r'body\[data-theme="dark"\] \{([^}]*)\}')
+
+
+def mend_script(folder):
+    path = folder / "scripts/furo.js"
+    text = path.read_text(encoding="utf-8")
+    if IMPORT.search(text):
+        imported = EXPORT.sub("", (folder / "scripts/gumshoe-patched.js").read_text(encoding="utf-8"))
+        path.write_text(imported + IMPORT.sub("", text), encoding="utf-8")
+
+
+def mend_style(folder):
+    path = folder / "styles/furo.css"
+    text = path.read_text(encoding="utf-8")
+    dark = DARK.search(text)
+    if dark and "prefers-color-scheme" not in text:
+        # Before the rules that follow, so that they still have the last word.
+        rule = f'@media screen and (prefers-color-scheme: dark) {{\n  body:not([data-theme="light"]) {{{dark[1]}}} }}\n\n'
+        at = text.index("@media not print")
+        path.write_text(text[:at] + rule + text[at:], encoding="utf-8")
+
+
+def mend(app, exception):
+    if exception is None:
+        folder = pathlib.Path(app.outdir) / "_static"
+        mend_script(folder)
+        mend_style(folder)
+
+
+def setup(app):
+    app.connect("build-finished", mend)
+    return {"parallel_read_safe": True}
