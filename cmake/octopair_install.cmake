@@ -1,4 +1,4 @@
-# Installed tree: headers, libraries with their CMake package, programs, the manual, the completion, and files to run a
+# Installed tree: headers, libraries with their CMake package, programs, the manual, completions of shells, and files to run a
 # server.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
@@ -41,6 +41,8 @@ if(OCTOPAIR_BUILD_PROGRAM)
     install(FILES docs/octopair.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
     install(FILES src/cli/octopair.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME octopair)
+    install(FILES src/cli/_octopair DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES src/cli/octopair.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
     if(OCTOPAIR_WITH_SERVICE)
         set(OCTOPAIR_SERVICE_TYPE "Type=exec")
         if(OCTOPAIR_WITH_SYSTEMD)
