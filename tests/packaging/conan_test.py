@@ -99,16 +99,34 @@ def check_every_option(module, recipe_type, root):
     assert bare.requirement_names() == ["onetbb", "highway"]
 
 
+def exported_targets(build):
+    """Returns the libraries that CMake exports, and the targets that each of them links."""
+    found = {}
+    for path in pathlib.Path(build).glob("**/CMakeFiles/Export/*/*_targets.cmake"):
+        text = path.read_text(encoding="utf-8")
+        for name in re.findall(r"add_library\(octopair::(\w+)", text):
+            properties = re.search(rf"set_target_properties\(octopair::{name} PROPERTIES\n(.*?)\n\)", text, re.DOTALL)
+            links = re.search(r'INTERFACE_LINK_LIBRARIES "(.*)"', properties[1] if properties else "")
+            found[name] = set(re.findall(r"\w+::[\w+]+", links[1] if links else ""))
+    # octopair::processes is octopair::process_engine with the path of the worker program.
+    found["processes"] = found.pop("process_engine")
+    return found
+
+
 def check_package(recipe, package):
     """Compares the installed files with package_info."""
     components = recipe.cpp_info.components
     libraries = {re.sub(r"^lib|\.(a|so[.\d]*)$", "", path.name) for path in (package / "lib").iterdir() if path.is_file()}
     named = {library for component in components.values() for library in component.libs}
     assert libraries == named, f"libraries of no component: {libraries - named}; not installed: {named - libraries}"
-    exported = set()
-    for path in pathlib.Path(recipe.build_folder).glob("**/CMakeFiles/Export/*/*_targets.cmake"):
-        exported |= set(re.findall(r"add_library\(octopair::(\w+)", path.read_text(encoding="utf-8")))
-    assert exported - {"process_engine"} == set(components) - {"program"}, f"CMake exports {exported}"
+    exported = exported_targets(recipe.build_folder)
+    assert set(exported) == set(components) - {"program"}, f"CMake exports {set(exported)}"
+    for name, links in exported.items():
+        declared = {TARGETS[other][0] if "::" in other else f"octopair::{other}" for other in components[name].requires}
+        # Headers that only the library's sources include are a requirement, but not a link.
+        assert declared - {"Eigen3::Eigen", "Boost::headers"} == links, f"{name} requires {declared}, in CMake {links}"
+    for define in components["processes"].defines:
+        assert pathlib.Path(define.split('"')[1]).is_file(), f"{define}: no such file"
     for path in ("licenses/LICENSE", "bin/octopair", "include/octopair/octopair.hpp", "include/octopair/version.hpp"):
         assert (package / path).is_file(), f"{path} is not in the package"
     assert not (package / "lib/cmake").exists()
@@ -154,8 +172,12 @@ def run_test_package(recipe, root, package, work):
     test.test()
 
 
-def check_exported(sources):
-    """Configures the exported sources, so that a file that the export leaves out is noticed."""
+def check_exported(root, sources):
+    """Configures the exported sources, and compares their folders with those of the project."""
+    for folder in ("include", "src", "adapters", "cmake", "packaging"):
+        wanted = {path.relative_to(root) for path in (root / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts}
+        missing = [str(path) for path in wanted if not (sources / path).is_file()]
+        assert not missing, f"not exported: {missing}"
     conan_stand_in.run_cmake("-S", str(sources), "-B", str(sources.parent / "configured"), "-G", "Ninja",
                              "-DOCTOPAIR_BUILD_TESTS=OFF", "-DOCTOPAIR_WITH_C=OFF", "-DOCTOPAIR_WITH_MPI=OFF")
 
@@ -176,7 +198,7 @@ def main():
         package = work / "package"
         recipe = prepare(recipe_type, root, build, package)
         assert recipe.version == version, f"the recipe has version {recipe.version}, the project {version}"
-        check_exported(work / "sources")
+        check_exported(root, work / "sources")
         recipe.build()
         recipe.package()
         recipe.package_info()

@@ -50,8 +50,11 @@ def check_manifest(manifest, version):
     assert manifest["version"] == version, f"vcpkg.json has version {manifest['version']}, the project {version}"
     assert IDENTIFIER.fullmatch(manifest["name"]) and manifest["license"] == "BSD-3-Clause"
     features = manifest["features"]
-    for name in [*features, *(item if isinstance(item, str) else item["name"] for item in manifest["default-features"])]:
-        assert IDENTIFIER.fullmatch(name) and name in features, f"not a feature: {name}"
+    for item in [*features, *manifest["default-features"]]:
+        fields = {"name": item} if isinstance(item, str) else item
+        assert set(fields) <= {"name", "platform"} and fields["name"] in features, f"not a feature: {item}"
+        assert IDENTIFIER.fullmatch(fields["name"]), f"not a name of a feature: {item}"
+        check_platform(fields.get("platform", "linux"))
     for name, feature in features.items():
         assert set(feature) <= FEATURE and feature["description"], f"feature {name}: unknown fields, or no description"
     for owner in (manifest, *features.values()):
