@@ -3,8 +3,8 @@
 #
 # PROGRAM: a program octopair outside of the image, which calls the server in the image. FILE.deb: arguments of scripts/image.
 #
-# Runs the image with buildah in a chroot, which needs no more rights than a build. Exit status 77, if Debian's mirror cannot be reached or
-# this is not root.
+# Runs the image with buildah in a chroot, which needs no more rights than a build. Exit status 77 if Debian's mirror cannot be
+# reached, or if this is not root. OCTOPAIR_IMAGE and SOURCE_DATE_EPOCH: an image to test instead, and its time.
 set -euo pipefail
 root=$1 program=$2 version=$3
 shift 3
@@ -87,16 +87,17 @@ check_server() {
     ! inside octopair status > /dev/null 2>&1 || fail "the health check succeeds without a server"
 }
 
-export SOURCE_DATE_EPOCH=1700000000
+export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-1700000000}
 mkdir "$work/data" "$work/sockets"
 chown 10001:10001 "$work/data" "$work/sockets"
 # The container's user must reach the mounted folders.
 chmod 755 "$work"
-"$root/scripts/image" --output "$work/image.tar" "$@"
-image=$("${buildah[@]}" pull --quiet "oci-archive:$work/image.tar")
+file=${OCTOPAIR_IMAGE:-$work/image.tar}
+[ -n "${OCTOPAIR_IMAGE:-}" ] || "$root/scripts/image" --output "$file" "$@"
+image=$("${buildah[@]}" pull --quiet "oci-archive:$file")
 container=$("${buildah[@]}" from --pull-never "$image")
 check_configuration
 check_contents
 check_detect
 check_server
-echo "the image works; $(du -m "$work/image.tar" | cut -f1) MB"
+echo "the image works; $(du -m "$file" | cut -f1) MB"

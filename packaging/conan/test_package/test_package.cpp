@@ -30,7 +30,8 @@ bool pipeline_works() {
     octopair::Pipeline pipeline;
     pipeline.add(octopair::make_ignored_pairs_filter({{0, 2}}));
     std::size_t found = 0;
-    pipeline.run(*octopair::make_local_engine(), {boxes}, [&](const octopair::Batch& batch) { found += batch.pairs().size(); });
+    pipeline.run(*octopair::make_local_engine(), {boxes},
+                 [&](const octopair::Batch& batch) { found += batch.pairs().size(); });
     return found == 0;
 }
 #endif
