@@ -5,8 +5,8 @@
 
 ROOT: the project. BUILD: a folder for the build, which stays for the next run. VERSION: the version of the project.
 
-The recipe must name options that CMakeLists.txt has, and all of them. Its components must be the targets that CMake exports. The test package
-must build and run with the names of package_info alone.
+The recipe must name options that CMakeLists.txt has, and all of them. Its components must be the targets that CMake exports. The
+test package must build and run with the names of package_info alone.
 """
 import importlib.util
 import os

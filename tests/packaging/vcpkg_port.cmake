@@ -60,6 +60,10 @@ function(vcpkg_cmake_config_fixup)
     file(REMOVE_RECURSE ${PACKAGE}/lib/cmake)
 endfunction()
 
+# The test does not use files of pkg-config.
+function(vcpkg_fixup_pkgconfig)
+endfunction()
+
 function(vcpkg_copy_tools)
     cmake_parse_arguments(PARSE_ARGV 0 arg "AUTO_CLEAN" "" "TOOL_NAMES")
     foreach(tool IN LISTS arg_TOOL_NAMES)
