@@ -12,6 +12,7 @@ import importlib.util
 import os
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 
@@ -102,7 +103,7 @@ def check_every_option(module, recipe_type, root):
 def exported_targets(build):
     """Returns the libraries that CMake exports, and the targets that each of them links."""
     found = {}
-    for path in pathlib.Path(build).glob("**/CMakeFiles/Export/*/*_targets.cmake"):
+    for path in pathlib.Path(build).glob("**/CMakeFiles/Export/*/octopair_*.cmake"):
         text = path.read_text(encoding="utf-8")
         for name in re.findall(r"add_library\(octopair::(\w+)", text):
             properties = re.search(rf"set_target_properties\(octopair::{name} PROPERTIES\n(.*?)\n\)", text, re.DOTALL)
@@ -199,6 +200,9 @@ def main():
         recipe = prepare(recipe_type, root, build, package)
         assert recipe.version == version, f"the recipe has version {recipe.version}, the project {version}"
         check_exported(root, work / "sources")
+        # CMake leaves exports of an earlier build that no longer exist.
+        for stale in build.glob("**/CMakeFiles/Export"):
+            shutil.rmtree(stale)
         recipe.build()
         recipe.package()
         recipe.package_info()
