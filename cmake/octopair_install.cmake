@@ -1,5 +1,5 @@
-# Installed tree: headers, static and shared libraries with their CMake package and pkg-config files, programs, the manual, the
-# completion, and files to run a server.
+# Installed tree: headers, static and shared libraries with their CMake package and pkg-config files, programs, the manual,
+# completions of shells, and files to run a server.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
     return()
@@ -81,6 +81,8 @@ if(OCTOPAIR_BUILD_PROGRAM)
     install(FILES docs/octopair.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
     install(FILES src/cli/octopair.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             RENAME octopair)
+    install(FILES src/cli/_octopair DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES src/cli/octopair.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
     if(OCTOPAIR_WITH_SERVICE)
         set(OCTOPAIR_SERVICE_TYPE "Type=exec")
         if(OCTOPAIR_WITH_SYSTEMD)

@@ -1,8 +1,17 @@
 # Bash completion for octopair.
+#
+# Subcommands, options and their arguments come from the help of the program, so they are those of the installed program. Only
+# the values of an option are listed here, in _octopair_values. tests/cli/completion_test.py compares the shells.
 
-# Prints the kinds of scenes that the program can generate.
-_octopair_kinds() {
-    "$1" generate --help 2>/dev/null | sed -n '/^Kinds:/,$ s/^  \([a-z0-9-]*\) .*/\1/p'
+# PROGRAM SECTION [SUBCOMMAND]: prints a section of the help, such as Options, as lines "NAME|ARGUMENT".
+_octopair_section() {
+    "$1" ${3:+"$3"} --help 2>/dev/null | awk -F '  +' -v section="$2:" '
+        /^[A-Z]/ { inside = $0 == section }
+        inside && /^  [^ ]/ {
+            split($2, head, " ")
+            sub(/^-h,/, "", head[1])
+            print head[1] "|" (head[2] ~ /^[A-Z][A-Za-z.:]*$/ && head[2] !~ /:$|^REQUIRED$/ ? head[2] : "")
+        }'
 }
 
 # Prints the engines of this build; "unix:" stands for a server.
@@ -15,78 +24,78 @@ _octopair_jobs() {
     [[ -n $OCTOPAIR_SERVER ]] && timeout 2 "$1" status 2>/dev/null | sed -n 's/^\([0-9a-f-]\{36\}\) .*/\1/p'
 }
 
-_octopair() {
-    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local subcommand=${COMP_WORDS[1]}
-    local asked="--server --token-file --token-in-clear --server-user --tls --tls-authority --tls-certificate --tls-key --patience"
-    COMPREPLY=()
-
-    if ((COMP_CWORD == 1)); then
-        mapfile -t COMPREPLY < <(compgen -W "cancel detect drain generate info replay result serve status submit --help --version" -- "$current")
+# CURRENT ENDING...: prints the folders, and the files with one of the endings. Without endings, prints all files.
+_octopair_files() {
+    local current=$1 ending
+    shift
+    if (($# == 0)); then
+        compgen -f -- "$current"
         return
     fi
-    case $previous in
-        --stage) mapfile -t COMPREPLY < <(compgen -W "pairs objects features" -- "$current"); return ;;
-        --adjacent) mapfile -t COMPREPLY < <(compgen -W "beyond-shared exclude include" -- "$current"); return ;;
-        --up) mapfile -t COMPREPLY < <(compgen -W "y z" -- "$current"); return ;;
-        --unit) mapfile -t COMPREPLY < <(compgen -W "mm cm dm m km in ft" -- "$current"); return ;;
-        --same-parent) mapfile -t COMPREPLY < <(compgen -W "include exclude" -- "$current"); return ;;
-        --objects)
-            if [[ $subcommand == detect || $subcommand == submit ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "node triangle" -- "$current")
-            fi
-            return ;;
-        --index-type) mapfile -t COMPREPLY < <(compgen -W "uint32 uint64" -- "$current"); return ;;
-        --order) mapfile -t COMPREPLY < <(compgen -W "ascending octal" -- "$current"); return ;;
-        --engine) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_engines "$1")" -- "$current"); return ;;
-        --log) mapfile -t COMPREPLY < <(compgen -W "text json" -- "$current"); return ;;
-        --log-level) mapfile -t COMPREPLY < <(compgen -W "debug info warn error" -- "$current"); return ;;
-        --margin | --limit | --threads | --workers | --seed | --frames | --patience | --listen | --metrics) return ;;
-        --grace | --stall | --rank-timeout | --max-* | --server | --id | --owner | --wait) return ;;
-        --keep) if [[ $subcommand == serve ]]; then return; fi ;;  # --keep of result has no value
-        --state) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
-        --against | --exclude | --baseline | --report | --padding | --output | --stats | --config | --tokens | --roles | --token-file | --tls-*) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
+    compgen -d -- "$current"
+    for ending in "$@"; do compgen -f -X "!*.$ending" -- "$current"; done
+}
+
+# PROGRAM OPTION ARGUMENT CURRENT: prints the values of an option, or of the argument ARGUMENT of a subcommand.
+_octopair_values() {
+    local words=
+    case $2:$3 in
+        --stage:*) words="pairs objects features" ;;
+        --adjacent:*) words="beyond-shared exclude include" ;;
+        --up:*) words="y z" ;;
+        --unit:*) words="mm cm dm m km in ft" ;;
+        --same-parent:*) words="include exclude" ;;
+        --objects:WHAT) words="node triangle" ;;
+        --index-type:*) words="uint32 uint64" ;;
+        --order:*) words="ascending octal" ;;
+        --log:*) words="text json" ;;
+        --log-level:*) words="debug info warn error" ;;
+        --engine:*) words=$(_octopair_engines "$1") ;;
+        :KIND) words=$(_octopair_section "$1" Kinds generate) words=${words//|/} ;;
+        :ID) words=$(_octopair_jobs "$1") ;;
+        --output:FILE) _octopair_files "$4" npy csv jsonl ;;
+        *:DIR) compgen -d -- "$4" ;;
+        *:FILE | :INPUT) _octopair_files "$4" ;;
+        *:*.*) _octopair_files "$4" "${3##*.}" ;;
     esac
-    case $subcommand in
-        detect)
-            if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --stage --adjacent --max-contacts --tolerance --duplicate-tolerance --min-depth --weld --exclude --same-parent --baseline --report --up --unit --objects --margin --padding --output --order
-                    --index-type --count-only --events --limit --verify --fail-on-collision --engine --threads --workers --stats --quiet --help
-                    --token-file --token-in-clear --server-user --tls --tls-authority --tls-certificate --tls-key --patience" -- "$current")
-            else
-                mapfile -t COMPREPLY < <(compgen -f -- "$current")
-            fi ;;
-        serve)
-            mapfile -t COMPREPLY < <(compgen -W "--config --listen --engine --threads --workers --rank-timeout --grace --stall --max-objects
-                --max-input --max-pairs --max-jobs --max-jobs-per-client --max-connections --max-connections-per-client --max-calls-per-client --max-seconds --max-memory
-                --max-memory-per-client --max-state --max-state-per-client --state --keep --tls-certificate --tls-key --tls-client-authority --tokens --roles --metrics --log --log-level --quiet
-                --help" -- "$current") ;;
-        generate)
-            if ((COMP_CWORD == 2)); then
-                mapfile -t COMPREPLY < <(compgen -W "$(_octopair_kinds "$1")" -- "$current")
-            else
-                mapfile -t COMPREPLY < <(compgen -W "--objects --seed --frames --output --quiet --help" -- "$current")
-            fi ;;
-        replay)
-            if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--threads --check --quiet --help" -- "$current")
-            else
-                mapfile -t COMPREPLY < <(compgen -f -- "$current")
-            fi ;;
-        submit)
-            if [[ $current == -* ]]; then
-                mapfile -t COMPREPLY < <(compgen -W "--against --objects --margin --padding --order --limit --count-only
-                    --id --quiet --help $asked" -- "$current")
-            else
-                mapfile -t COMPREPLY < <(compgen -f -- "$current")
-            fi ;;
-        status) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --wait --json --owner --help $asked" -- "$current") ;;
-        result)
-            mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --output --keep --release --quiet --help $asked" -- "$current") ;;
-        cancel) mapfile -t COMPREPLY < <(compgen -W "$(_octopair_jobs "$1") --json --owner --release --help $asked" -- "$current") ;;
-        drain) mapfile -t COMPREPLY < <(compgen -W "--help $asked" -- "$current") ;;
-        info) mapfile -t COMPREPLY < <(compgen -W "--help" -- "$current") ;;
-    esac
+    [[ -z $words ]] || compgen -W "$words" -- "$4"
+}
+
+# Completes an option or an argument of a subcommand. Arguments: PROGRAM SUBCOMMAND CURRENT, and all words before CURRENT.
+_octopair_subcommand() {
+    local program=$1 subcommand=$2 current=$3 name argument positional option= given=0 word
+    local -A argument_of=()
+    shift 3
+    while IFS='|' read -r name argument; do argument_of[$name]=$argument; done < <(_octopair_section "$program" Options "$subcommand")
+    IFS='|' read -r positional argument < <(_octopair_section "$program" Positionals "$subcommand")
+    for word in "$@"; do
+        if [[ -n $option ]]; then
+            option=
+        elif [[ $word == -* ]]; then
+            [[ -z ${argument_of[$word]-} ]] || option=$word
+        else
+            given=$((given + 1))
+        fi
+    done
+    if [[ -n $option ]]; then
+        _octopair_values "$program" "$option" "${argument_of[$option]}" "$current"
+    elif [[ $current == -* ]]; then
+        compgen -W "${!argument_of[*]}" -- "$current"
+    elif [[ $positional == INPUT ]] || ((given == 0)) && [[ -n $positional ]]; then
+        _octopair_values "$program" "" "$positional" "$current"
+    else
+        compgen -W "${!argument_of[*]}" -- "$current"
+    fi
+}
+
+_octopair() {
+    local program=$1 current=${COMP_WORDS[COMP_CWORD]} names
+    if ((COMP_CWORD == 1)); then
+        names=$(_octopair_section "$program" Subcommands; _octopair_section "$program" Options)
+        mapfile -t COMPREPLY < <(compgen -W "${names//|/}" -- "$current")
+        return
+    fi
+    mapfile -t COMPREPLY < <(_octopair_subcommand "$program" "${COMP_WORDS[1]}" "$current" "${COMP_WORDS[@]:2:COMP_CWORD-2}")
 }
 
 complete -o filenames -F _octopair octopair

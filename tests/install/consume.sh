@@ -41,6 +41,8 @@ try_program() {
     "$prefix/bin/octopair" info
     test -f "$prefix/share/man/man1/octopair.1"
     test -f "$prefix/share/bash-completion/completions/octopair"
+    test -f "$prefix/share/zsh/site-functions/_octopair"
+    test -f "$prefix/share/fish/vendor_completions.d/octopair.fish"
     [ "$with_processes" = ON ] || return 0
     printf '0,0,0,1,1,1\n5,5,5,6,6,6\n1,0,0,2,1,1\n' > "$work/boxes.csv"
     starts_worker "$prefix/bin/octopair" detect "$work/boxes.csv" --engine processes --quiet --output "$work/pairs.csv"
