@@ -13,7 +13,7 @@ from conan import ConanFile
 from conan.errors import ConanInvalidConfiguration
 from conan.tools.build import check_min_cppstd
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
-from conan.tools.files import copy, load, rmdir
+from conan.tools.files import copy, load, rm, rmdir
 
 required_conan_version = ">=2.0.9"
 
@@ -126,6 +126,8 @@ class OctopairConan(ConanFile):
             toolchain.cache_variables[variable] = self.has(option)
         for variable in CMAKE_OFF:
             toolchain.cache_variables[variable] = False
+        toolchain.cache_variables["OCTOPAIR_SHARED_LIBS"] = bool(self.options.shared)
+        toolchain.cache_variables["OCTOPAIR_PACKAGE_BUILD"] = True
         toolchain.generate()
         dependencies = CMakeDeps(self)
         for package, name in CMAKE_FILES.items():
@@ -142,6 +144,9 @@ class OctopairConan(ConanFile):
     def package(self):
         copy(self, "LICENSE", src=self.source_folder, dst=os.path.join(self.package_folder, "licenses"))
         CMake(self).install()
+        # The build makes static libraries, too.
+        if self.options.shared:
+            rm(self, "*.a", os.path.join(self.package_folder, "lib"))
         # Conan makes its own files of these kinds. The units of systemd name the folder of the build.
         for folder in ("cmake", "pkgconfig", "systemd"):
             rmdir(self, os.path.join(self.package_folder, "lib", folder))

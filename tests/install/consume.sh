@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh installed|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE [HOST...]
+#     consume.sh shared|static|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE [HOST...]
 #
-# installed: installs BUILD to a fresh prefix and moves the prefix. find_package must find octopair there.
+# shared, static: installs BUILD to a fresh prefix and moves the prefix. find_package must find octopair's libraries of this
+#     kind there. `shared` also tests the installed programs, the files for pkg-config and the interface for C.
 # subdirectory: the consumer includes ROOT by add_subdirectory.
 #
 # HOST is a host of an adapter: installed adapters for these hosts are tested.
@@ -70,6 +71,36 @@ check_unit() {
         { tail -1 "$work/security.log"; return 1; }
 }
 
+# Fails unless a consumer loads octopair's shared libraries, or none of them, as `how` says.
+check_kind() {
+    local loaded=static
+    ! objdump -p "$1" | grep -q 'NEEDED *liboctopair' || loaded=shared
+    [ "$loaded" = "$how" ] || { echo "$1 has $loaded libraries" && exit 1; }
+}
+
+# Builds consumers without CMake: in C++ with shared and with static libraries, and in C.
+try_pkgconfig() {
+    export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+    local flags="" libraries="" main=$root/tests/install/consumer/main.cpp
+    # The prefix has a space, which pkg-config escapes for a shell.
+    eval "flags=($(pkg-config --cflags octopair)) libraries=($(pkg-config --libs octopair))"
+    "$compiler" -std=c++20 "${flags[@]}" "$main" "${libraries[@]}" -Wl,-rpath,"$prefix/lib" -o "$work/by_pkgconfig"
+    "$work/by_pkgconfig"
+    mkdir "$work/archives"
+    cp "$prefix"/lib/*.a "$work/archives"
+    eval "libraries=(-L'$work/archives' $(pkg-config --static --libs-only-l octopair))"
+    "$compiler" -std=c++20 "${flags[@]}" "$main" "${libraries[@]}" -o "$work/static_by_pkgconfig"
+    "$work/static_by_pkgconfig"
+    ! objdump -p "$work/static_by_pkgconfig" | grep 'NEEDED *liboctopair' || exit 1
+    for component in pipeline processes client mpi; do
+        [ ! -f "$PKG_CONFIG_PATH/octopair-$component.pc" ] || pkg-config --exists --print-errors "octopair-$component"
+    done
+    [ -f "$PKG_CONFIG_PATH/octopair-c.pc" ] || return 0
+    eval "libraries=($(pkg-config --cflags --libs octopair-c))"
+    cc -std=c99 "$root/examples/find_pairs.c" "${libraries[@]}" -Wl,-rpath,"$prefix/lib" -o "$work/find_pairs"
+    "$work/find_pairs"
+}
+
 # NAME TARGET OPTION...: builds a target of the consumer in the folder NAME.
 build_consumer() {
     local name=$1 target=$2
@@ -79,12 +110,13 @@ build_consumer() {
 }
 
 cp -r "$root/tests/install/consumer" "$work/consumer"
-if [ "$how" = installed ]; then
+if [ "$how" != subdirectory ]; then
     cmake --install "$build" --prefix "$work/prefix" > "$work/install.log"
     mv "$work/prefix" "$prefix"
     [ "$with_processes" != ON ] || watch_worker
-    [ "$with_program" != ON ] || try_program
-    options=(-DCMAKE_PREFIX_PATH="$prefix")
+    [ "$with_program" != ON ] || [ "$how" = static ] || try_program
+    [ "$how" = static ] || try_pkgconfig
+    options=(-DCMAKE_PREFIX_PATH="$prefix" -DBUILD_SHARED_LIBS="$([ "$how" = shared ] && echo ON || echo OFF)")
 else
     options=(-DOCTOPAIR_SOURCE="$root")
 fi
@@ -99,6 +131,7 @@ if [ "$how" = subdirectory ]; then
 else
     build_consumer plain consumer "${options[@]}"
     "$work/plain/consumer"
+    check_kind "$work/plain/consumer"
     if [ "$with_processes" = ON ]; then
         build_consumer processes process_consumer "${options[@]}" -DCONSUMER_WITH_PROCESSES=ON
         starts_worker "$work/processes/process_consumer"
@@ -108,19 +141,21 @@ else
         mpirun -n 2 "$work/mpi/mpi_consumer"
     fi
 fi
-if [ "$with_service" = ON ] && [ "$how" = installed ]; then
+if [ "$with_service" = ON ] && [ "$how" != subdirectory ]; then
     build_consumer client client_consumer "${options[@]}" -DCONSUMER_WITH_CLIENT=ON
     test -f "$prefix/share/octopair/octopair.proto"
+    check_kind "$work/client/client_consumer"
     if [ "$with_program" = ON ]; then
-        check_unit
+        [ "$how" = static ] || check_unit
         with_server "$work/client/client_consumer"
     fi
 fi
-if [ "$with_pipeline" = ON ] && [ "$how" = installed ]; then
+if [ "$with_pipeline" = ON ] && [ "$how" != subdirectory ]; then
     build_consumer pipeline pipeline_consumer "${options[@]}" -DCONSUMER_WITH_PIPELINE=ON
     "$work/pipeline/pipeline_consumer"
+    check_kind "$work/pipeline/pipeline_consumer"
 fi
-if [ "$how" = installed ]; then
+if [ "$how" = shared ]; then
     for host in "${@:10}"; do
         build_consumer "$host" adapter_consumer "${options[@]}" -DCONSUMER_ADAPTER="$host"
         "$work/$host/adapter_consumer"

@@ -169,6 +169,7 @@ def install():
         "conan.tools.cmake": {"CMake": CMake, "CMakeDeps": CMakeDeps, "CMakeToolchain": CMakeToolchain,
                               "cmake_layout": lambda _: None},
         "conan.tools.files": {"copy": copy, "rmdir": lambda _, path: shutil.rmtree(path, ignore_errors=True),
+                              "rm": lambda _, pattern, folder: [path.unlink() for path in pathlib.Path(folder).glob(pattern)],
                               "load": lambda _, path: pathlib.Path(path).read_text(encoding="utf-8")},
     }
     for name, members in contents.items():

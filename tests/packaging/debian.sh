@@ -73,7 +73,7 @@ in_root sh -euc '
     setpriv --reuid=octopair --regid=octopair --clear-groups --no-new-privs --bounding-set=-all sh -c "STATE_DIRECTORY=/var/lib/octopair exec $command" &
     server=$!
     octopair generate uniform --objects 1000 --seed 1 --output /tmp/boxes.npy
-    for _ in $(seq 100); do octopair jobs 127.0.0.1:7788 > /dev/null 2>&1 && break || sleep 0.1; done
+    for _ in $(seq 100); do octopair status --server 127.0.0.1:7788 > /dev/null 2>&1 && break || sleep 0.1; done
     octopair detect /tmp/boxes.npy --engine 127.0.0.1:7788 --count-only
     kill $server && wait $server'
 in_root test -f /usr/share/doc/octopair/html/index.html

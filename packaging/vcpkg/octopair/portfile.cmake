@@ -11,11 +11,15 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
         program OCTOPAIR_BUILD_PROGRAM
         systemd OCTOPAIR_WITH_SYSTEMD)
 
+string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" dynamic SHARED)
+
 # The worker program is a tool: vcpkg allows no programs in other folders.
 vcpkg_cmake_configure(
     SOURCE_PATH "${SOURCE_PATH}"
     OPTIONS
         ${FEATURE_OPTIONS}
+        -DOCTOPAIR_SHARED_LIBS=${SHARED}
+        -DOCTOPAIR_PACKAGE_BUILD=ON
         -DOCTOPAIR_WITH_ADAPTERS=ON
         -DOCTOPAIR_WITH_C=OFF
         -DOCTOPAIR_WITH_PYTHON=OFF
