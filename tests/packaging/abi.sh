@@ -5,7 +5,7 @@
 #     abi.sh --update PACKAGES    writes abi/*.abi; only for a release, or with a new SONAME
 #
 # An interface may grow. A function that is missing, and a type with another layout, are errors. The descriptions are those of
-# abidw, which reads debug information (packages *-dbgsym).
+# abidw, which reads debug information (PACKAGES/debug).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 update=
@@ -14,7 +14,7 @@ packages=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-for package in "$packages"/liboctopair*.deb; do dpkg-deb -x "$package" "$work"; done
+for package in "$packages"/liboctopair*.deb "$packages"/debug/*.deb; do dpkg-deb -x "$package" "$work"; done
 
 # Describes the interface of a library: describe LIBRARY FILE.
 describe() {
