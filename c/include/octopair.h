@@ -261,9 +261,10 @@ OCTOPAIR_API octopair_status octopair_scene_overlap_balls(octopair_scene *scene,
  * first hit of each ray, 1 for all. */
 OCTOPAIR_API octopair_status octopair_scene_hits(octopair_scene *scene, const double *rays, uint64_t count, int all,
                                                  uint32_t groups, octopair_answers *answers);
-/* The `k` objects nearest to places: boxes, 6 * count numbers; a point is a box without extent. */
+/* The `k` objects nearest to places: boxes, 6 * count numbers; a point is a box without extent. Objects farther away than `within` are
+ * left out, which saves time; INFINITY: none. */
 OCTOPAIR_API octopair_status octopair_scene_nearest(octopair_scene *scene, const double *places, uint64_t count, uint64_t k,
-                                                    uint32_t groups, octopair_answers *answers);
+                                                    double within, uint32_t groups, octopair_answers *answers);
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,8 @@ namespace {
 /// Returns the folder of this library, with a slash at the end. Empty if unknown: then the system searches for the module.
 std::string library_folder() {
     Dl_info info = {};
-    if (dladdr(reinterpret_cast<const void*>(&connect_through_module), &info) == 0 || info.dli_fname == nullptr) return "";
+    if (dladdr(reinterpret_cast<const void*>(&connect_through_module), &info) == 0 || info.dli_fname == nullptr)
+        return "";
     const std::string library = info.dli_fname;
     return library.substr(0, library.rfind('/') + 1);
 }

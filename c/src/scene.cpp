@@ -204,11 +204,11 @@ octopair_status octopair_scene_hits(octopair_scene* scene, const double* rays, u
 }
 
 octopair_status octopair_scene_nearest(octopair_scene* scene, const double* places, uint64_t count, uint64_t k,
-                                       uint32_t groups, octopair_answers* answers) {
+                                       double within, uint32_t groups, octopair_answers* answers) {
     return guarded([&] {
         octopair::Answers<octopair::Neighbor> found;
-        required(scene, "scene")
-            .scene.nearest(queries_of<octopair::Box3d>(places, count), std::size_t(k), found, groups);
+        const octopair::NearestLimits limits = {std::size_t(k), within};
+        required(scene, "scene").scene.nearest(queries_of<octopair::Box3d>(places, count), limits, found, groups);
         octopair::c::write(found, &octopair::Neighbor::distance, required(answers, "answers"));
     });
 }

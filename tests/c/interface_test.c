@@ -10,56 +10,56 @@
 
 static int failures = 0;
 
-#define CHECK(condition)                                                                         \
-    do {                                                                                         \
-        if (!(condition)) {                                                                      \
+#define CHECK(condition)                                                                              \
+    do {                                                                                              \
+        if (!(condition)) {                                                                           \
             fprintf(stderr, "%s:%d: not true: %s (last error: %s)\n", __FILE__, __LINE__, #condition, \
-                    octopair_error_message());                                                   \
-            ++failures;                                                                          \
-        }                                                                                        \
+                    octopair_error_message());                                                        \
+            ++failures;                                                                               \
+        }                                                                                             \
     } while (0)
 #define CHECK_OK(call) CHECK((call) == OCTOPAIR_OK)
 
 enum { COUNT = 400 };
 
 typedef struct pair_array {
-    octopair_pair *pairs;
+    octopair_pair* pairs;
     size_t count, room;
 } pair_array;
 
-static int collect(void *data, const octopair_pair *pairs, size_t count) {
-    pair_array *all = (pair_array *)data;
+static int collect(void* data, const octopair_pair* pairs, size_t count) {
+    pair_array* all = (pair_array*)data;
     if (all->count + count > all->room) {
         all->room = 2 * (all->count + count);
-        all->pairs = (octopair_pair *)realloc(all->pairs, all->room * sizeof *pairs);
+        all->pairs = (octopair_pair*)realloc(all->pairs, all->room * sizeof *pairs);
     }
     memcpy(all->pairs + all->count, pairs, count * sizeof *pairs);
     all->count += count;
     return 0;
 }
 
-static int refuse(void *data, const octopair_pair *pairs, size_t count) {
+static int refuse(void* data, const octopair_pair* pairs, size_t count) {
     (void)data, (void)pairs, (void)count;
     return 1;
 }
 
-static int note_progress(void *data, double fraction) {
-    *(double *)data = fraction;
+static int note_progress(void* data, double fraction) {
+    *(double*)data = fraction;
     return 0;
 }
 
-static int refuse_progress(void *data, double fraction) {
+static int refuse_progress(void* data, double fraction) {
     (void)data, (void)fraction;
     return 1;
 }
 
 /* Numbers 0 to 1, the same on every machine. */
-static float next_number(uint32_t *state) {
+static float next_number(uint32_t* state) {
     *state = *state * 1664525u + 1013904223u;
     return (float)(*state >> 8) / 16777216.0f;
 }
 
-static void make_boxes(float *numbers, uint32_t seed) {
+static void make_boxes(float* numbers, uint32_t seed) {
     for (int i = 0; i < COUNT; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             numbers[6 * i + axis] = next_number(&seed);
@@ -68,7 +68,7 @@ static void make_boxes(float *numbers, uint32_t seed) {
     }
 }
 
-static int overlap(const float *a, const float *b, double margin) {
+static int overlap(const float* a, const float* b, double margin) {
     for (int axis = 0; axis < 3; ++axis) {
         if ((double)a[axis] - b[axis + 3] > margin || (double)b[axis] - a[axis + 3] > margin) return 0;
     }
@@ -76,7 +76,7 @@ static int overlap(const float *a, const float *b, double margin) {
 }
 
 /* Returns the pairs by comparing all boxes; `second` may be NULL. */
-static pair_array brute_force(const float *first, const float *second, double margin) {
+static pair_array brute_force(const float* first, const float* second, double margin) {
     pair_array all = {NULL, 0, 0};
     for (uint32_t a = 0; a < COUNT; ++a) {
         for (uint32_t b = second == NULL ? a + 1 : 0; b < COUNT; ++b) {
@@ -91,26 +91,27 @@ static pair_array brute_force(const float *first, const float *second, double ma
     return all;
 }
 
-static int same(const octopair_pair *pairs, uint64_t count, const pair_array *expected) {
-    return count == expected->count && (count == 0 || memcmp(pairs, expected->pairs, expected->count * sizeof *pairs) == 0);
+static int same(const octopair_pair* pairs, uint64_t count, const pair_array* expected) {
+    return count == expected->count &&
+           (count == 0 || memcmp(pairs, expected->pairs, expected->count * sizeof *pairs) == 0);
 }
 
-static octopair_objects objects_at(const float *numbers) {
+static octopair_objects objects_at(const float* numbers) {
     octopair_objects objects = OCTOPAIR_OBJECTS_INIT;
     objects.boxes = numbers;
     objects.count = COUNT;
     return objects;
 }
 
-static void test_engine(const char *kind) {
+static void test_engine(const char* kind) {
     float numbers[6 * COUNT], others[6 * COUNT];
-    octopair_engine *engine = NULL;
+    octopair_engine* engine = NULL;
     octopair_engine_options engine_options = OCTOPAIR_ENGINE_OPTIONS_INIT;
-    octopair_pairs *pairs = NULL;
-    octopair_pair *copied;
+    octopair_pairs* pairs = NULL;
+    octopair_pair* copied;
     octopair_summary summary = OCTOPAIR_SUMMARY_INIT;
     octopair_options options = OCTOPAIR_OPTIONS_INIT;
-    octopair_job *job = NULL;
+    octopair_job* job = NULL;
     double progress = 0;
     uint64_t count = 0;
     int ended = 0;
@@ -118,8 +119,9 @@ static void test_engine(const char *kind) {
     make_boxes(numbers, 1);
     make_boxes(others, 2);
     const octopair_objects first = objects_at(numbers), second = objects_at(others);
-    pair_array within = brute_force(numbers, NULL, 0), between = brute_force(numbers, others, 0.01), streamed = {NULL, 0, 0};
-    copied = (octopair_pair *)malloc((within.count + between.count + 1) * sizeof *copied);
+    pair_array within = brute_force(numbers, NULL, 0), between = brute_force(numbers, others, 0.01),
+               streamed = {NULL, 0, 0};
+    copied = (octopair_pair*)malloc((within.count + between.count + 1) * sizeof *copied);
 
     engine_options.workers = 2;
     CHECK_OK(octopair_engine_create(kind, &engine_options, &engine));
@@ -129,7 +131,8 @@ static void test_engine(const char *kind) {
     CHECK_OK(octopair_find_pairs(engine, &first, NULL, NULL, pairs, &summary));
     CHECK(octopair_pairs_count(pairs) == within.count && summary.pairs == within.count && !summary.truncated);
     CHECK(same(copied, octopair_pairs_copy(pairs, 0, copied, within.count), &within));
-    CHECK(octopair_pairs_copy(pairs, 3, copied, 2) == 2 && copied[0].a == within.pairs[3].a && copied[1].b == within.pairs[4].b);
+    CHECK(octopair_pairs_copy(pairs, 3, copied, 2) == 2 && copied[0].a == within.pairs[3].a &&
+          copied[1].b == within.pairs[4].b);
     CHECK(octopair_pairs_copy(pairs, within.count, copied, 9) == 0);
 
     options.margin = 0.01;
@@ -175,8 +178,8 @@ static void test_engine(const char *kind) {
 
 static void test_stop(void) {
     float numbers[6 * COUNT];
-    octopair_stop *stop = NULL;
-    octopair_engine *engine = NULL;
+    octopair_stop* stop = NULL;
+    octopair_engine* engine = NULL;
     octopair_options options = OCTOPAIR_OPTIONS_INIT;
     uint64_t count = 0;
     make_boxes(numbers, 1);
@@ -193,12 +196,12 @@ static void test_stop(void) {
 
 static void test_scene(void) {
     float numbers[6 * COUNT];
-    octopair_scene *scene = NULL;
+    octopair_scene* scene = NULL;
     octopair_scene_options options = OCTOPAIR_SCENE_OPTIONS_INIT;
     octopair_step step = OCTOPAIR_STEP_INIT;
     octopair_id ids[COUNT];
     octopair_traits traits = OCTOPAIR_TRAITS_INIT;
-    octopair_answers *answers = NULL;
+    octopair_answers* answers = NULL;
     const double box[6] = {-1, -1, -1, 2, 2, 2}, ball[4] = {0.5, 0.5, 0.5, 2}, point[6] = {9, 9, 9, 9, 9, 9};
     const double ray[7] = {-1, 0.5, 0.5, 1, 0, 0, INFINITY};
     make_boxes(numbers, 1);
@@ -232,9 +235,15 @@ static void test_scene(void) {
     CHECK(octopair_answers_indices(answers)[COUNT - 1] == COUNT - 1 && octopair_answers_values(answers) == NULL);
     CHECK_OK(octopair_scene_overlap_balls(scene, ball, 1, OCTOPAIR_ALL_GROUPS, answers));
     CHECK(octopair_answers_offsets(answers)[1] == COUNT);
-    CHECK_OK(octopair_scene_nearest(scene, point, 1, 3, OCTOPAIR_ALL_GROUPS, answers));
+    CHECK_OK(octopair_scene_nearest(scene, point, 1, COUNT, INFINITY, OCTOPAIR_ALL_GROUPS, answers));
+    CHECK(octopair_answers_offsets(answers)[1] == COUNT);
+    const double nearest = octopair_answers_values(answers)[0], farthest = octopair_answers_values(answers)[COUNT - 1];
+    CHECK(nearest < farthest);
+    CHECK_OK(octopair_scene_nearest(scene, point, 1, COUNT, nearest, OCTOPAIR_ALL_GROUPS, answers));
+    CHECK(octopair_answers_offsets(answers)[1] >= 1 && octopair_answers_offsets(answers)[1] < COUNT);
+    CHECK(octopair_scene_nearest(scene, point, 1, 3, -1, OCTOPAIR_ALL_GROUPS, answers) == OCTOPAIR_BAD_INPUT);
+    CHECK_OK(octopair_scene_nearest(scene, point, 1, 3, INFINITY, OCTOPAIR_ALL_GROUPS, answers));
     CHECK(octopair_answers_offsets(answers)[1] == 3);
-    CHECK(octopair_answers_values(answers)[0] <= octopair_answers_values(answers)[1]);
     CHECK_OK(octopair_scene_hits(scene, ray, 1, 1, OCTOPAIR_ALL_GROUPS, answers));
     const uint64_t hits = octopair_answers_offsets(answers)[1];
     CHECK_OK(octopair_scene_hits(scene, ray, 1, 0, OCTOPAIR_ALL_GROUPS, answers));
@@ -262,10 +271,10 @@ static void test_scene(void) {
 }
 
 static void test_wrong_calls(void) {
-    octopair_engine *engine = NULL;
+    octopair_engine* engine = NULL;
     octopair_objects objects = OCTOPAIR_OBJECTS_INIT;
     octopair_options options = OCTOPAIR_OPTIONS_INIT;
-    octopair_pairs *pairs = NULL;
+    octopair_pairs* pairs = NULL;
     uint64_t count = 77;
     CHECK(octopair_engine_create("other", NULL, &engine) == OCTOPAIR_USAGE && engine == NULL);
     CHECK(octopair_engine_create(NULL, NULL, &engine) == OCTOPAIR_BAD_INPUT);
@@ -306,7 +315,7 @@ static void test_wrong_calls(void) {
     CHECK(octopair_engine_create("unix:/nonexistent/socket", NULL, &engine) == OCTOPAIR_ENGINE_FAILED);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
     CHECK(strlen(octopair_version()) >= 5 && strcmp(octopair_error_message(), "") == 0);
     test_wrong_calls();
     test_engine("local");
