@@ -3,10 +3,10 @@
 // Includes all headers of the core, octopair::octopair: searches, jobs, lists of pairs, scenes and their queries.
 // Headers of the other components are included by their names. Each needs its library (README.md, "Ten lines of C++"):
 //
-//     filters.hpp, pipeline.hpp, shapes.hpp, collision.hpp    octopair::pipeline: filters and exact tests
-//     processes.hpp                                           octopair::processes: worker processes
-//     client.hpp, job_client.hpp, remote_scene.hpp            octopair::client: servers
-//     mpi.hpp                                                 octopair::mpi: MPI ranks
+//     octopair::pipeline     filters.hpp, pipeline.hpp, shapes.hpp, collision.hpp
+//     octopair::processes    processes.hpp
+//     octopair::client       client.hpp, job_client.hpp, remote_scene.hpp
+//     octopair::mpi          mpi.hpp
 #pragma once
 
 #include "octopair/box_array.hpp"
