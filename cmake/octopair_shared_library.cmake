@@ -5,7 +5,7 @@
 #     - TARGET is a static library. TARGET_shared consists of the same objects, so nothing is compiled twice. Programs and
 #       tests of this project link the static libraries; the interfaces for C and Python link the shared ones.
 #     - TARGET.map in the caller's folder lists the exported symbols. Without this file, cmake/component.map does.
-#     - The SONAME has the first number of the version. tests/packaging checks that the interface fits the SONAME.
+#     - The SONAME has the number OCTOPAIR_SOVERSION. tests/packaging/abi.sh checks that the interface fits it.
 #
 # octopair_alias(NAME TARGET)
 #     Adds octopair::NAME. In a parent project with BUILD_SHARED_LIBS it is the shared library, otherwise the static one.
@@ -37,7 +37,7 @@ function(octopair_shared_library target)
     target_link_options(${shared} PRIVATE -Wl,--version-script=${exports} -Wl,-z,nodelete -Wl,-z,defs)
     set_target_properties(${shared} PROPERTIES
         OUTPUT_NAME ${target} EXPORT_NAME ${export_name} LINKER_LANGUAGE CXX INSTALL_RPATH "$ORIGIN"
-        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} LINK_DEPENDS ${exports})
+        VERSION ${PROJECT_VERSION} SOVERSION ${OCTOPAIR_SOVERSION} LINK_DEPENDS ${exports})
 endfunction()
 
 function(octopair_alias name target)

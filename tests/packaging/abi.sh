@@ -8,6 +8,7 @@
 # abidw, which reads debug information (PACKAGES/debug).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+soversion=$(sed -n 's/^set(OCTOPAIR_SOVERSION \([0-9]*\))/\1/p' "$here/../../CMakeLists.txt")
 update=
 if [ "${1:-}" = --update ]; then update=1 && shift; fi
 packages=$1
@@ -30,7 +31,8 @@ bad=0
 for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline octopair_processes; do
     library=$(find "$work" -path "*/debug/*" -prune -o -name "lib$name.so.*.*" -print)
     [ -n "$library" ] || { echo "lib$name is in no package" && exit 1; }
-    [ "$(objdump -p "$library" | awk '$1 == "SONAME" { print $2 }')" = "lib$name.so.0" ] || { echo "lib$name has another SONAME" && exit 1; }
+    soname=$(objdump -p "$library" | awk '$1 == "SONAME" { print $2 }')
+    [ "$soname" = "lib$name.so.$soversion" ] || { echo "lib$name has the SONAME $soname" && exit 1; }
     describe "$library" "$work/$name.abi"
     grep -q "<function-decl" "$work/$name.abi" || { echo "lib$name: no debug information" && exit 1; }
     if [ -n "$update" ]; then

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks which symbols the shared libraries export.
 
-    exports_test.py HEADERS VERSION LIBRARY...     HEADERS: the folder of the public headers
+    exports_test.py HEADERS VERSION SOVERSION LIBRARY...     HEADERS: the folder of the public headers
 
-- Every library has a SONAME with the first number of the version.
+- Every library has a SONAME with the number SOVERSION.
 - Every exported symbol belongs to octopair, and has the version of the interface. Only the core also exports symbols under the
   private version of the release.
 - Nothing under the private version is declared in a public header: programs need public symbols alone.
@@ -40,13 +40,13 @@ def public_names(headers):
     return set(classes) | set(functions)
 
 
-def faults_of(library, version, public):
+def faults_of(library, version, soversion, public):
     name = pathlib.Path(library).name
-    interface, private = "OCTOPAIR_" + version.split(".")[0], "OCTOPAIR_PRIVATE_" + version
+    interface, private = "OCTOPAIR_" + soversion, "OCTOPAIR_PRIVATE_" + version
     if name == INTERFACE_OF_C:
-        interface = "OCTOPAIR_C_" + version.split(".")[0]
+        interface = "OCTOPAIR_C_" + soversion
     soname = re.search(r"SONAME\s+(\S+)", output("objdump", "-p", library))
-    if not soname or soname[1] != f"{name}.{version.split('.')[0]}":
+    if not soname or soname[1] != f"{name}.{soversion}":
         yield f"the SONAME is {soname and soname[1]}"
     symbols = list(exported(library))
     if not symbols:
@@ -63,10 +63,10 @@ def faults_of(library, version, public):
 
 
 def main():
-    headers, version, *libraries = sys.argv[1:]
+    headers, version, soversion, *libraries = sys.argv[1:]
     public = public_names(pathlib.Path(headers))
     assert {"Scene", "Engine", "find_pairs", "make_pose"} <= public, public
-    bad = [f"{library}: {fault}" for library in libraries for fault in faults_of(library, version, public)]
+    bad = [f"{library}: {fault}" for library in libraries for fault in faults_of(library, version, soversion, public)]
     print("\n".join(bad) or f"{len(libraries)} libraries export what they should")
     sys.exit(bool(bad))
 
