@@ -8,7 +8,7 @@
  *             The macros OCTOPAIR_..._INIT set the size and the defaults.
  * Ownership   Arrays are borrowed for the call, or until a job has ended. The library keeps none of them.
  * Threads     Any thread may use an engine, a job or a stop; the calls of an engine run one after another. Other handles are used by one
- *             thread at a time. Different handles are independent.
+ *             thread at a time. Different handles are independent. No thread may use a handle while or after it is destroyed.
  * Units       Those of the caller. A box is six numbers: min x, y, z, max x, y, z. Boxes are closed: boxes that touch are a pair.
  * Result      Exact and complete, and the same bytes for every engine and any number of threads.
  * Link        liboctopair_c (pkg-config octopair-c, CMake octopair::c). C99 or later, or C++.
@@ -64,10 +64,11 @@ typedef struct octopair_objects {
 } octopair_objects;
 #define OCTOPAIR_OBJECTS_INIT {sizeof(octopair_objects), OCTOPAIR_FLOAT32, 0, NULL, 0, NULL}
 
-/* Receives pairs in batches, in order, on the thread of the call; jobs call it on a thread of the engine. The array is valid during the
- * call. Returns 0 to go on; another number ends the search with OCTOPAIR_CANCELLED. Must not call the same engine. */
+/* Receives pairs in batches, in order, on the thread of the call. The array is valid during the call. Returns 0 to go on; another number
+ * ends the search with OCTOPAIR_CANCELLED. Must not call the engine or the scene that calls it, which would wait for ever. */
 typedef int (*octopair_sink)(void *data, const octopair_pair *pairs, size_t count);
-/* Receives the fraction that is done, 0 to 1, one thread at a time. Returns as octopair_sink. */
+/* Receives the fraction that is done, 0 to 1, one thread at a time, not always that of the call; for jobs, a thread of the engine. Returns
+ * 0 to go on, like octopair_sink. Must not search with the engine that calls it, nor wait for its jobs; it may submit and cancel jobs. */
 typedef int (*octopair_progress)(void *data, double fraction);
 
 /* Cancels calls from another thread: each call that has this stop ends within 200 ms. */
@@ -81,7 +82,7 @@ typedef struct octopair_options {
     int32_t order;             /* an octopair_order */
     int32_t verify;            /* 1: a second algorithm checks the result */
     double margin;             /* largest gap, per axis, at which a pair counts */
-    uint64_t limit;            /* maximum number of pairs; UINT64_MAX: none */
+    uint64_t limit;            /* maximum number of pairs; UINT64_MAX: no limit; 0: no pairs */
     uint64_t buffer_bytes;     /* maximum memory for pairs while streaming */
     octopair_progress progress; /* or NULL */
     void *progress_data;
@@ -143,7 +144,7 @@ OCTOPAIR_API uint64_t octopair_pairs_copy(const octopair_pairs *pairs, uint64_t 
 OCTOPAIR_API octopair_status octopair_find_pairs(octopair_engine *engine, const octopair_objects *first,
                                                  const octopair_objects *second, const octopair_options *options,
                                                  octopair_pairs *pairs, octopair_summary *summary);
-/* Counts the pairs and stores none of them. */
+/* Counts the pairs and stores none of them. With a limit, the count is at most the limit. */
 OCTOPAIR_API octopair_status octopair_count_pairs(octopair_engine *engine, const octopair_objects *first,
                                                   const octopair_objects *second, const octopair_options *options,
                                                   uint64_t *count);
@@ -211,12 +212,13 @@ OCTOPAIR_API void octopair_scene_destroy(octopair_scene *scene);
 /* Adds objects and writes their ids. `traits` has one element per object, or is NULL. A call that fails changes nothing. */
 OCTOPAIR_API octopair_status octopair_scene_add(octopair_scene *scene, const octopair_objects *objects,
                                                 const octopair_traits *traits, octopair_id *ids);
-/* Gives objects new boxes: 6 * count numbers of the scene's precision. */
+/* Gives objects new boxes: 6 * count numbers of the scene's precision. If an id occurs twice, the last box counts. */
 OCTOPAIR_API octopair_status octopair_scene_move(octopair_scene *scene, const octopair_id *ids, const void *boxes,
                                                  uint64_t count);
 /* Like octopair_scene_move, but in the next step the box of an object is the union of its old and its new box. */
 OCTOPAIR_API octopair_status octopair_scene_sweep(octopair_scene *scene, const octopair_id *ids, const void *boxes,
                                                   uint64_t count);
+/* Removes objects. An id that occurs twice is an error. */
 OCTOPAIR_API octopair_status octopair_scene_remove(octopair_scene *scene, const octopair_id *ids, uint64_t count);
 OCTOPAIR_API octopair_status octopair_scene_set_traits(octopair_scene *scene, const octopair_id *ids,
                                                        const octopair_traits *traits, uint64_t count);

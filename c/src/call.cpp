@@ -2,6 +2,7 @@
 #include "call.hpp"
 
 #include <new>
+#include <stdexcept>
 #include <string>
 
 #include "octopair/version.hpp"
@@ -32,6 +33,8 @@ octopair_status status_of_exception() noexcept {
         return failed(error.code(), error.what());
     } catch (const std::bad_alloc&) {
         return failed(ErrorCode::resource_limit, "out of memory");
+    } catch (const std::length_error&) {
+        return failed(ErrorCode::resource_limit, "more elements than memory can hold");
     } catch (const std::exception& error) {
         return failed(ErrorCode::engine_failed, error.what());
     } catch (...) {
@@ -106,7 +109,10 @@ const char* octopair_error_message(void) { return octopair::c::message; }
 const char* octopair_version(void) { return OCTOPAIR_VERSION; }
 
 octopair_status octopair_stop_create(octopair_stop** stop) {
-    return octopair::c::guarded([&] { octopair::c::required(stop, "stop") = new octopair_stop(); });
+    return octopair::c::guarded([&] {
+        octopair_stop*& out = octopair::c::required(stop, "stop");
+        out = new octopair_stop();
+    });
 }
 void octopair_stop_request(octopair_stop* stop) {
     if (stop != nullptr) stop->source.request_stop();

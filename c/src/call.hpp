@@ -1,6 +1,7 @@
 // Helpers of all functions of octopair.h: errors, structs that begin with their size, and conversions of inputs.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -56,12 +57,18 @@ Struct read_struct(const Struct* given, Struct defaults, const char* name) {
     return defaults;
 }
 
-/// Writes as much of `values` as the caller's struct has room for. Null: nothing.
+/// Checks a struct that a call will write, before the call does anything. Null: accepted.
+/// Throws: Error{bad_input} if the size is not set.
 template <typename Struct>
-void write_struct(Struct* given, Struct values, const char* name) {
-    if (given == nullptr) return;
-    if (given->size < sizeof(std::size_t))
+void check_output(const Struct* given, const char* name) {
+    if (given != nullptr && given->size < sizeof(std::size_t))
         throw Error(ErrorCode::bad_input, std::string(name) + " has no size; initialise it with its macro");
+}
+
+/// Writes as much of `values` as the caller's struct has room for. Null: nothing. Requires: check_output().
+template <typename Struct>
+void write_struct(Struct* given, Struct values) noexcept {
+    if (given == nullptr) return;
     const std::size_t size = std::min(given->size, sizeof(Struct));
     values.size = given->size;
     std::memcpy(static_cast<void*>(given), &values, size);

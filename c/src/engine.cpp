@@ -50,7 +50,10 @@ octopair_status octopair_engine_create(const char* kind, const octopair_engine_o
 void octopair_engine_destroy(octopair_engine* engine) { delete engine; }
 
 octopair_status octopair_pairs_create(octopair_pairs** pairs) {
-    return guarded([&] { required(pairs, "pairs") = new octopair_pairs(); });
+    return guarded([&] {
+        octopair_pairs*& out = required(pairs, "pairs");
+        out = new octopair_pairs();
+    });
 }
 void octopair_pairs_destroy(octopair_pairs* pairs) { delete pairs; }
 uint64_t octopair_pairs_count(const octopair_pairs* pairs) { return pairs == nullptr ? 0 : pairs->list.size(); }
@@ -76,11 +79,17 @@ octopair_status octopair_find_pairs(octopair_engine* engine, const octopair_obje
                                     const octopair_objects* second, const octopair_options* options,
                                     octopair_pairs* pairs, octopair_summary* summary) {
     return guarded([&] {
-        const auto call = octopair::c::options_of(options);
-        auto& list = required(pairs, "pairs").list;
-        const auto found = required(engine, "engine")
-                               .engine->find_pairs(octopair::c::input_of(first, second), list, call.options, call.stop);
-        octopair::c::write_struct(summary, octopair::c::summary_of(found), "summary");
+        octopair::PairList& list = required(pairs, "pairs").list;
+        octopair::c::check_output(summary, "summary");
+        try {
+            const auto call = octopair::c::options_of(options);
+            const auto input = octopair::c::input_of(first, second);
+            const auto found = required(engine, "engine").engine->find_pairs(input, list, call.options, call.stop);
+            octopair::c::write_struct(summary, octopair::c::summary_of(found));
+        } catch (...) {
+            list = {};  // also if the arguments are refused
+            throw;
+        }
     });
 }
 
@@ -98,10 +107,11 @@ octopair_status octopair_stream_pairs(octopair_engine* engine, const octopair_ob
                                       const octopair_objects* second, const octopair_options* options,
                                       octopair_sink sink, void* data, octopair_summary* summary) {
     return guarded([&] {
+        octopair::c::check_output(summary, "summary");
         const auto call = octopair::c::options_of(options);
         const auto found = required(engine, "engine")
                                .engine->stream_pairs(octopair::c::input_of(first, second),
                                                      octopair::c::sink_of(sink, data), call.options, call.stop);
-        octopair::c::write_struct(summary, octopair::c::summary_of(found), "summary");
+        octopair::c::write_struct(summary, octopair::c::summary_of(found));
     });
 }

@@ -58,9 +58,10 @@ octopair_status octopair_job_take_pairs(octopair_job* job, octopair_pairs* pairs
     return guarded([&] {
         octopair::Job& ended = required(job, "job").job;
         auto& list = required(pairs, "pairs").list;
+        octopair::c::check_output(summary, "summary");
         const octopair::Summary found = ended.summary();
         list = ended.take_pairs();
-        octopair::c::write_struct(summary, octopair::c::summary_of(found), "summary");
+        octopair::c::write_struct(summary, octopair::c::summary_of(found));
     });
 }
 

@@ -26,6 +26,8 @@ static_assert(sizeof(octopair_id) == sizeof(ObjectId));
 
 std::span<const ObjectId> ids_of(const octopair_id* ids, std::uint64_t count) {
     if (count > 0) required(ids, "ids");
+    if (count > 0xFFFFFFFF)
+        throw Error(ErrorCode::resource_limit, std::to_string(count) + " objects; at most 2^32 - 1 are possible");
     return {reinterpret_cast<const ObjectId*>(ids), std::size_t(count)};
 }
 
@@ -125,7 +127,8 @@ octopair_status octopair_scene_set_traits(octopair_scene* scene, const octopair_
                                           uint64_t count) {
     return guarded([&] {
         if (count > 0) required(traits, "traits");
-        required(scene, "scene").scene.set_traits(ids_of(ids, count), octopair::c::traits_of(traits, count));
+        const auto changed = ids_of(ids, count);
+        required(scene, "scene").scene.set_traits(changed, octopair::c::traits_of(traits, count));
     });
 }
 
@@ -134,16 +137,15 @@ uint64_t octopair_scene_count(const octopair_scene* scene) { return scene == nul
 octopair_status octopair_scene_step(octopair_scene* scene, octopair_stop* stop, octopair_step* step) {
     return guarded([&] {
         required(step, "step");
+        octopair::c::check_output(step, "step");
         const auto token = stop == nullptr ? std::stop_token() : stop->source.get_token();
         const octopair::StepResult& result = required(scene, "scene").scene.step(token);
         const auto pairs = [](std::span<const octopair::Pair> found) {
             return reinterpret_cast<const octopair_pair*>(found.data());
         };
         octopair::c::write_struct(
-            step,
-            octopair_step{sizeof(octopair_step), pairs(result.began), pairs(result.ended), result.began.size(),
-                          result.ended.size(), result.persisting, result.seconds, result.full ? 1 : 0, 0},
-            "step");
+            step, octopair_step{sizeof(octopair_step), pairs(result.began), pairs(result.ended), result.began.size(),
+                                result.ended.size(), result.persisting, result.seconds, result.full ? 1 : 0, 0});
     });
 }
 
@@ -155,7 +157,10 @@ octopair_status octopair_scene_pairs(octopair_scene* scene, octopair_sink sink, 
 }
 
 octopair_status octopair_answers_create(octopair_answers** answers) {
-    return guarded([&] { required(answers, "answers") = new octopair_answers(); });
+    return guarded([&] {
+        octopair_answers*& out = required(answers, "answers");
+        out = new octopair_answers();
+    });
 }
 void octopair_answers_destroy(octopair_answers* answers) { delete answers; }
 uint64_t octopair_answers_queries(const octopair_answers* answers) {

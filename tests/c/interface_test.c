@@ -312,12 +312,73 @@ static void test_wrong_calls(void) {
     octopair_scene_destroy(NULL);
     octopair_answers_destroy(NULL);
     octopair_stop_destroy(NULL);
-    CHECK(octopair_engine_create("unix:/nonexistent/socket", NULL, &engine) == OCTOPAIR_ENGINE_FAILED);
+}
+
+/* A call that fails leaves `pairs` empty and does nothing else. Outputs without a size are refused before the work. */
+static void test_failed_calls(void) {
+    const float boxes[2][6] = {{0, 0, 0, 1, 1, 1}, {1, 0, 0, 2, 1, 1}};
+    octopair_engine* engine = NULL;
+    octopair_objects objects = OCTOPAIR_OBJECTS_INIT;
+    octopair_options wrong = OCTOPAIR_OPTIONS_INIT;
+    octopair_summary summary = OCTOPAIR_SUMMARY_INIT;
+    octopair_step step = OCTOPAIR_STEP_INIT;
+    octopair_pairs* pairs = NULL;
+    octopair_job* job = NULL;
+    octopair_scene* scene = NULL;
+    octopair_id ids[2];
+    pair_array found = {NULL, 0, 0};
+    objects.boxes = boxes;
+    objects.count = 2;
+    wrong.order = 9;
+    CHECK(octopair_pairs_create(NULL) == OCTOPAIR_BAD_INPUT && octopair_stop_create(NULL) == OCTOPAIR_BAD_INPUT);
+    CHECK(octopair_answers_create(NULL) == OCTOPAIR_BAD_INPUT);
+    CHECK_OK(octopair_engine_create("local", NULL, &engine));
+    CHECK_OK(octopair_pairs_create(&pairs));
+    CHECK_OK(octopair_find_pairs(engine, &objects, NULL, NULL, pairs, NULL));
+    CHECK(octopair_pairs_count(pairs) == 1);
+    CHECK(octopair_find_pairs(engine, &objects, NULL, &wrong, pairs, NULL) == OCTOPAIR_BAD_INPUT);
+    CHECK(octopair_pairs_count(pairs) == 0);
+
+    summary.size = 0;
+    CHECK(octopair_find_pairs(engine, &objects, NULL, NULL, pairs, &summary) == OCTOPAIR_BAD_INPUT);
+    CHECK(octopair_pairs_count(pairs) == 0);
+    CHECK(octopair_stream_pairs(engine, &objects, NULL, NULL, collect, &found, &summary) == OCTOPAIR_BAD_INPUT);
+    CHECK(found.count == 0);
+    CHECK_OK(octopair_job_submit(engine, &objects, NULL, NULL, &job));
+    CHECK(octopair_job_take_pairs(job, pairs, &summary) == OCTOPAIR_BAD_INPUT);
+    CHECK_OK(octopair_job_take_pairs(job, pairs, NULL));
+    CHECK(octopair_pairs_count(pairs) == 1);
+
+    CHECK_OK(octopair_scene_create(NULL, &scene));
+    CHECK_OK(octopair_scene_add(scene, &objects, NULL, ids));
+    step.size = 0;
+    CHECK(octopair_scene_step(scene, NULL, &step) == OCTOPAIR_BAD_INPUT);
+    step.size = sizeof step;
+    CHECK_OK(octopair_scene_step(scene, NULL, &step));
+    CHECK(step.began_count == 1);
+    CHECK(octopair_scene_remove(scene, ids, UINT64_MAX) == OCTOPAIR_RESOURCE_LIMIT);
+    octopair_scene_destroy(scene);
+    octopair_job_destroy(job);
+    octopair_pairs_destroy(pairs);
+    octopair_engine_destroy(engine);
+}
+
+static void test_addresses(int with_servers) {
+    octopair_engine* engine = NULL;
+    octopair_engine_options options = OCTOPAIR_ENGINE_OPTIONS_INIT;
+    options.connect_timeout = 0.1;
+    const octopair_status expected = with_servers ? OCTOPAIR_ENGINE_FAILED : OCTOPAIR_USAGE;
+    CHECK(octopair_engine_create("unix:/nonexistent/socket", &options, &engine) == expected);
+    options.connect_timeout = -1;
+    CHECK(octopair_engine_create("unix:/nonexistent/socket", &options, &engine) != OCTOPAIR_OK && engine == NULL);
+    CHECK(!with_servers || strstr(octopair_error_message(), "connect_timeout") != NULL);
 }
 
 int main(int argc, char** argv) {
     CHECK(strlen(octopair_version()) >= 5 && strcmp(octopair_error_message(), "") == 0);
     test_wrong_calls();
+    test_failed_calls();
+    test_addresses(argc > 1);
     test_engine("local");
     test_engine("processes");
     if (argc > 1) test_engine(argv[1]);

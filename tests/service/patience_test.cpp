@@ -105,6 +105,14 @@ TEST(ServedPatience, EndsAtAServerThatRefusesEachCall) {
     gate.open();
 }
 
+/// A name without an address counts as a server that does not answer, not as one that answered once.
+TEST(ServedPatience, EndsAtANameWithoutAddress) {
+    const auto begun = std::chrono::steady_clock::now();
+    const ClientOptions options = {.connect_timeout = milliseconds(100), .patience = std::chrono::hours(1)};
+    EXPECT_EQ(code_of([&] { (void)connect("no-such-host.invalid:1", options); }), ErrorCode::engine_failed);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::minutes(1));
+}
+
 TEST(ServedPatience, CanBeStopped) {
     Served served;
     const auto engine = served.client(std::chrono::hours(10));

@@ -88,7 +88,8 @@ bool refuses_connections(const grpc::Status& status) {
 bool was_connected(const grpc::Status& status) {
     const std::string words = status.error_message();
     return !refuses_connections(status) && words.find("failed to connect") == std::string::npos &&
-           words.find("empty address list") == std::string::npos;
+           words.find("empty address list") == std::string::npos &&
+           words.find("DNS resolution failed") == std::string::npos;
 }
 
 /// Checks the token, because gRPC ends the program if metadata has other characters.
