@@ -68,3 +68,23 @@ source_archive() {
             --transform="s|^\.|$name|" -c .
     fi | gzip -n -9 > "$1"
 }
+
+# Prints the folder that a script writes: its argument, or DEFAULT. Refuses options, and more than one argument:
+# output_folder DEFAULT [ARGUMENT...].
+output_folder() {
+    [ $# -le 2 ] && [[ ${2:-} != -* ]] || fail "takes one folder; default: ${1#"$root/"}"
+    realpath -m "${2:-$1}"
+}
+
+# Fails unless a result may take the place of FOLDER: check_replaceable FOLDER MARK. An earlier result has the file or folder MARK.
+check_replaceable() {
+    [ ! -e "$1" ] || [ -e "$1/$2" ] || rmdir "$1" 2> /dev/null || fail "$1 is not empty, and no earlier result; name another folder"
+}
+
+# Moves a folder to the place of an earlier result: replace_folder NEW FOLDER MARK.
+replace_folder() {
+    check_replaceable "$2" "$3"
+    rm -rf "$2"
+    mkdir -p "$(dirname "$2")"
+    mv "$1" "$2"
+}

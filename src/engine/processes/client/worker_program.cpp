@@ -35,8 +35,10 @@ std::vector<std::string> candidate_paths(const std::string& packaged) {
     if (const fs::path library = own_file(); library.is_absolute())
         found.push_back((library.parent_path() / OCTOPAIR_WORKER_FROM_LIBRARY / "octopair-worker").lexically_normal());
     if (!packaged.empty()) found.push_back(packaged);
-    found.emplace_back(OCTOPAIR_WORKER_INSTALLED);
-    if constexpr (sizeof OCTOPAIR_WORKER_BUILT > 1) found.emplace_back(OCTOPAIR_WORKER_BUILT);
+    // Builds for packages leave out paths that they cannot know.
+    for (const std::string configured : {OCTOPAIR_WORKER_INSTALLED, OCTOPAIR_WORKER_BUILT}) {
+        if (!configured.empty()) found.push_back(configured);
+    }
     return found;
 }
 
