@@ -76,9 +76,11 @@ output_folder() {
     realpath -m "${2:-$1}"
 }
 
-# Fails unless a result may take the place of FOLDER: check_replaceable FOLDER MARK. An earlier result has the file or folder MARK.
+# Fails unless a result may take the place of FOLDER: check_replaceable FOLDER MARK. An earlier result has a file that matches the
+# pattern MARK. An empty folder may be replaced, too.
 check_replaceable() {
-    [ ! -e "$1" ] || [ -e "$1/$2" ] || rmdir "$1" 2> /dev/null || fail "$1 is not empty, and no earlier result; name another folder"
+    [ ! -e "$1" ] || compgen -G "$1/$2" > /dev/null || rmdir "$1" 2> /dev/null ||
+        fail "$1 is not empty, and no earlier result; name another folder"
 }
 
 # Moves a folder to the place of an earlier result: replace_folder NEW FOLDER MARK.

@@ -26,7 +26,7 @@ COMPONENTS = [
      ["fcl/broad_phase_manager", "cgal/box_intersection_d", "bullet/broadphase"]),
 ]
 # Headers without a page: parts of adapters that users do not call, and the attribute of exported symbols.
-INTERNAL = {"export", "fcl/near_pairs", "fcl/object_boxes", "fcl/object_set", "cgal/boxes", "bullet/proxies"}
+INTERNAL = {"fcl/near_pairs", "fcl/object_boxes", "fcl/object_set", "cgal/boxes", "bullet/proxies"}
 # A word in front of a paragraph, in a column of its own: 10 characters wide in C++, 12 in C.
 WORD = re.compile(r"^([A-Z][A-Za-z]+) +(?:(?<=^.{10})|(?<=^.{12}))(\S.*)$")
 # In C, a comment that an empty line follows describes the declarations below it.
