@@ -1,0 +1,198 @@
+#include "viewer/live/live_feed.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "viewer/scene/frame_answers.hpp"
+
+namespace octopair::viewer {
+
+namespace {
+
+std::size_t size_of(const LiveState& state) {
+    return std::visit([](const auto& boxes) { return boxes.size(); }, state.boxes);
+}
+
+Boxes boxes_of(const LiveState& state) {
+    return std::visit([](const auto& boxes) { return Boxes(std::span(boxes)); }, state.boxes);
+}
+
+bool same(const RelativeBox& a, const RelativeBox& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+/// Header of a live frame.
+struct LiveFeed::Head {
+    std::uint32_t magic = 0x4F504C56, frame = 0, base = 0xFFFFFFFF, objects = 0;
+    std::uint32_t shown = 0, moved = 0, began = 0, ended = 0;
+    std::uint32_t pairs_low = 0, pairs_high = 0, listed = 0, step_microseconds = 0;
+    std::uint32_t unused[4] = {};
+};
+
+std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_shown_); }
+
+void LiveFeed::put(LiveState&& next) {
+    const std::lock_guard lock(mutex_);
+    const bool whole = frame_ < 0 || next.pairs.has_value() || size_of(next) != size_of(*state_);
+    if (frame_ < 0) {
+        FrameData data;
+        data.boxes = boxes_of(next);
+        data.exists = next.exists;
+        origin_ = centre_of(bounds_of(data));
+    }
+    ++frame_;
+    Difference difference = update_pairs(next);
+    state_ = std::make_shared<const LiveState>(std::move(next));
+    update_rows(whole);
+    made_.clear();
+    if (whole) {
+        differences_.clear();
+        oldest_base_ = frame_;
+        return;
+    }
+    differences_.push_back(std::move(difference));
+    if (differences_.size() > kept_differences) {
+        differences_.pop_front();
+        oldest_base_ = differences_.front().frame - 1;
+    }
+}
+
+void LiveFeed::update_rows(bool whole) {
+    const std::size_t count = shown();
+    if (whole) {
+        rows_.assign(count, no_box());
+        changed_.assign(count, std::uint32_t(frame_));
+    }
+    const Boxes boxes = boxes_of(*state_);
+    for (std::size_t row = 0; row < count; ++row) {
+        const bool exists = state_->exists.empty() || state_->exists[row] != 0;
+        const RelativeBox box = exists ? relative(box_of(boxes, row), origin_) : no_box();
+        if (same(box, rows_[row])) continue;
+        rows_[row] = box;
+        changed_[row] = std::uint32_t(frame_);
+    }
+}
+
+/// Returns what the last event of each pair changes.
+static void sort_events(std::vector<LiveState::Event>& events) {
+    std::stable_sort(events.begin(), events.end(), [](const auto& x, const auto& y) { return x.pair < y.pair; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (i + 1 == events.size() || events[i].pair != events[i + 1].pair) events[kept++] = events[i];
+    }
+    events.resize(kept);
+}
+
+LiveFeed::Difference LiveFeed::update_pairs(LiveState& next) {
+    Difference difference{std::uint32_t(frame_), {}, {}};
+    if (next.pairs) {
+        pairs_ = std::move(*next.pairs);
+        next.pairs.reset();
+        return difference;
+    }
+    sort_events(next.events);
+    for (const auto& [pair, began] : next.events) {
+        const bool known = std::binary_search(pairs_.begin(), pairs_.end(), pair);
+        if (began && !known) difference.began.push_back(pair);
+        if (!began && known) difference.ended.push_back(pair);
+    }
+    if (difference.began.empty() && difference.ended.empty()) return difference;
+    std::vector<Pair> remaining, merged;
+    std::set_difference(pairs_.begin(), pairs_.end(), difference.ended.begin(), difference.ended.end(),
+                        std::back_inserter(remaining));
+    std::merge(remaining.begin(), remaining.end(), difference.began.begin(), difference.began.end(), std::back_inserter(merged));
+    pairs_ = std::move(merged);
+    return difference;
+}
+
+LiveFeed::Head LiveFeed::head() const {
+    Head head;
+    head.frame = std::uint32_t(frame_);
+    head.objects = std::uint32_t(size_of(*state_));
+    head.shown = std::uint32_t(shown());
+    const std::uint64_t pairs = std::max<std::uint64_t>(state_->pair_count, pairs_.size());
+    head.pairs_low = std::uint32_t(pairs);
+    head.pairs_high = std::uint32_t(pairs >> 32);
+    head.listed = std::uint32_t(std::min(pairs_.size(), max_listed_pairs));
+    head.step_microseconds = std::uint32_t(std::min(state_->step_seconds * 1e6, 4e9));
+    return head;
+}
+
+std::string LiveFeed::whole_frame() const {
+    const Head head = this->head();
+    std::string body;
+    append_array(body, std::span(&head, 1));
+    if (head.shown < head.objects) {
+        std::vector<std::uint32_t> objects(head.shown);
+        for (std::uint32_t row = 0; row < head.shown; ++row) objects[row] = row;
+        append_array(body, std::span<const std::uint32_t>(objects));
+    }
+    append_array(body, std::span<const RelativeBox>(rows_));
+    append_array(body, std::span<const Pair>(pairs_).first(head.listed));
+    return body;
+}
+
+std::string LiveFeed::difference_since(std::uint32_t last) const {
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t row = 0; row < changed_.size(); ++row) {
+        if (changed_[row] > last) rows.push_back(row);
+    }
+    std::vector<LiveState::Event> events;
+    for (const Difference& difference : differences_) {
+        if (difference.frame <= last) continue;
+        for (const Pair pair : difference.ended) events.push_back({pair, false});
+        for (const Pair pair : difference.began) events.push_back({pair, true});
+    }
+    // A pair that began and ended since, or the other way round, is as it was before.
+    std::map<Pair, bool> first;
+    for (const auto& [pair, began] : events) first.emplace(pair, began);
+    sort_events(events);
+    std::erase_if(events, [&](const auto& event) { return first.at(event.pair) != event.began; });
+
+    Head head = this->head();
+    head.base = last;
+    head.moved = std::uint32_t(rows.size());
+    std::vector<Pair> began, ended;
+    for (const auto& [pair, is_begin] : events) (is_begin ? began : ended).push_back(pair);
+    head.began = std::uint32_t(began.size());
+    head.ended = std::uint32_t(ended.size());
+    std::vector<RelativeBox> boxes;
+    for (const std::uint32_t row : rows) boxes.push_back(rows_[row]);
+    std::string body;
+    append_array(body, std::span<const Head>(&head, 1));
+    append_array(body, std::span<const std::uint32_t>(rows));
+    append_array(body, std::span<const RelativeBox>(boxes));
+    append_array(body, std::span<const Pair>(began));
+    append_array(body, std::span<const Pair>(ended));
+    return body;
+}
+
+Message LiveFeed::frame_after(std::int64_t last) {
+    const std::lock_guard lock(mutex_);
+    if (frame_ < 0 || last == frame_) return nullptr;
+    const std::int64_t base = last >= oldest_base_ && last < frame_ ? last : -1;
+    Message& made = made_[base];
+    if (made == nullptr) {
+        made = std::make_shared<const std::string>(base < 0 ? whole_frame() : difference_since(std::uint32_t(base)));
+    }
+    return made;
+}
+
+FrameData LiveFeed::latest() const {
+    const std::lock_guard lock(mutex_);
+    FrameData data;
+    data.boxes = boxes_of(*state_);
+    data.keep = state_;
+    data.exists = state_->exists;
+    data.pairs = pairs_;
+    data.pair_count = std::max<std::uint64_t>(state_->pair_count, pairs_.size());
+    return data;
+}
+
+Point3d LiveFeed::origin() const {
+    const std::lock_guard lock(mutex_);
+    return origin_;
+}
+
+}  // namespace octopair::viewer

@@ -1,0 +1,73 @@
+// Answers about one frame, for scenes of files and for live scenes alike.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "viewer/server/answer.hpp"
+#include "octopair/octants.hpp"
+#include "viewer/scene/scene_contents.hpp"
+#include "viewer/scene/shown_objects.hpp"
+
+namespace octopair::viewer {
+
+using Json = nlohmann::ordered_json;
+
+/// Returns JSON as text. Bytes of names that are not UTF-8 are replaced.
+Answer json_answer(const Json& json);
+Json json_of(const Point3d& point);
+Json json_of(const Box3d& box);
+
+/// A frame as the page sees it. Borrowed.
+struct ShownFrame {
+    const SceneContents& contents;
+    std::uint64_t objects;  ///< number of objects of the frame
+    const ShownObjects& shown;
+    const Point3d& origin;
+    const FrameData& data;
+    std::span<const Pair> began = {}, ended = {};
+};
+
+/// Largest numbers of what the page gets at once.
+inline constexpr std::size_t max_listed_pairs = 200'000, max_listed_octants = 20'000, max_near = 100'000,
+                             max_partners = 1'000, max_found = 50, max_rows = 1'000;
+
+/// Returns the boxes of all rows.
+Answer box_rows(const ShownFrame& frame);
+/// Returns the number of pairs of each row's object.
+Answer partner_counts(const ShownFrame& frame);
+/// Returns the number of pairs of each object.
+std::vector<std::uint32_t> pair_counts(const FrameData& data, std::uint64_t objects);
+/// Returns the first pairs, at most `most`.
+Answer pair_rows(std::span<const Pair> pairs, std::size_t most = max_listed_pairs);
+
+Answer octant_summary(const Octants& octants);
+Answer octant_level(const Octants& octants, unsigned level, const Point3d& origin);
+/// Returns the octants of an octree of the boxes that exist in the frame, on `threads` threads; 0: one per core.
+Octants octants_of(const ShownFrame& frame, unsigned threads = 0);
+/// Returns for each object the level of the octant in which its box begins; 0 for objects that do not exist.
+std::vector<std::uint8_t> levels_of(const FrameData& data, const Octants& octants);
+
+/// Selects rows of the table of collisions.
+struct RowRequest {
+    std::uint64_t from = 0, count = 100;
+    enum class Sort : std::uint8_t { pair, depth, began } sort = Sort::pair;
+    std::optional<std::uint32_t> object;
+    std::string text;
+};
+/// Throws: Error{bad_input} for an invalid parameter.
+RowRequest row_request(const Address& address);
+Answer collision_rows(const ShownFrame& frame, const RowRequest& request);
+
+/// Returns what is known about an object; nothing if there is no such object. `octants` may be null.
+std::optional<Answer> object_answer(const ShownFrame& frame, std::uint32_t object, const Octants* octants);
+/// Returns the objects whose name or index has `text`, the best first.
+Answer search_answer(const ShownFrame& frame, std::string_view text);
+/// Returns the objects that are not shown and overlap `region`, the largest first.
+Answer near_answer(const ShownFrame& frame, const Box3d& region);
+/// Returns the region that the parameters `min` and `max` give. Throws: Error{bad_input}.
+Box3d region_of(const Address& address);
+
+}  // namespace octopair::viewer

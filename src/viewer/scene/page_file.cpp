@@ -1,0 +1,77 @@
+#include "viewer/scene/page_file.hpp"
+
+#include <array>
+
+#include "octopair/error.hpp"
+#include "viewer/server/page.hpp"
+
+namespace octopair::viewer {
+
+namespace {
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    out.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t word = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            out += i + k > bytes.size() ? '=' : digits[word >> (18 - 6 * k) & 63];
+        }
+    }
+    return out;
+}
+
+/// Returns the element with the data of an address; an empty text for an address without data.
+std::string element(SceneSource& source, const std::string& address) {
+    const auto parsed = Address::parse('/' + address);
+    const auto answer = parsed ? source.get(*parsed) : std::nullopt;
+    if (!answer) return {};
+    return "<script type=\"application/octet-stream\" data-address=\"" + address + "\">" + base64(gzip(answer->body, 9)) +
+           "</script>\n";
+}
+
+std::string elements(SceneSource& source, const std::vector<std::string>& addresses) {
+    std::string all;
+    for (const std::string& address : addresses) all += element(source, address);
+    return all;
+}
+
+}  // namespace
+
+void write_page(SceneSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most) {
+    const std::string html = page();
+    constexpr std::string_view marker = "<!-- data -->";
+    const std::size_t place = html.find(marker);
+    const std::uint64_t frames = source.frames();
+    source.prepare_export({frames, {}});
+    // The scene's own addresses hold the number of frames, so they come last.
+    std::string data = elements(source, source.addresses_of(0));
+    std::uint64_t written = 1;
+    std::uint64_t fixed = html.size() + elements(source, source.addresses()).size();
+    const auto refuse_large = [&] {
+        throw Error(ErrorCode::resource_limit, "the page would exceed " + std::to_string(most >> 20) +
+                                                   " MiB; export fewer objects, or look at the scene without --export");
+    };
+    if (fixed + data.size() > most) refuse_large();
+    for (; written < frames; ++written) {
+        const std::string next = elements(source, source.addresses_of(written));
+        if (fixed + data.size() + next.size() > most) break;
+        data += next;
+    }
+    SceneSource::Export how{written, {}};
+    if (written < frames) {
+        how.notices.push_back("Only the first " + std::to_string(written) + " of " + std::to_string(frames) +
+                              " frames are in this file.");
+    }
+    source.prepare_export(std::move(how));
+    write(std::string_view(html).substr(0, place));
+    write(elements(source, source.addresses()));
+    write(data);
+    write(std::string_view(html).substr(place + marker.size()));
+}
+
+}  // namespace octopair::viewer

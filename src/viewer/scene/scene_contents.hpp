@@ -1,0 +1,77 @@
+// SceneContents and FrameFinder: a scene to show, independent of the files that it comes from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "octopair/collision.hpp"
+#include "octopair/objects.hpp"
+#include "octopair/options.hpp"
+#include "octopair/pose.hpp"
+
+namespace octopair::viewer {
+
+/// A shape as triangles, in its own coordinates.
+struct ShownShape {
+    std::string kind;  ///< for example "mesh"
+    std::vector<std::array<float, 3>> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Facts for people: a name, and a number or a text.
+struct Fact {
+    std::string name;
+    double number = 0;
+    std::string text = {};  ///< if not empty, in place of the number
+};
+
+/// All that does not depend on the frame. Arrays have one element per object, or are empty.
+struct SceneContents {
+    std::string title;
+    std::uint64_t objects = 0;
+    bool moving = false;                                                             ///< true if pairs begin and end
+    std::string up, unit;                                                            ///< "y", "z" or empty; for example "m"
+    double margin = 0;
+    std::vector<std::string> names;
+    std::vector<std::uint32_t> groups;
+    /// Returns details of an object, such as {"type", "IfcBeam"}. May be empty.
+    std::function<std::vector<std::pair<std::string, std::string>>(std::uint32_t object)> details;
+    std::vector<ShownShape> shapes;
+    std::vector<std::uint32_t> geometry;  ///< index into `shapes`, or no_shape
+    std::vector<Pose> poses;
+    std::vector<std::string> notices;  ///< sentences for the reader
+    std::vector<Fact> facts;           ///< for example seconds of reading
+
+    static constexpr std::uint32_t no_shape = 0xFFFFFFFF;
+};
+
+/// A frame and its result.
+struct FrameData {
+    Boxes boxes;                         ///< one per object
+    std::vector<std::uint8_t> exists;    ///< 0 for objects that do not exist in this frame; empty: all exist
+    std::span<const double> padding = {};
+    std::shared_ptr<const void> keep;    ///< owner of the memory of `boxes`, or null
+    std::vector<Pair> pairs;             ///< ascending; the first ones, if `pair_count` is larger
+    std::vector<Finding> findings;       ///< one per pair, or empty
+    std::uint64_t pair_count = 0;
+    bool more_pairs = false;             ///< true if there are more than `pair_count`
+    std::vector<Fact> facts;             ///< for example seconds by step
+
+    bool has(std::size_t object) const { return exists.empty() || exists[object] != 0; }
+};
+
+/// Finds the pairs of frames. Thread safety: one thread at a time.
+class FrameFinder {
+public:
+    virtual ~FrameFinder() = default;
+    virtual std::uint64_t frames() const = 0;
+    /// Throws: Error of the search; Error{bad_input} for an invalid box.
+    virtual FrameData find(std::uint64_t frame, const ProgressSink& progress) = 0;
+};
+
+}  // namespace octopair::viewer

@@ -1,0 +1,340 @@
+#include "viewer/scene/scene_source.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+
+#include "octopair/error.hpp"
+#include "octopair/version.hpp"
+
+namespace octopair::viewer {
+
+namespace {
+
+Json number_or_text(const Fact& fact) { return fact.text.empty() ? Json(fact.number) : Json(fact.text); }
+
+/// Adds facts to an object. "seconds.read" becomes the member "read" of "seconds".
+void add_facts(Json& json, const std::vector<Fact>& facts) {
+    for (const Fact& fact : facts) {
+        const std::size_t dot = fact.name.find('.');
+        if (dot == std::string::npos) {
+            json[fact.name] = number_or_text(fact);
+        } else {
+            json[fact.name.substr(0, dot)][fact.name.substr(dot + 1)] = number_or_text(fact);
+        }
+    }
+}
+
+/// Selects all rows that an exported page has.
+RowRequest all_rows() {
+    RowRequest request;
+    request.count = max_rows;
+    return request;
+}
+
+bool has_contacts(const std::vector<Finding>& findings) {
+    return std::any_of(findings.begin(), findings.end(), [](const Finding& finding) { return !finding.contacts.empty(); });
+}
+
+}  // namespace
+
+SceneSource::SceneSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown)
+    : contents_(std::move(contents)), finder_(finder), most_shown_(most_shown) {}
+
+// ---- Frames --------------------------------------------------------------------------------------------------------
+
+void SceneSource::load(const ProgressSink& progress) {
+    const std::lock_guard lock(frames_mutex_);
+    auto first = std::make_shared<Frame>();
+    first->data = finder_.find(0, progress);
+    first->began = first->data.pairs;
+    shown_ = ShownObjects(first->data, contents_.objects, most_shown_);
+    bounds_ = bounds_of(first->data);
+    origin_ = centre_of(bounds_);
+    first_pairs_ = first->data.pair_count;
+    first_facts_ = first->data.facts;
+    has_contacts_ = has_contacts(first->data.findings);
+    if (shown_.size() < contents_.objects) {
+        contents_.notices.push_back(std::to_string(contents_.objects - shown_.size()) + " of " +
+                                    std::to_string(contents_.objects) + " boxes are drawn only where you zoom in.");
+    }
+    if (first->data.more_pairs) {
+        contents_.notices.push_back("Only the first " + std::to_string(first_pairs_) + " pairs are shown; more exist.");
+    }
+    if (!contents_.moving) first->began.clear();
+    kept_.push_back(std::move(first));
+    loading_ = false;
+}
+
+SceneSource::FramePointer SceneSource::find(std::uint64_t number, const FramePointer& before) {
+    auto frame = std::make_shared<Frame>();
+    frame->number = number;
+    frame->data = finder_.find(number, {});
+    if (contents_.moving) {
+        const std::vector<Pair> none;
+        const std::vector<Pair>&now = frame->data.pairs, &then = before != nullptr ? before->data.pairs : none;
+        std::set_difference(now.begin(), now.end(), then.begin(), then.end(), std::back_inserter(frame->began));
+        std::set_difference(then.begin(), then.end(), now.begin(), now.end(), std::back_inserter(frame->ended));
+    }
+    return frame;
+}
+
+/// Returns a frame. Finds it, and the frame before it, if they are not kept. Requires: frames_mutex_ is locked.
+SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
+    const auto kept = [&](std::uint64_t wanted) -> FramePointer {
+        const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& frame) { return frame->number == wanted; });
+        return found == kept_.end() ? nullptr : *found;
+    };
+    if (FramePointer found = kept(number)) return found;
+    FramePointer before;
+    if (contents_.moving && number > 0) {
+        before = kept(number - 1);
+        if (before == nullptr) {
+            before = std::make_shared<Frame>();
+            before->data = finder_.find(number - 1, {});
+        }
+    }
+    FramePointer found = find(number, before);
+    kept_.push_back(found);
+    if (kept_.size() > kept_frames) kept_.pop_front();
+    return found;
+}
+
+void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, const std::stop_token& stop) {
+    using Clock = std::chrono::steady_clock;
+    auto told = Clock::now();
+    FramePointer before;
+    for (std::uint64_t number = 0; number < frames() && !stop.stop_requested(); ++number) {
+        {
+            const std::lock_guard lock(frames_mutex_);
+            FramePointer now = find(number, before);
+            const std::lock_guard counts_lock(counts_mutex_);
+            bounds_ = joined(bounds_, bounds_of(now->data));
+            counts_.pairs.push_back(now->data.pair_count);
+            counts_.began.push_back(now->began.size());
+            counts_.ended.push_back(now->ended.size());
+            before = std::move(now);
+        }
+        const bool last = number + 1 == frames();
+        if (more && (last || Clock::now() - told > std::chrono::milliseconds(200))) {
+            told = Clock::now();
+            more(number + 1);
+        }
+    }
+}
+
+const Octants& SceneSource::octants(Frame& frame) {
+    if (!frame.octants) frame.octants = octants_of(shown_frame(frame));
+    return *frame.octants;
+}
+
+ShownFrame SceneSource::shown_frame(const Frame& frame) const {
+    return {contents_, contents_.objects, shown_, origin_, frame.data, frame.began, frame.ended};
+}
+
+// ---- Addresses -----------------------------------------------------------------------------------------------------
+
+std::optional<Answer> SceneSource::get(const Address& address) {
+    const std::vector<std::string_view> parts = address.parts();
+    if (parts.size() == 1) return get_scene(parts[0], address);
+    if (parts[0] == "shape" && parts.size() == 2) {
+        const auto number = whole_number(parts[1]);
+        return number ? shape_answer(*number) : std::nullopt;
+    }
+    const std::size_t dot = parts[1].rfind('.');
+    const std::string_view digits = parts[1].substr(0, dot);
+    const auto number = whole_number(digits);
+    if (!number || *number >= frames()) return std::nullopt;
+    const std::lock_guard lock(frames_mutex_);
+    const FramePointer found = frame(*number);
+    if (parts.size() == 2 && dot != std::string_view::npos) {
+        return answer_about(*found, std::string(parts[0]) + std::string(parts[1].substr(dot)), address);
+    }
+    if (parts.size() != 3) return std::nullopt;
+    if (parts[0] == "octants") return octant_answer(*found, parts[2]);
+    const auto object = whole_number(parts[2].substr(0, parts[2].rfind('.')));
+    if (parts[0] != "object" || !parts[2].ends_with(".json") || !object || *object >= contents_.objects) return std::nullopt;
+    // An octree of many objects takes a while, and only the code needs it.
+    return object_answer(shown_frame(*found), std::uint32_t(*object), &octants(*found));
+}
+
+std::optional<Answer> SceneSource::get_scene(std::string_view what, const Address& address) {
+    if (what == "view.json") return view_answer();
+    if (what == "shown.u32" && !shown_.in_order()) return binary_answer(shown_.objects());
+    if (what == "groups.u32" && !contents_.groups.empty()) return shown_column(contents_.groups);
+    if (what == "names.json" && !contents_.names.empty()) return name_column();
+    if (what == "geometry.u32" && !contents_.shapes.empty()) return shown_column(contents_.geometry);
+    if (what == "shapes.json" && !contents_.shapes.empty()) return shapes_answer();
+    if (what == "timeline.json" && contents_.moving) return timeline_answer();
+    if (what != "search.json" || export_) return std::nullopt;
+    const std::lock_guard lock(frames_mutex_);
+    return search_answer(shown_frame(*kept_.back()), address.parameter("q"));
+}
+
+std::optional<Answer> SceneSource::answer_about(Frame& frame, std::string_view what, const Address& address) {
+    const ShownFrame shown = shown_frame(frame);
+    if (what == "frame.json") return frame_answer(frame);
+    if (what == "frame.f32") return box_rows(shown);
+    if (what == "poses.f32" && !contents_.shapes.empty()) return pose_rows();
+    if (what == "partners.u32") return partner_counts(shown);
+    if (what == "levels.u8") return level_column(frame);
+    if (what == "pairs.u32") return pair_rows(frame.data.pairs);
+    if (what == "began.u32" && contents_.moving) return pair_rows(frame.began);
+    if (what == "ended.u32" && contents_.moving) return pair_rows(frame.ended);
+    if (what == "octants.json") return octant_summary(octants(frame));
+    if (what == "collisions.json") return collision_rows(shown, export_ ? all_rows() : row_request(address));
+    if (what == "near.bin" && !export_) return near_answer(shown, region_of(address));
+    return std::nullopt;
+}
+
+std::optional<Answer> SceneSource::octant_answer(Frame& frame, std::string_view level) {
+    if (!level.ends_with(".bin")) return std::nullopt;
+    const auto number = whole_number(level.substr(0, level.size() - 4));
+    if (!number || *number > OctalCode::max_level) return std::nullopt;
+    return octant_level(octants(frame), unsigned(*number), origin_);
+}
+
+// ---- Answers about the scene ---------------------------------------------------------------------------------------
+
+Answer SceneSource::view_answer() const {
+    const std::lock_guard lock(counts_mutex_);
+    Json has = {{"names", !contents_.names.empty()},
+                {"groups", !contents_.groups.empty()},
+                {"shapes", !contents_.shapes.empty()},
+                {"contacts", has_contacts_},
+                {"events", contents_.moving},
+                {"search", !export_},
+                {"near", !export_ && shown_.size() < contents_.objects}};
+    Json summary = {{"pairs", first_pairs_}};
+    add_facts(summary, contents_.facts);
+    add_facts(summary, first_facts_);
+    std::vector<std::string> notices = contents_.notices;
+    if (export_) notices.insert(notices.end(), export_->notices.begin(), export_->notices.end());
+    return json_answer({{"version", OCTOPAIR_VERSION},
+                        {"title", contents_.title},
+                        {"kind", "scene"},
+                        {"objects", contents_.objects},
+                        {"shown", shown_.size()},
+                        {"frames", export_ ? export_->frames : frames()},
+                        {"origin", json_of(origin_)},
+                        {"bounds", json_of(bounds_)},
+                        {"up", contents_.up},
+                        {"unit", contents_.unit},
+                        {"margin", contents_.margin},
+                        {"has", std::move(has)},
+                        {"notices", std::move(notices)},
+                        {"summary", std::move(summary)}});
+}
+
+Answer SceneSource::frame_answer(const Frame& frame) const {
+    Json json = {{"frame", frame.number},
+                 {"pairs", frame.data.pair_count},
+                 {"pairs_listed", std::min(frame.data.pairs.size(), max_listed_pairs)},
+                 {"began", frame.began.size()},
+                 {"ended", frame.ended.size()}};
+    add_facts(json, frame.data.facts);
+    return json_answer(json);
+}
+
+Answer SceneSource::timeline_answer() const {
+    const std::lock_guard lock(counts_mutex_);
+    const std::uint64_t all = export_ ? export_->frames : frames();
+    const auto first = [&](const std::vector<std::uint64_t>& counts) {
+        return std::vector<std::uint64_t>(counts.begin(), counts.begin() + std::ptrdiff_t(std::min<std::uint64_t>(all, counts.size())));
+    };
+    return json_answer({{"frames", all},
+                        {"done", std::min<std::uint64_t>(all, counts_.pairs.size())},
+                        {"pairs", first(counts_.pairs)},
+                        {"began", first(counts_.began)},
+                        {"ended", first(counts_.ended)}});
+}
+
+Answer SceneSource::shapes_answer() const {
+    Json list = Json::array();
+    for (const ShownShape& shape : contents_.shapes) {
+        list.push_back({{"kind", shape.kind}, {"vertices", shape.vertices.size()}, {"triangles", shape.triangles.size()}});
+    }
+    return json_answer({{"shapes", std::move(list)}});
+}
+
+std::optional<Answer> SceneSource::shape_answer(std::uint64_t number) const {
+    if (number >= contents_.shapes.size()) return std::nullopt;
+    const ShownShape& shape = contents_.shapes[std::size_t(number)];
+    Answer answer;
+    append_array(answer.body, std::span<const std::array<float, 3>>(shape.vertices));
+    append_array(answer.body, std::span<const std::array<std::uint32_t, 3>>(shape.triangles));
+    return answer;
+}
+
+Answer SceneSource::pose_rows() const {
+    std::vector<float> rows;
+    rows.reserve(12 * shown_.size());
+    for (const std::uint32_t object : shown_.objects()) {
+        const Pose& pose = contents_.poses[object];
+        for (std::size_t column = 0; column < 4; ++column) {
+            for (std::size_t row = 0; row < 3; ++row) {
+                rows.push_back(float(pose.rows[row][column] - (column == 3 ? origin_[row] : 0.0)));
+            }
+        }
+    }
+    return binary_answer(std::span<const float>(rows));
+}
+
+template <typename T>
+Answer SceneSource::shown_column(const std::vector<T>& of_objects) const {
+    std::vector<T> column;
+    column.reserve(shown_.size());
+    for (const std::uint32_t object : shown_.objects()) column.push_back(of_objects[object]);
+    return binary_answer(std::span<const T>(column));
+}
+
+Answer SceneSource::name_column() const {
+    Json names = Json::array();
+    for (const std::uint32_t object : shown_.objects()) names.push_back(contents_.names[object]);
+    return json_answer(names);
+}
+
+Answer SceneSource::level_column(Frame& frame) {
+    const std::vector<std::uint8_t> levels = levels_of(frame.data, octants(frame));
+    return shown_column(levels);
+}
+
+// ---- Messages, and the exported page -------------------------------------------------------------------------------
+
+std::vector<std::string> SceneSource::greeting(const std::string& path) {
+    if (!path.empty()) return {};
+    if (!loading_) return {R"({"event":"ready"})"};
+    return {Json{{"event", "progress"}, {"what", "finding pairs"}, {"done", progress_.load()}}.dump()};
+}
+
+void SceneSource::prepare_export(Export how) { export_ = std::move(how); }
+
+std::vector<std::string> SceneSource::addresses() const {
+    std::vector<std::string> all = {"view.json"};
+    if (!shown_.in_order()) all.push_back("shown.u32");
+    if (!contents_.groups.empty()) all.push_back("groups.u32");
+    if (!contents_.names.empty()) all.push_back("names.json");
+    if (contents_.moving) all.push_back("timeline.json");
+    if (contents_.shapes.empty()) return all;
+    all.insert(all.end(), {"geometry.u32", "shapes.json", "poses/0.f32"});
+    for (std::size_t i = 0; i < contents_.shapes.size(); ++i) all.push_back("shape/" + std::to_string(i));
+    return all;
+}
+
+std::vector<std::string> SceneSource::addresses_of(std::uint64_t number) {
+    const std::string f = std::to_string(number);
+    std::vector<std::string> all;
+    for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "levels/#.u8", "pairs/#.u32", "collisions/#.json",
+                                   "octants/#.json"}) {
+        all.push_back(what);
+    }
+    if (contents_.moving) all.insert(all.end(), {"began/#.u32", "ended/#.u32"});
+    const std::lock_guard lock(frames_mutex_);
+    unsigned deepest = 0;
+    for (const OctantSummary& octant : octants(*frame(number)).all()) deepest = std::max(deepest, octant.code.level());
+    for (unsigned level = 0; level <= deepest; ++level) all.push_back("octants/#/" + std::to_string(level) + ".bin");
+    for (std::string& address : all) address.replace(address.find('#'), 1, f);
+    return all;
+}
+
+}  // namespace octopair::viewer

@@ -1,0 +1,104 @@
+// SceneSource: offers a scene of files, frame by frame (kind "scene" of viewer/protocol.md).
+//
+// - Frames are found when the page requests them. The last few are kept.
+// - The first find() comes from load(). Until it ends, the source is loading.
+// - count_frames() counts the pairs of all frames in order, on a thread of the caller.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+
+#include "viewer/scene/frame_answers.hpp"
+#include "viewer/server/source.hpp"
+
+namespace octopair::viewer {
+
+class SceneSource final : public Source {
+public:
+    static constexpr std::size_t default_most_shown = 200'000;
+
+    /// `finder` is borrowed. `most_shown`: largest number of objects in the overview.
+    SceneSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown = default_most_shown);
+
+    /// Finds the first frame. `progress` may be empty. Throws: what the finder throws.
+    void load(const ProgressSink& progress);
+    /// Finds all frames, and calls `more` with the number of frames that are counted, at most five times a second.
+    /// Throws: what the finder throws.
+    void count_frames(const std::function<void(std::uint64_t done)>& more, const std::stop_token& stop);
+    std::uint64_t frames() const { return finder_.frames(); }
+    /// Returns the number of pairs of the first frame. Requires: load().
+    std::uint64_t first_pairs() const { return first_pairs_; }
+    /// Returns all addresses of one frame, or of the whole scene, for an exported page.
+    std::vector<std::string> addresses() const;
+    std::vector<std::string> addresses_of(std::uint64_t frame);
+
+    std::optional<Answer> get(const Address& address) override;
+    std::vector<std::string> greeting(const std::string& path) override;
+    Message live_frame(const std::string&, std::int64_t) override { return nullptr; }
+    bool loading() const override { return loading_; }
+
+    /// Sets the message of greeting() while the source loads: progress from 0 to 1.
+    void set_progress(double done) { progress_ = done; }
+    /// For an exported page: what the page says about it, and number of frames in it.
+    struct Export {
+        std::uint64_t frames;
+        std::vector<std::string> notices;
+    };
+    void prepare_export(Export how);
+
+private:
+    struct Frame {
+        std::uint64_t number = 0;
+        FrameData data;
+        std::vector<Pair> began, ended;
+        std::optional<Octants> octants;
+    };
+    using FramePointer = std::shared_ptr<Frame>;
+
+    std::optional<Answer> get_scene(std::string_view what, const Address& address);
+    std::optional<Answer> get_of_frame(std::string_view what, std::string_view number, const Address& address);
+    std::optional<Answer> answer_about(Frame& frame, std::string_view what, const Address& address);
+    std::optional<Answer> octant_answer(Frame& frame, std::string_view level);
+    Answer view_answer() const;
+    Answer frame_answer(const Frame& frame) const;
+    Answer timeline_answer() const;
+    Answer shapes_answer() const;
+    std::optional<Answer> shape_answer(std::uint64_t number) const;
+    Answer pose_rows() const;
+    template <typename T>
+    Answer shown_column(const std::vector<T>& of_objects) const;
+    Answer name_column() const;
+    Answer level_column(Frame& frame);
+
+    FramePointer frame(std::uint64_t number);
+    FramePointer find(std::uint64_t number, const FramePointer& before);
+    const Octants& octants(Frame& frame);
+    ShownFrame shown_frame(const Frame& frame) const;
+
+    static constexpr std::size_t kept_frames = 4;
+
+    SceneContents contents_;
+    FrameFinder& finder_;
+    std::size_t most_shown_;
+    ShownObjects shown_;
+    Point3d origin_ = {};
+    Box3d bounds_ = {};
+    std::uint64_t first_pairs_ = 0;
+    std::vector<Fact> first_facts_;
+    bool has_contacts_ = false;  // of the first frame
+    std::optional<Export> export_;
+    std::atomic<bool> loading_ = true;
+    std::atomic<double> progress_ = 0;
+    std::mutex frames_mutex_;         // guards the finder and the kept frames
+    std::deque<FramePointer> kept_;   // the latest last
+    struct Counts {
+        std::vector<std::uint64_t> pairs, began, ended;
+    };
+    mutable std::mutex counts_mutex_;
+    Counts counts_;
+};
+
+}  // namespace octopair::viewer

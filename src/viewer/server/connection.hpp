@@ -1,0 +1,47 @@
+// Connections of a page server: requests by HTTP, and WebSockets.
+//
+// A connection owns itself: it lives while one of its operations is pending. All run on the thread of the host's io_context,
+// except ConnectionHost::compute().
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "viewer/server/access.hpp"
+#include "viewer/server/source.hpp"
+
+namespace octopair::viewer {
+
+/// A page that is connected by WebSocket.
+class WebSocket {
+public:
+    virtual ~WebSocket() = default;
+    /// Path below which the page gets its data: empty, or for example "scene/7".
+    virtual const std::string& path() const = 0;
+    /// Sends a message (JSON). A page that does not read loses messages.
+    virtual void send(std::string message) = 0;
+    /// Sends a live frame if the page waits for one and there is a newer one.
+    virtual void offer_frame() = 0;
+    virtual bool is_sending() const = 0;
+};
+
+/// Services of the server for its connections. Outlives them.
+class ConnectionHost {
+public:
+    virtual ~ConnectionHost() = default;
+    virtual Source& source() = 0;
+    virtual const Access& access() const = 0;
+    /// Runs `work` on the thread that computes answers.
+    virtual void compute(std::function<void()> work) = 0;
+    virtual void opened() = 0;
+    virtual void closed() = 0;
+    virtual void joined(WebSocket& socket) = 0;
+    virtual void left(WebSocket& socket) = 0;
+};
+
+/// Serves a connection until it ends.
+void serve_connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host);
+
+}  // namespace octopair::viewer

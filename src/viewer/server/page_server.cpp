@@ -1,0 +1,174 @@
+#include "viewer/server/page_server.hpp"
+
+#include <sys/resource.h>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+#include <set>
+#include <thread>
+
+#include "viewer/server/connection.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::viewer {
+
+namespace {
+
+namespace asio = boost::asio;
+using tcp = asio::ip::tcp;
+using namespace std::chrono_literals;
+
+/// Lets the threads of other programs, and other threads of this program, run first.
+void lower_priority() { ::setpriority(PRIO_PROCESS, 0, 19); }
+
+tcp::endpoint endpoint_of(const PageServerOptions& options) {
+    boost::system::error_code error;
+    const asio::ip::address address = asio::ip::make_address(options.host, error);
+    if (error) throw Error(ErrorCode::usage, '"' + options.host + "\" is not a numeric address, such as 127.0.0.1");
+    return {address, options.port};
+}
+
+}  // namespace
+
+class PageServer::State final : public ConnectionHost, public std::enable_shared_from_this<State> {
+public:
+    State(Source& source, const PageServerOptions& options)
+        : source_(source), options_(options), acceptor_(io_), access_(options.host, open(options), options.token) {}
+
+    void start() {
+        accept();
+        thread_ = std::thread([this] {
+            if (options_.low_priority) lower_priority();
+            io_.run();
+        });
+        if (options_.low_priority) asio::post(pool_, lower_priority);
+    }
+
+    void stop() {
+        std::promise<void> told;
+        asio::post(io_, [&] {
+            acceptor_.close();
+            for (WebSocket* socket : sockets()) socket->send(R"({"event":"closed"})");
+            told.set_value();
+        });
+        told.get_future().wait();
+        for (int i = 0; i < 20 && busy(); ++i) std::this_thread::sleep_for(10ms);
+        pool_.stop();
+        pool_.join();
+        io_.stop();
+        thread_.join();
+    }
+
+    std::string address() const {
+        const std::string host = options_.host.find(':') == std::string::npos ? options_.host : '[' + options_.host + ']';
+        const std::string query = options_.token.empty() ? "" : "?token=" + options_.token;
+        return "http://" + host + ':' + std::to_string(port_) + '/' + query;
+    }
+
+    void notify() {
+        if (notified_.exchange(true)) return;
+        asio::post(io_, [this] {
+            notified_ = false;
+            for (WebSocket* socket : sockets()) socket->offer_frame();
+        });
+    }
+
+    void broadcast(const std::string& path, std::string message) {
+        asio::post(io_, [this, path, text = std::move(message)] {
+            for (WebSocket* socket : sockets()) {
+                if (socket->path() == path) socket->send(text);
+            }
+        });
+    }
+
+    // ConnectionHost
+    Source& source() override { return source_; }
+    const Access& access() const override { return access_; }
+    void compute(std::function<void()> work) override { asio::post(pool_, std::move(work)); }
+    void opened() override { ++connections_; }
+    void closed() override { --connections_; }
+    void joined(WebSocket& socket) override {
+        sockets_.insert(&socket);
+        source_.connected(socket.path(), true);
+    }
+    void left(WebSocket& socket) override {
+        sockets_.erase(&socket);
+        source_.connected(socket.path(), false);
+    }
+
+private:
+    std::uint16_t open(const PageServerOptions& options) {
+        const tcp::endpoint endpoint = endpoint_of(options);
+        boost::system::error_code error;
+        acceptor_.open(endpoint.protocol(), error);
+        if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+        if (!error) acceptor_.bind(endpoint, error);
+        if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+        if (error) {
+            throw Error(ErrorCode::io_failed, "cannot listen on " + options.host + ':' + std::to_string(options.port) +
+                                                  ": " + error.message());
+        }
+        port_ = acceptor_.local_endpoint().port();
+        return port_;
+    }
+
+    void accept() {
+        acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, tcp::socket socket) {
+            if (error == asio::error::operation_aborted || !self->acceptor_.is_open()) return;
+            if (!error && self->accepts(socket)) serve_connection(std::move(socket), *self);
+            self->accept();
+        });
+    }
+
+    /// Without a token, other users of this machine are refused.
+    bool accepts(const tcp::socket& socket) const {
+        if (connections_ >= max_connections) return false;
+        boost::system::error_code error;
+        const tcp::endpoint peer = socket.remote_endpoint(error);
+        if (error) return false;
+        return !options_.token.empty() || (peer.address().is_loopback() && is_own_user({peer.port(), port_}));
+    }
+
+    /// Returns the pages. The list may change while it is used, because a message may end a connection.
+    std::vector<WebSocket*> sockets() const { return {sockets_.begin(), sockets_.end()}; }
+    bool busy() {
+        std::promise<bool> answer;
+        asio::post(io_, [&] {
+            bool any = false;
+            for (const WebSocket* socket : sockets_) any |= socket->is_sending();
+            answer.set_value(any);
+        });
+        return answer.get_future().get();
+    }
+
+    static constexpr unsigned max_connections = 256;
+
+    Source& source_;
+    PageServerOptions options_;
+    std::set<WebSocket*> sockets_;
+    std::atomic<unsigned> connections_ = 0;
+    // Connections that are still open are destroyed with io_, and use the members above.
+    asio::io_context io_{1};
+    asio::thread_pool pool_{1};
+    tcp::acceptor acceptor_;
+    std::uint16_t port_ = 0;
+    Access access_;
+    std::atomic<bool> notified_ = false;
+    std::thread thread_;
+};
+
+PageServer::PageServer(Source& source, const PageServerOptions& options)
+    : state_(std::make_shared<State>(source, options)) {
+    state_->start();
+}
+
+PageServer::~PageServer() { state_->stop(); }
+
+std::string PageServer::address() const { return state_->address(); }
+void PageServer::notify() { state_->notify(); }
+void PageServer::broadcast(const std::string& path, std::string message) {
+    state_->broadcast(path, std::move(message));
+}
+
+}  // namespace octopair::viewer
