@@ -24,15 +24,15 @@
 namespace [[gnu::visibility("default")]] octopair {
 
 struct ViewOptions {
-    std::string title = "scene";           ///< title of the page
-    std::vector<std::string> names = {};   ///< empty, or names of the objects by index
-    std::string up = "z";                  ///< axis that points up: "y" or "z"
-    std::string unit = {};                 ///< unit of length, for example "m"; empty: none
-    double margin = 0;                     ///< that of the scene, for the octants
-    std::string host = "127.0.0.1";        ///< numeric address to listen on
-    std::uint16_t port = 0;                ///< 0: any free port
-    std::string token = {};                ///< required for a `host` that other machines reach; at least 16 letters and digits
-    double frames_per_second = 30;         ///< most frames that are copied in a second
+    std::string title = "scene";          ///< title of the page
+    std::vector<std::string> names = {};  ///< empty, or names of the objects by index
+    std::string up = "z";                 ///< axis that points up: "y" or "z"
+    std::string unit = {};                ///< unit of length, for example "m"; empty: none
+    double margin = 0;                    ///< that of the scene, for the octants
+    std::string host = "127.0.0.1";       ///< numeric address to listen on
+    std::uint16_t port = 0;               ///< 0: any free port
+    std::string token = {};         ///< required for a `host` that other machines reach; at least 16 letters and digits
+    double frames_per_second = 30;  ///< most frames that are copied in a second
 };
 
 class View {

@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
     add_generate(program, action);
     add_info(program, action);
     add_replay(program, action);
+    add_view(program, action);
 #ifdef OCTOPAIR_WITH_SERVICE
     add_serve(program, action);
     add_submit(program, action);

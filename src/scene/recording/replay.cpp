@@ -98,6 +98,7 @@ void Replay::step(const RecordedResult* then, const std::stop_token& stop) {
         }
     }
     if (options_.on_step) options_.on_step(result);
+    if (options_.on_scene_step) options_.on_scene_step(scene_, result);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ struct ReplayOptions {
     bool check = false;    ///< compare every step's result with the recorded one
     /// Called after each step; may be empty.
     std::function<void(const StepResult&)> on_step = {};
+    /// Called after each step with the scene, which must not be changed; may be empty.
+    std::function<void(Scene&, const StepResult&)> on_scene_step = {};
 };
 
 struct ReplayReport {

@@ -101,7 +101,8 @@ LiveFeed::Difference LiveFeed::update_pairs(LiveState& next) {
     std::vector<Pair> remaining, merged;
     std::set_difference(pairs_.begin(), pairs_.end(), difference.ended.begin(), difference.ended.end(),
                         std::back_inserter(remaining));
-    std::merge(remaining.begin(), remaining.end(), difference.began.begin(), difference.began.end(), std::back_inserter(merged));
+    std::merge(remaining.begin(), remaining.end(), difference.began.begin(), difference.began.end(),
+               std::back_inserter(merged));
     pairs_ = std::move(merged);
     return difference;
 }

@@ -25,16 +25,16 @@ namespace octopair::viewer {
 /// State of a running scene after a step.
 struct LiveState {
     std::variant<std::vector<Box3f>, std::vector<Box3d>> boxes;  ///< by index
-    std::vector<std::uint8_t> exists;                             ///< by index; empty: all exist
+    std::vector<std::uint8_t> exists;                            ///< by index; empty: all exist
     /// All pairs, ascending. If absent, the pairs are those of the last state, changed by the events.
     std::optional<std::vector<Pair>> pairs;
     struct Event {
         Pair pair;
         bool began;
     };
-    std::vector<Event> events;    ///< since the last state, in order of time
+    std::vector<Event> events;     ///< since the last state, in order of time
     std::uint64_t pair_count = 0;  ///< number of all pairs, also of those that are not in `pairs`
-    std::uint64_t step = 0;       ///< number of steps so far
+    std::uint64_t step = 0;        ///< number of steps so far
     double step_seconds = 0;
 };
 

@@ -1,7 +1,7 @@
 #include "viewer/live/live_source.hpp"
 
-#include "viewer/scene/frame_answers.hpp"
 #include "octopair/version.hpp"
+#include "viewer/scene/frame_answers.hpp"
 
 namespace octopair::viewer {
 
@@ -16,8 +16,13 @@ void LiveSource::connected(const std::string&, bool here) {
 
 Answer LiveSource::view_answer(const FrameData& data) const {
     const std::size_t objects = std::visit([](auto span) { return span.size(); }, data.boxes);
-    const Json has = {{"names", !contents_.names.empty()}, {"groups", false}, {"shapes", false}, {"contacts", false},
-                      {"events", true},                    {"search", true},  {"near", false}};
+    const Json has = {{"names", !contents_.names.empty()},
+                      {"groups", false},
+                      {"shapes", false},
+                      {"contacts", false},
+                      {"events", true},
+                      {"search", true},
+                      {"near", false}};
     std::vector<std::string> notices = contents_.notices;
     if (objects > feed_.most_shown()) {
         notices.push_back("Only the first " + std::to_string(feed_.most_shown()) + " of " + std::to_string(objects) +

@@ -4,9 +4,10 @@
 #include <atomic>
 #include <string>
 
-#include "viewer/scene/frame_answers.hpp"
 #include "viewer/live/live_feed.hpp"
+#include "viewer/scene/frame_answers.hpp"
 #include "viewer/scene/scene_contents.hpp"
+#include "viewer/server/messages.hpp"
 #include "viewer/server/source.hpp"
 
 namespace octopair::viewer {
@@ -23,7 +24,7 @@ public:
     std::uint64_t connections() const { return connections_; }
 
     std::optional<Answer> get(const Address& address) override;
-    std::vector<std::string> greeting(const std::string&) override { return {R"({"event":"ready"})"}; }
+    std::vector<std::string> greeting(const std::string&) override { return {ready_message()}; }
     Message live_frame(const std::string&, std::int64_t last) override { return feed_.frame_after(last); }
     void connected(const std::string& path, bool here) override;
 
@@ -34,7 +35,7 @@ private:
 
     SceneContents contents_;
     LiveFeed feed_;
-    Octants octants_;                      // of the frame that has `octants_of_`
+    Octants octants_;  // of the frame that has `octants_of_`
     std::shared_ptr<const void> octants_of_;
     std::atomic<unsigned> pages_ = 0;
     std::atomic<std::uint64_t> connections_ = 0;

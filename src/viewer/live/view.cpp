@@ -6,8 +6,8 @@
 #include <condition_variable>
 #include <thread>
 
-#include "viewer/live/live_source.hpp"
 #include "octopair/error.hpp"
+#include "viewer/live/live_source.hpp"
 #include "viewer/server/page_server.hpp"
 
 namespace octopair {
@@ -21,7 +21,8 @@ using viewer::LiveState;
 void check(const ViewOptions& options) {
     const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, "ViewOptions: " + what); };
     if (options.up != "y" && options.up != "z") refuse("up is neither \"y\" nor \"z\"");
-    if (!(options.frames_per_second > 0 && options.frames_per_second <= 1000)) refuse("frames_per_second is not in (0, 1000]");
+    if (!(options.frames_per_second > 0 && options.frames_per_second <= 1000))
+        refuse("frames_per_second is not in (0, 1000]");
     if (!(options.margin >= 0)) refuse("margin is not a number >= 0");
     const bool loopback = options.host == "127.0.0.1" || options.host == "::1";
     if (options.token.empty() ? !loopback : options.token.size() < 16) {
@@ -48,7 +49,8 @@ class View::State {
 public:
     State(Scene& scene, const ViewOptions& options)
         : scene_(scene),
-          least_pause_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.frames_per_second))),
+          least_pause_(std::chrono::duration_cast<Clock::duration>(
+              std::chrono::duration<double>(1 / options.frames_per_second))),
           source_(contents_of(options)),
           server_(source_, {.host = options.host, .port = options.port, .token = options.token, .low_priority = true}),
           worker_([this](const std::stop_token& stop) { pass_states_on(stop); }) {}

@@ -109,7 +109,9 @@ Answer octant_level(const Octants& octants, unsigned level, const Point3d& origi
         std::uint32_t entries, homes, flags, key_high, key_low;
     };
     static_assert(sizeof(Row) == 44);
-    const auto at_most_32_bits = [](std::uint64_t count) { return std::uint32_t(std::min<std::uint64_t>(count, 0xFFFFFFFF)); };
+    const auto at_most_32_bits = [](std::uint64_t count) {
+        return std::uint32_t(std::min<std::uint64_t>(count, 0xFFFFFFFF));
+    };
     std::vector<Row> rows;
     for (const OctantSummary& octant : octants.all()) {
         if (octant.code.level() != level || rows.size() == max_listed_octants) continue;
@@ -340,9 +342,9 @@ Answer near_answer(const ShownFrame& frame, const Box3d& region) {
     }
     const std::uint32_t total = std::uint32_t(found.size());
     const std::size_t count = std::min(found.size(), max_near);
-    std::partial_sort(found.begin(), found.begin() + std::ptrdiff_t(count), found.end(), [](const Found& a, const Found& b) {
-        return a.size != b.size ? a.size > b.size : a.object < b.object;
-    });
+    std::partial_sort(
+        found.begin(), found.begin() + std::ptrdiff_t(count), found.end(),
+        [](const Found& a, const Found& b) { return a.size != b.size ? a.size > b.size : a.object < b.object; });
     const std::vector<std::uint32_t> counts = pair_counts(frame.data, frame.objects);
     std::vector<std::uint32_t> objects, partners;
     std::vector<RelativeBox> boxes;

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "viewer/server/answer.hpp"
 #include "octopair/octants.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/scene/shown_objects.hpp"
+#include "viewer/server/answer.hpp"
 
 namespace octopair::viewer {
 

@@ -30,8 +30,8 @@ std::string element(SceneSource& source, const std::string& address) {
     const auto parsed = Address::parse('/' + address);
     const auto answer = parsed ? source.get(*parsed) : std::nullopt;
     if (!answer) return {};
-    return "<script type=\"application/octet-stream\" data-address=\"" + address + "\">" + base64(gzip(answer->body, 9)) +
-           "</script>\n";
+    return "<script type=\"application/octet-stream\" data-address=\"" + address + "\">" +
+           base64(gzip(answer->body, 9)) + "</script>\n";
 }
 
 std::string elements(SceneSource& source, const std::vector<std::string>& addresses) {

@@ -16,9 +16,10 @@
 
 namespace octopair::viewer {
 
-/// A shape as triangles, in its own coordinates.
+/// A shape as triangles, in its own coordinates, relative to `centre`.
 struct ShownShape {
-    std::string kind;  ///< for example "mesh"
+    std::string kind;     ///< for example "mesh"
+    Point3d centre = {};  ///< so that float32 suffices for a shape far from its origin
     std::vector<std::array<float, 3>> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
@@ -34,8 +35,8 @@ struct Fact {
 struct SceneContents {
     std::string title;
     std::uint64_t objects = 0;
-    bool moving = false;                                                             ///< true if pairs begin and end
-    std::string up, unit;                                                            ///< "y", "z" or empty; for example "m"
+    bool moving = false;   ///< true if pairs begin and end
+    std::string up, unit;  ///< "y", "z" or empty; for example "m"
     double margin = 0;
     std::vector<std::string> names;
     std::vector<std::uint32_t> groups;
@@ -52,15 +53,15 @@ struct SceneContents {
 
 /// A frame and its result.
 struct FrameData {
-    Boxes boxes;                         ///< one per object
-    std::vector<std::uint8_t> exists;    ///< 0 for objects that do not exist in this frame; empty: all exist
+    Boxes boxes;                       ///< one per object
+    std::vector<std::uint8_t> exists;  ///< 0 for objects that do not exist in this frame; empty: all exist
     std::span<const double> padding = {};
-    std::shared_ptr<const void> keep;    ///< owner of the memory of `boxes`, or null
-    std::vector<Pair> pairs;             ///< ascending; the first ones, if `pair_count` is larger
-    std::vector<Finding> findings;       ///< one per pair, or empty
+    std::shared_ptr<const void> keep;  ///< owner of the memory of `boxes`, or null
+    std::vector<Pair> pairs;           ///< ascending; the first ones, if `pair_count` is larger
+    std::vector<Finding> findings;     ///< one per pair, or empty
     std::uint64_t pair_count = 0;
-    bool more_pairs = false;             ///< true if there are more than `pair_count`
-    std::vector<Fact> facts;             ///< for example seconds by step
+    bool more_pairs = false;  ///< true if there are more than `pair_count`
+    std::vector<Fact> facts;  ///< for example seconds by step
 
     bool has(std::size_t object) const { return exists.empty() || exists[object] != 0; }
 };

@@ -1,5 +1,7 @@
 #include "viewer/scene/scene_source.hpp"
 
+#include "viewer/server/messages.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -33,7 +35,8 @@ RowRequest all_rows() {
 }
 
 bool has_contacts(const std::vector<Finding>& findings) {
-    return std::any_of(findings.begin(), findings.end(), [](const Finding& finding) { return !finding.contacts.empty(); });
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Finding& finding) { return !finding.contacts.empty(); });
 }
 
 }  // namespace
@@ -82,7 +85,8 @@ SceneSource::FramePointer SceneSource::find(std::uint64_t number, const FramePoi
 /// Returns a frame. Finds it, and the frame before it, if they are not kept. Requires: frames_mutex_ is locked.
 SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
     const auto kept = [&](std::uint64_t wanted) -> FramePointer {
-        const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& frame) { return frame->number == wanted; });
+        const auto found =
+            std::find_if(kept_.begin(), kept_.end(), [&](const auto& frame) { return frame->number == wanted; });
         return found == kept_.end() ? nullptr : *found;
     };
     if (FramePointer found = kept(number)) return found;
@@ -153,7 +157,8 @@ std::optional<Answer> SceneSource::get(const Address& address) {
     if (parts.size() != 3) return std::nullopt;
     if (parts[0] == "octants") return octant_answer(*found, parts[2]);
     const auto object = whole_number(parts[2].substr(0, parts[2].rfind('.')));
-    if (parts[0] != "object" || !parts[2].ends_with(".json") || !object || *object >= contents_.objects) return std::nullopt;
+    if (parts[0] != "object" || !parts[2].ends_with(".json") || !object || *object >= contents_.objects)
+        return std::nullopt;
     // An octree of many objects takes a while, and only the code needs it.
     return object_answer(shown_frame(*found), std::uint32_t(*object), &octants(*found));
 }
@@ -240,7 +245,8 @@ Answer SceneSource::timeline_answer() const {
     const std::lock_guard lock(counts_mutex_);
     const std::uint64_t all = export_ ? export_->frames : frames();
     const auto first = [&](const std::vector<std::uint64_t>& counts) {
-        return std::vector<std::uint64_t>(counts.begin(), counts.begin() + std::ptrdiff_t(std::min<std::uint64_t>(all, counts.size())));
+        return std::vector<std::uint64_t>(counts.begin(),
+                                          counts.begin() + std::ptrdiff_t(std::min<std::uint64_t>(all, counts.size())));
     };
     return json_answer({{"frames", all},
                         {"done", std::min<std::uint64_t>(all, counts_.pairs.size())},
@@ -252,7 +258,8 @@ Answer SceneSource::timeline_answer() const {
 Answer SceneSource::shapes_answer() const {
     Json list = Json::array();
     for (const ShownShape& shape : contents_.shapes) {
-        list.push_back({{"kind", shape.kind}, {"vertices", shape.vertices.size()}, {"triangles", shape.triangles.size()}});
+        list.push_back(
+            {{"kind", shape.kind}, {"vertices", shape.vertices.size()}, {"triangles", shape.triangles.size()}});
     }
     return json_answer({{"shapes", std::move(list)}});
 }
@@ -271,10 +278,15 @@ Answer SceneSource::pose_rows() const {
     rows.reserve(12 * shown_.size());
     for (const std::uint32_t object : shown_.objects()) {
         const Pose& pose = contents_.poses[object];
-        for (std::size_t column = 0; column < 4; ++column) {
-            for (std::size_t row = 0; row < 3; ++row) {
-                rows.push_back(float(pose.rows[row][column] - (column == 3 ? origin_[row] : 0.0)));
-            }
+        const std::uint32_t shape = contents_.geometry[object];
+        const Point3d centre = shape < contents_.shapes.size() ? contents_.shapes[shape].centre : Point3d{};
+        for (std::size_t column = 0; column < 3; ++column) {
+            for (std::size_t row = 0; row < 3; ++row) rows.push_back(float(pose.rows[row][column]));
+        }
+        for (std::size_t row = 0; row < 3; ++row) {
+            const auto& numbers = pose.rows[row];
+            const double moved = numbers[0] * centre[0] + numbers[1] * centre[1] + numbers[2] * centre[2];
+            rows.push_back(float(moved + numbers[3] - origin_[row]));
         }
     }
     return binary_answer(std::span<const float>(rows));
@@ -303,8 +315,7 @@ Answer SceneSource::level_column(Frame& frame) {
 
 std::vector<std::string> SceneSource::greeting(const std::string& path) {
     if (!path.empty()) return {};
-    if (!loading_) return {R"({"event":"ready"})"};
-    return {Json{{"event", "progress"}, {"what", "finding pairs"}, {"done", progress_.load()}}.dump()};
+    return {loading_ ? progress_message("finding pairs", progress_) : ready_message()};
 }
 
 void SceneSource::prepare_export(Export how) { export_ = std::move(how); }
@@ -324,8 +335,8 @@ std::vector<std::string> SceneSource::addresses() const {
 std::vector<std::string> SceneSource::addresses_of(std::uint64_t number) {
     const std::string f = std::to_string(number);
     std::vector<std::string> all;
-    for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "levels/#.u8", "pairs/#.u32", "collisions/#.json",
-                                   "octants/#.json"}) {
+    for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "levels/#.u8", "pairs/#.u32",
+                                   "collisions/#.json", "octants/#.json"}) {
         all.push_back(what);
     }
     if (contents_.moving) all.insert(all.end(), {"began/#.u32", "ended/#.u32"});

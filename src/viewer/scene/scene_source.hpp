@@ -29,6 +29,7 @@ public:
     /// Throws: what the finder throws.
     void count_frames(const std::function<void(std::uint64_t done)>& more, const std::stop_token& stop);
     std::uint64_t frames() const { return finder_.frames(); }
+    bool moving() const { return contents_.moving; }
     /// Returns the number of pairs of the first frame. Requires: load().
     std::uint64_t first_pairs() const { return first_pairs_; }
     /// Returns all addresses of one frame, or of the whole scene, for an exported page.
@@ -92,8 +93,8 @@ private:
     std::optional<Export> export_;
     std::atomic<bool> loading_ = true;
     std::atomic<double> progress_ = 0;
-    std::mutex frames_mutex_;         // guards the finder and the kept frames
-    std::deque<FramePointer> kept_;   // the latest last
+    std::mutex frames_mutex_;        // guards the finder and the kept frames
+    std::deque<FramePointer> kept_;  // the latest last
     struct Counts {
         std::vector<std::uint64_t> pairs, began, ended;
     };

@@ -100,7 +100,8 @@ ShownObjects::ShownObjects(const FrameData& frame, std::uint64_t objects, std::s
         const std::size_t large = most / 4;
         std::vector<std::uint32_t> by_size = order;
         const auto is_larger = [&](std::uint32_t a, std::uint32_t b) {
-            const double x = frame.has(a) ? size_of(box_of(frame, a)) : -1, y = frame.has(b) ? size_of(box_of(frame, b)) : -1;
+            const double x = frame.has(a) ? size_of(box_of(frame, a)) : -1,
+                         y = frame.has(b) ? size_of(box_of(frame, b)) : -1;
             return x != y ? x > y : a < b;
         };
         std::nth_element(by_size.begin(), by_size.begin() + std::ptrdiff_t(large), by_size.end(), is_larger);

@@ -21,7 +21,8 @@ bool equal_secrets(std::string_view a, std::string_view b) {
 
 std::string lower(std::string_view text) {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c | 0x20) : c; });
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c | 0x20) : c; });
     return out;
 }
 
@@ -93,8 +94,8 @@ bool Access::has_token(const AccessRequest& request) const {
 bool Access::allows(const AccessRequest& request) const {
     if (!is_own(request.host)) return false;
     constexpr std::string_view scheme = "http://";
-    if (request.has_origin && !(request.origin.starts_with(scheme) &&
-                                lower(request.origin.substr(scheme.size())) == lower(request.host))) {
+    if (request.has_origin &&
+        !(request.origin.starts_with(scheme) && lower(request.origin.substr(scheme.size())) == lower(request.host))) {
         return false;
     }
     return has_token(request);

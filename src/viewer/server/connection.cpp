@@ -215,9 +215,9 @@ private:
     std::string path_;
     websocket::stream<beast::tcp_stream> socket_;
     beast::flat_buffer received_;
-    std::deque<std::string> waiting_;  // messages that are not yet sent
-    Message frame_;                    // live frame that is not yet sent
-    Message outgoing_;                 // being sent
+    std::deque<std::string> waiting_;   // messages that are not yet sent
+    Message frame_;                     // live frame that is not yet sent
+    Message outgoing_;                  // being sent
     std::optional<std::int64_t> last_;  // set while the page waits for a frame: the last frame that it has
     bool sending_ = false, joined_ = false;
 };
@@ -254,8 +254,9 @@ private:
         const std::optional<Address> address = Address::parse(view_of(request_.target()));
         const AccessRequest access = access_request(request_, address);
         if (!host_.access().allows(access)) {
-            return write(respond_text(request_, http::status::forbidden,
-                                      "Only pages of this viewer, with its token, get an answer. Use the address that octopair printed."));
+            return write(respond_text(
+                request_, http::status::forbidden,
+                "Only pages of this viewer, with its token, get an answer. Use the address that octopair printed."));
         }
         if (!address) return write(respond_text(request_, http::status::bad_request, "invalid address"));
         if (websocket::is_upgrade(request_)) return upgrade(*address);
@@ -273,8 +274,9 @@ private:
     void redirect(const Address& address) {
         Response response = respond(request_, http::status::see_other);
         response.set(http::field::set_cookie, host_.access().cookie());
-        const bool plain = address.path().find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./") ==
-                           std::string::npos;
+        const bool plain =
+            address.path().find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./") ==
+            std::string::npos;
         response.set(http::field::location, plain && !address.path().starts_with('/') ? '/' + address.path() : "/");
         write(std::move(response));
     }

@@ -8,8 +8,9 @@
 #include <set>
 #include <thread>
 
-#include "viewer/server/connection.hpp"
 #include "octopair/error.hpp"
+#include "viewer/server/connection.hpp"
+#include "viewer/server/messages.hpp"
 
 namespace octopair::viewer {
 
@@ -49,7 +50,7 @@ public:
         std::promise<void> told;
         asio::post(io_, [&] {
             acceptor_.close();
-            for (WebSocket* socket : sockets()) socket->send(R"({"event":"closed"})");
+            for (WebSocket* socket : sockets()) socket->send(closed_message());
             told.set_value();
         });
         told.get_future().wait();
@@ -61,7 +62,8 @@ public:
     }
 
     std::string address() const {
-        const std::string host = options_.host.find(':') == std::string::npos ? options_.host : '[' + options_.host + ']';
+        const std::string host =
+            options_.host.find(':') == std::string::npos ? options_.host : '[' + options_.host + ']';
         const std::string query = options_.token.empty() ? "" : "?token=" + options_.token;
         return "http://" + host + ':' + std::to_string(port_) + '/' + query;
     }

@@ -1,0 +1,329 @@
+#include "cli/view/result_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "base/memory.hpp"
+#include "base/stop.hpp"
+#include "io/boxes/npy_header.hpp"
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+#include "io/formats.hpp"
+#include "io/json/json_fields.hpp"
+#include "io/results/collision_row.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr std::uint64_t max_result_frames = 1'000'000;
+
+std::string read_text(const io::InputFile& file, std::uint64_t most, const std::stop_token& stop) {
+    std::string text(std::size_t(std::min(most, file.size())), '\0');
+    file.read(0, std::as_writable_bytes(std::span(text)), stop);
+    return text;
+}
+
+io::NpyHeader header_of(const io::InputFile& file) {
+    const std::string head = read_text(file, io::npy_header_max_bytes, {});
+    return io::parse_npy_header(std::as_bytes(std::span(head)), file.size(), file.path());
+}
+
+bool holds_pairs(const io::NpyHeader& header) {
+    return (header.type == io::NpyType::uint32 || header.type == io::NpyType::uint64) && header.shape.size() == 2 &&
+           header.shape[1] == 2;
+}
+
+/// Splits a line of CSV into fields. Quotes are removed.
+std::vector<std::string> csv_fields(std::string_view line) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+            fields.back() += line[++i];
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (c == ',' && !quoted) {
+            fields.emplace_back();
+        } else {
+            fields.back() += c;
+        }
+    }
+    return fields;
+}
+
+bool is_result_header(std::string_view line) {
+    const std::vector<std::string> fields = csv_fields(line);
+    const auto has = [&](std::string_view name) {
+        return std::find(fields.begin(), fields.end(), name) != fields.end();
+    };
+    return has("a") && has("b");
+}
+
+CollisionClass class_of(std::string_view word) {
+    for (std::size_t i = 0; i < collision_classes; ++i) {
+        if (io::word_of(CollisionClass(i)) == word) return CollisionClass(i);
+    }
+    return CollisionClass::unknown;
+}
+
+/// Collects rows, and sorts them into frames.
+class ResultBuilder {
+public:
+    explicit ResultBuilder(std::string file) : file_(std::move(file)) {}
+
+    struct Row {
+        std::uint64_t frame = 0;
+        Pair pair = {};
+        Finding finding = {};
+        std::string event = {};  ///< "begin", "end" or empty
+    };
+
+    void add(Row row, const std::string& place) {
+        if (row.pair.a == row.pair.b) io::refuse(place, "a and b are the same object");
+        if (row.pair.a > row.pair.b) std::swap(row.pair.a, row.pair.b);
+        if (row.frame >= max_result_frames)
+            io::refuse(place, fmt::format("frame {}: at most {} frames", row.frame, max_result_frames));
+        result_.objects = std::max<std::uint64_t>(result_.objects, std::uint64_t(row.pair.b) + 1);
+        classes_known_ |= row.finding.collision_class != CollisionClass::unknown;
+        rows_.push_back(std::move(row));
+    }
+    void name(std::uint32_t object, std::string name) { result_.names.emplace(object, std::move(name)); }
+    void set_moving() { result_.moving = true; }
+
+    ResultFile finish() {
+        std::stable_sort(rows_.begin(), rows_.end(), [](const Row& x, const Row& y) {
+            return x.frame != y.frame ? x.frame < y.frame : x.pair < y.pair;
+        });
+        const std::uint64_t frames = rows_.empty() ? 1 : rows_.back().frame + 1;
+        result_.frames.resize(std::size_t(frames));
+        const bool events = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return !row.event.empty(); });
+        events ? add_up_events() : move_rows();
+        return std::move(result_);
+    }
+
+private:
+    void move_rows() {
+        for (Row& row : rows_) {
+            ResultFrame& frame = result_.frames[std::size_t(row.frame)];
+            if (!frame.pairs.empty() && frame.pairs.back() == row.pair) continue;
+            frame.pairs.push_back(row.pair);
+            if (classes_known_) frame.findings.push_back(std::move(row.finding));
+        }
+    }
+
+    /// Rows with events say what began and ended: the pairs of a frame are those of the frame before, with these changes.
+    void add_up_events() {
+        std::vector<Pair> pairs;
+        std::size_t next = 0;
+        for (std::uint64_t number = 0; number < result_.frames.size(); ++number) {
+            std::vector<Pair> began, ended, remaining, merged;
+            for (; next < rows_.size() && rows_[next].frame == number; ++next) {
+                (rows_[next].event == "begin" ? began : ended).push_back(rows_[next].pair);
+            }
+            std::set_difference(pairs.begin(), pairs.end(), ended.begin(), ended.end(), std::back_inserter(remaining));
+            std::set_union(remaining.begin(), remaining.end(), began.begin(), began.end(), std::back_inserter(merged));
+            pairs = merged;
+            result_.frames[std::size_t(number)].pairs = std::move(merged);
+        }
+    }
+
+    std::string file_;
+    std::vector<Row> rows_;
+    ResultFile result_;
+    bool classes_known_ = false;
+};
+
+template <typename Index>
+void add_npy_rows(const io::InputFile& file, const io::NpyHeader& header, ResultBuilder& builder,
+                  const std::stop_token& stop) {
+    Buffer<Index> numbers{std::size_t(header.shape[0] * 2)};
+    file.read(header.data_offset, std::as_writable_bytes(numbers.span()), stop);
+    for (std::size_t i = 0; i < numbers.size(); i += 2) {
+        const std::string place = fmt::format("{}: row {}", file.path(), i / 2);
+        if (std::max<std::uint64_t>(numbers[i], numbers[i + 1]) > 0xFFFFFFFE)
+            io::refuse(place, "the index is too large");
+        builder.add({.pair = {std::uint32_t(numbers[i]), std::uint32_t(numbers[i + 1])}}, place);
+    }
+}
+
+/// Calls use(line, place) for each line that is not blank.
+template <typename Use>
+void for_each_line(std::string_view text, const std::string& file, const std::stop_token& stop, const Use& use) {
+    for (std::uint64_t number = 1; !text.empty(); ++number) {
+        throw_if_stopped(stop);
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        if (line.find_first_not_of(" \t") != std::string_view::npos)
+            use(line, fmt::format("{}: line {}", file, number));
+    }
+}
+
+Contact contact_of(const nlohmann::json& value, const std::string& place) {
+    const io::JsonFields fields(value, place);
+    Contact contact;
+    contact.point = fields.point("point");
+    if (fields.find("normal") != nullptr) contact.normal = fields.point("normal");
+    if (fields.find("depth") != nullptr) contact.depth = fields.number("depth");
+    return contact;
+}
+
+Finding finding_of(const io::JsonFields& row) {
+    Finding finding;
+    if (row.find("class") != nullptr) finding.collision_class = class_of(row.text("class"));
+    if (row.find("depth") != nullptr) finding.depth = row.number("depth");
+    if (row.find("distance") != nullptr) finding.distance = row.number("distance");
+    if (const auto* const contacts = row.find("contacts")) {
+        for (const auto& contact : io::json_array(*contacts, row.place_of("contacts"))) {
+            finding.contacts.push_back(contact_of(contact, row.place_of("contacts")));
+        }
+    }
+    if (const auto* const nearest = row.find("nearest")) {
+        const auto& points = io::json_array(*nearest, row.place_of("nearest"));
+        if (points.size() == 2) {
+            for (std::size_t i = 0; i < 2; ++i) finding.nearest[i] = io::json_point(points[i], row.place_of("nearest"));
+        }
+    }
+    return finding;
+}
+
+void add_json_rows(std::string_view text, const std::string& file, ResultBuilder& builder,
+                   const std::stop_token& stop) {
+    for_each_line(text, file, stop, [&](std::string_view line, const std::string& place) {
+        const nlohmann::json value = io::parse_json(line, place, stop);
+        const io::JsonFields fields(value, place);
+        if (fields.find("change") != nullptr && fields.text("change") == "gone") return;
+        ResultBuilder::Row row;
+        row.pair = {fields.whole_number("a"), fields.whole_number("b")};
+        if (fields.find("frame") != nullptr) {
+            row.frame = fields.whole_number("frame");
+            builder.set_moving();
+        }
+        if (fields.find("event") != nullptr) row.event = fields.text("event");
+        row.finding = finding_of(fields);
+        for (const auto& [side, object] : {std::pair("a", row.pair.a), std::pair("b", row.pair.b)}) {
+            const std::string key = std::string(side) + "_name";
+            if (fields.find(key) != nullptr) builder.name(object, fields.text(key));
+        }
+        builder.add(std::move(row), place);
+    });
+}
+
+/// A line of a .csv file, whose header names the fields.
+class CsvRow {
+public:
+    CsvRow(const std::vector<std::string>& header, std::string_view line, std::string place)
+        : header_(header), fields_(csv_fields(line)), place_(std::move(place)) {
+        if (fields_.size() != header.size()) {
+            io::refuse(place_, fmt::format("{} fields; the header has {}", fields_.size(), header.size()));
+        }
+    }
+
+    std::string_view text(std::string_view name) const {
+        const auto at = std::find(header_.begin(), header_.end(), name);
+        return at == header_.end() ? std::string_view() : std::string_view(fields_[std::size_t(at - header_.begin())]);
+    }
+    std::uint32_t index(std::string_view name) const {
+        const std::string_view field = text(name);
+        std::uint32_t value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (error != std::errc() || end != field.data() + field.size()) {
+            io::refuse(place_, fmt::format("{}: '{}' is not a whole number", name, io::shown_text(field)));
+        }
+        return value;
+    }
+    double number(std::string_view name) const {
+        const std::string_view field = text(name);
+        double value = 0;
+        std::from_chars(field.data(), field.data() + field.size(), value);
+        return value;
+    }
+
+private:
+    const std::vector<std::string>& header_;
+    std::vector<std::string> fields_;
+    std::string place_;
+};
+
+/// Returns the points of the field `points`: "x y z;x y z".
+std::vector<Contact> contacts_of(std::string_view text) {
+    std::vector<Contact> contacts;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(';'), text.size());
+        std::string_view numbers = text.substr(0, end);
+        Contact contact;
+        for (double& value : contact.point) {
+            numbers.remove_prefix(std::min(numbers.find_first_not_of(' '), numbers.size()));
+            const auto [rest, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), value);
+            if (error != std::errc()) return contacts;
+            numbers.remove_prefix(std::size_t(rest - numbers.data()));
+        }
+        contacts.push_back(contact);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return contacts;
+}
+
+void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder& builder, const std::stop_token& stop) {
+    std::vector<std::string> header;
+    for_each_line(text, file, stop, [&](std::string_view line, const std::string& place) {
+        if (header.empty()) {
+            header = csv_fields(line);
+            return;
+        }
+        const CsvRow fields(header, line, place);
+        if (fields.text("change") == "gone") return;
+        ResultBuilder::Row row;
+        row.pair = {fields.index("a"), fields.index("b")};
+        if (std::find(header.begin(), header.end(), "frame") != header.end()) {
+            row.frame = fields.index("frame");
+            builder.set_moving();
+        }
+        row.event = fields.text("event");
+        row.finding.collision_class = class_of(fields.text("class"));
+        row.finding.depth = fields.number("depth");
+        row.finding.distance = fields.number("distance");
+        row.finding.contacts = contacts_of(fields.text("points"));
+        if (!fields.text("a_name").empty()) builder.name(row.pair.a, std::string(fields.text("a_name")));
+        if (!fields.text("b_name").empty()) builder.name(row.pair.b, std::string(fields.text("b_name")));
+        builder.add(std::move(row), place);
+    });
+}
+
+}  // namespace
+
+bool is_result(const std::string& path) {
+    const std::string ending = io::ending_of(path);
+    if (ending == ".jsonl") return true;
+    if (ending == ".csv") {
+        const std::string head = read_text(io::InputFile(path), 4096, {});
+        return is_result_header(std::string_view(head).substr(0, head.find_first_of("\r\n")));
+    }
+    if (ending != ".npy") return false;
+    return holds_pairs(header_of(io::InputFile(path)));
+}
+
+ResultFile read_result(const std::string& path, const std::stop_token& stop) {
+    const io::InputFile file(path);
+    ResultBuilder builder(path);
+    const std::string ending = io::ending_of(path);
+    if (ending == ".npy") {
+        const io::NpyHeader header = header_of(file);
+        if (!holds_pairs(header)) io::refuse(path, "not an array of pairs");
+        header.type == io::NpyType::uint32 ? add_npy_rows<std::uint32_t>(file, header, builder, stop)
+                                           : add_npy_rows<std::uint64_t>(file, header, builder, stop);
+        return builder.finish();
+    }
+    const std::string text = read_text(file, file.size(), stop);
+    ending == ".jsonl" ? add_json_rows(text, path, builder, stop) : add_csv_rows(text, path, builder, stop);
+    return builder.finish();
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,87 @@
+// A result without its scene: the objects are drawn where their contacts are, because their boxes are not known.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cli/view/loaded_view.hpp"
+#include "cli/view/result_file.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+void widen(Box3d& box, const Point3d& point) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        box.min[i] = std::min(box.min[i], point[i]);
+        box.max[i] = std::max(box.max[i], point[i]);
+    }
+}
+
+Box3d empty_box() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+}
+bool is_empty(const Box3d& box) { return !(box.min[0] <= box.max[0]); }
+
+class PlacesFinder final : public viewer::FrameFinder {
+public:
+    explicit PlacesFinder(ResultFile result) : result_(std::move(result)) {}
+
+    std::uint64_t frames() const override { return result_.frames.size(); }
+
+    viewer::FrameData find(std::uint64_t number, const ProgressSink&) override {
+        const ResultFrame& frame = result_.frames[std::size_t(number)];
+        auto boxes = std::make_shared<std::vector<Box3d>>(std::size_t(result_.objects), empty_box());
+        Box3d all = empty_box();
+        for (std::size_t i = 0; i < frame.findings.size(); ++i) {
+            const auto [a, b] = frame.pairs[i];
+            for (const Contact& contact : frame.findings[i].contacts) {
+                for (Box3d* box : {&(*boxes)[a], &(*boxes)[b], &all}) widen(*box, contact.point);
+            }
+        }
+        viewer::FrameData data;
+        data.exists.resize(boxes->size());
+        const double size =
+            is_empty(all)
+                ? 0
+                : 0.002 * std::max({all.max[0] - all.min[0], all.max[1] - all.min[1], all.max[2] - all.min[2]});
+        for (std::size_t i = 0; i < boxes->size(); ++i) {
+            Box3d& box = (*boxes)[i];
+            data.exists[i] = is_empty(box) ? 0 : 1;
+            if (is_empty(box)) box = {{0, 0, 0}, {0, 0, 0}};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                box.min[axis] -= size;
+                box.max[axis] += size;
+            }
+        }
+        data.boxes = std::span<const Box3d>(*boxes);
+        data.keep = boxes;
+        data.pairs = frame.pairs;
+        data.findings = frame.findings;
+        data.pair_count = frame.pairs.size();
+        return data;
+    }
+
+private:
+    ResultFile result_;
+};
+
+}  // namespace
+
+LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) {
+    ResultFile result = read_result(request.result, stop);
+    LoadedView view;
+    view.contents.title = request.result.substr(request.result.rfind('/') + 1);
+    view.contents.objects = result.objects;
+    view.contents.moving = result.moving;
+    if (!result.names.empty()) {
+        view.contents.names.resize(std::size_t(result.objects));
+        for (const auto& [object, name] : result.names) view.contents.names[object] = name;
+    }
+    view.contents.notices.push_back(
+        "A result has no boxes: objects are drawn around their contacts. Name the scene, too, to see its objects.");
+    view.finder = std::make_unique<PlacesFinder>(std::move(result));
+    return view;
+}
+
+}  // namespace octopair::cli

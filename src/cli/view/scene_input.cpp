@@ -1,0 +1,248 @@
+// Scenes of files: boxes and meshes, and the pairs that a search finds or a result has.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/timed.hpp"
+#include "cli/detect/pipeline_options.hpp"
+#include "cli/detect/precision.hpp"
+#include "cli/view/loaded_view.hpp"
+#include "cli/view/result_file.hpp"
+#include "io/files/failure.hpp"
+#include "octopair/engine.hpp"
+#include "octopair/pair_list.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/detect/filter_chain.hpp"
+#include "cli/input/shaped_set.hpp"
+#include "cli/view/shown_shape.hpp"
+#endif
+
+namespace octopair::cli {
+
+namespace {
+
+constexpr std::uint64_t max_pairs = 20'000'000;  ///< 160 MB; a notice tells of more
+
+/// Inputs of a scene. Shared by its contents and its finder.
+struct Inputs {
+    DetectRequest request;
+    InputSet set;
+    std::stop_token stop;
+};
+
+void add_step_facts(std::vector<viewer::Fact>& facts, const Summary& summary) {
+    facts.push_back({"entries", double(summary.entries)});
+    facts.push_back({"seconds.detect", summary.seconds});
+    facts.push_back({"seconds.encode", summary.steps.encode});
+    facts.push_back({"seconds.count", summary.steps.count});
+    facts.push_back({"seconds.scatter", summary.steps.scatter});
+    facts.push_back({"seconds.scan", summary.steps.scan});
+}
+
+class SearchFinder final : public viewer::FrameFinder {
+public:
+    explicit SearchFinder(std::shared_ptr<const Inputs> inputs)
+        : inputs_(std::move(inputs)), engine_(make_engine(inputs_->request.engine)) {
+#ifdef OCTOPAIR_WITH_PIPELINE
+        const DetectRequest& request = inputs_->request;
+        if (has_filters(request)) filters_ = make_filter_chain(request, {inputs_->set, nullptr}, inputs_->stop);
+#endif
+    }
+
+    std::uint64_t frames() const override { return inputs_->set.scene.frames; }
+
+    viewer::FrameData find(std::uint64_t frame, const ProgressSink& progress) override {
+        viewer::FrameData data;
+        const Objects objects = inputs_->set.frame(frame);
+        data.boxes = objects.boxes;
+        data.padding = objects.padding;
+        Options options;
+        options.margin = inputs_->request.margin;
+        options.limit = max_pairs;
+        options.progress = progress;
+        try {
+            search(frame, options, data);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::bad_input) throw;
+            if (const auto fault = inputs_->set.find_fault()) throw Error(ErrorCode::bad_input, *fault);
+            throw;
+        }
+        inputs_->set.scene.check_mapped();
+        return data;
+    }
+
+private:
+    void search(std::uint64_t frame, const Options& options, viewer::FrameData& data) {
+#ifdef OCTOPAIR_WITH_PIPELINE
+        if (filters_ != nullptr) {
+            const auto keep = [&](const Batch& batch) {
+                data.pairs.insert(data.pairs.end(), batch.pairs().begin(), batch.pairs().end());
+                data.findings.insert(data.findings.end(), batch.findings().begin(), batch.findings().end());
+            };
+            const PipelineSummary summary = filters_->run(*engine_, frame, keep, options);
+            data.pair_count = summary.collisions;
+            data.more_pairs = summary.truncated;
+            add_step_facts(data.facts, summary.search);
+            data.facts.push_back({"candidates", double(summary.search.pairs)});
+            data.facts.push_back({"seconds.filter", std::max(0.0, summary.seconds - summary.search.seconds)});
+            return;
+        }
+#endif
+        const Summary summary = engine_->find_pairs(inputs_->set.frame(frame), list_, options, inputs_->stop);
+        data.pairs = list_.to_vector();
+        data.pair_count = summary.pairs;
+        data.more_pairs = summary.truncated;
+        add_step_facts(data.facts, summary);
+    }
+
+    std::shared_ptr<const Inputs> inputs_;
+    std::unique_ptr<Engine> engine_;
+    PairList list_;
+#ifdef OCTOPAIR_WITH_PIPELINE
+    std::unique_ptr<FilterChain> filters_;
+#endif
+};
+
+/// The pairs of a result, on the boxes of a scene.
+class ResultFinder final : public viewer::FrameFinder {
+public:
+    ResultFinder(std::shared_ptr<const Inputs> inputs, ResultFile result)
+        : inputs_(std::move(inputs)), result_(std::move(result)) {}
+
+    std::uint64_t frames() const override { return inputs_->set.scene.frames; }
+
+    viewer::FrameData find(std::uint64_t frame, const ProgressSink&) override {
+        viewer::FrameData data;
+        const Objects objects = inputs_->set.frame(frame);
+        data.boxes = objects.boxes;
+        data.padding = objects.padding;
+        if (frame >= result_.frames.size()) return data;
+        data.pairs = result_.frames[std::size_t(frame)].pairs;
+        data.findings = result_.frames[std::size_t(frame)].findings;
+        data.pair_count = data.pairs.size();
+        return data;
+    }
+
+private:
+    std::shared_ptr<const Inputs> inputs_;
+    ResultFile result_;
+};
+
+std::string axis_word(io::UpAxis up) {
+    if (up == io::UpAxis::unknown) return {};
+    return up == io::UpAxis::y ? "y" : "z";
+}
+
+std::vector<std::pair<std::string, std::string>> details_of(const InputSet& set, std::uint32_t object) {
+    std::vector<std::pair<std::string, std::string>> details;
+    const bool triangle = set.scene.triangles.has_value();
+    const io::ObjectDetails& table = triangle ? set.scene.triangles->owner_details : set.scene.details;
+    const std::uint32_t row = triangle ? set.scene.triangles->owners[object] : object;
+    for (const io::Detail detail : io::all_details) {
+        const std::string_view text = table.of(row, detail);
+        if (!text.empty()) details.emplace_back(io::word_of(detail), text);
+    }
+    return details;
+}
+
+std::vector<std::string> names_of(const InputSet& set) {
+    if (!set.scene.triangles) return set.scene.names;
+    std::vector<std::string> names;
+    for (const std::uint32_t owner : set.scene.triangles->owners) {
+        names.push_back(set.scene.triangles->owner_names[owner]);
+    }
+    return names;
+}
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+void add_shapes(viewer::SceneContents& contents, InputSet& set) {
+    if (set.shaped == nullptr) return;
+    const ShapedObjects objects = set.shaped->objects();
+    const Box3d bounds = set.bounds();
+    const double extent =
+        std::hypot(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1], bounds.max[2] - bounds.min[2]);
+    for (const Geometry& geometry : objects.geometries) {
+        contents.shapes.push_back(shown_shape(geometry.shape(), std::isfinite(extent) ? extent : 1));
+    }
+    contents.geometry.assign(objects.geometry.begin(), objects.geometry.end());
+    contents.poses.assign(objects.poses.begin(), objects.poses.end());
+    if (set.shaped->has_groups()) {
+        const GroupMasks masks = set.shaped->group_masks();
+        contents.groups.assign(masks.groups.begin(), masks.groups.end());
+    }
+}
+#endif
+
+std::string title_of(const std::vector<std::string>& paths) {
+    std::string title;
+    for (const std::string& path : paths) {
+        if (!title.empty()) title += ", ";
+        title += path.substr(path.rfind('/') + 1);
+    }
+    return title;
+}
+
+viewer::SceneContents contents_of(const std::shared_ptr<Inputs>& inputs) {
+    InputSet& set = inputs->set;
+    viewer::SceneContents contents;
+    contents.title = title_of(inputs->request.inputs);
+    contents.objects = set.scene.objects;
+    contents.moving = set.scene.moving;
+    const io::SceneSpace& chosen = inputs->request.pipeline.space;
+    contents.up = axis_word(chosen.up != io::UpAxis::unknown ? chosen.up : set.scene.space.up);
+    contents.unit = chosen.unit.empty() ? set.scene.space.unit : chosen.unit;
+    contents.margin = inputs->request.margin;
+    contents.names = names_of(set);
+    contents.details = [inputs](std::uint32_t object) { return details_of(inputs->set, object); };
+    contents.notices = coordinate_warnings(inputs->request, {set, nullptr});
+#ifdef OCTOPAIR_WITH_PIPELINE
+    add_shapes(contents, set);
+#endif
+    return contents;
+}
+
+/// Throws: Error{bad_input} if a result has objects or frames that a scene does not have.
+void check_result(const ResultFile& result, const InputSet& set, const std::string& path) {
+    if (result.objects > set.scene.objects) {
+        io::refuse(path, fmt::format("object {}: the scene has {} objects", result.objects - 1, set.scene.objects));
+    }
+    if (result.frames.size() > set.scene.frames) {
+        io::refuse(path, fmt::format("frame {}: the scene has {} frames", result.frames.size() - 1, set.scene.frames));
+    }
+}
+
+}  // namespace
+
+LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
+    const auto inputs = std::make_shared<Inputs>(Inputs{request.detect, {}, stop});
+    double read_seconds = 0;
+    {
+        const Timed timed(read_seconds);
+        progress.show("reading", 0);
+        io::SceneContent content{request.detect.mesh_objects, false,
+                                 [&](double done) { progress.show("reading", done); }};
+#ifdef OCTOPAIR_WITH_PIPELINE
+        content.shapes = true;
+#endif
+        inputs->set = read_input_set(request.detect.inputs, content, stop);
+#ifdef OCTOPAIR_WITH_PIPELINE
+        make_shaped(inputs->set, {local_threads(request.detect.engine), request.detect.pipeline.weld.value_or(0)},
+                    stop);
+#endif
+    }
+    LoadedView view;
+    view.contents = contents_of(inputs);
+    view.contents.facts.push_back({"seconds.read", read_seconds});
+    if (request.result.empty()) {
+        view.finder = std::make_unique<SearchFinder>(inputs);
+        return view;
+    }
+    ResultFile result = read_result(request.result, stop);
+    check_result(result, inputs->set, request.result);
+    view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));
+    return view;
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,216 @@
+// octopair view: shows a scene, a result, a recording or a server in a browser.
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "base/stop.hpp"
+#include "cli/command/command.hpp"
+#include "cli/command/file_options.hpp"
+#include "cli/command/interrupt.hpp"
+#include "cli/command/option_values.hpp"
+#include "cli/subcommands.hpp"
+#include "cli/view/browser.hpp"
+#include "cli/view/loaded_view.hpp"
+#include "cli/view/result_file.hpp"
+#include "cli/view/server_view.hpp"
+#include "cli/view/view_options.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/formats.hpp"
+#include "viewer/scene/page_file.hpp"
+#include "viewer/server/messages.hpp"
+#include "viewer/server/page_server.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::string_view finding = "finding pairs";
+
+LoadedView load(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
+    if (request.detect.inputs.empty()) return load_result(request, stop);
+    if (request.detect.inputs.size() == 1 && request.result.empty() && is_recording(request.detect.inputs.front())) {
+        return load_recording(request, progress, stop);
+    }
+    return load_scene(request, progress, stop);
+}
+
+void wait_for_stop(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock lock(mutex);
+    never.wait(lock, stop, [] { return false; });
+}
+
+/// Prints the address, and opens it in the browser.
+void present(const ViewRequest& request, const viewer::PageServer& server) {
+    fmt::print("{}\n", server.address());
+    std::fflush(stdout);
+    if (!request.detect.quiet) fmt::print(stderr, "Open this address in a browser. Ctrl-C ends the viewer.\n");
+    if (!request.no_browser) open_browser(server.address());
+}
+
+/// Loads a source on a thread of its own, so that a page can show the progress of a long search.
+class Loading {
+public:
+    /// Shows the progress on `line` at first.
+    Loading(viewer::SceneSource& source, ProgressLine& line)
+        : source_(source), line_(line), thread_([this] { run(); }) {}
+
+    /// Waits, but at most for `most`. Returns whether the source is loaded. Throws: what SceneSource::load() throws.
+    bool wait(std::chrono::milliseconds most, const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        ended_.wait_for(lock, stop, most, [this] { return done_; });
+        if (done_ && error_ != nullptr) std::rethrow_exception(error_);
+        return done_;
+    }
+    /// Sends the progress to the pages of a server from now on.
+    void report_to(viewer::PageServer& server) {
+        const std::lock_guard lock(report_mutex_);
+        line_.clear();
+        server_ = &server;
+    }
+
+private:
+    void run() {
+        try {
+            source_.load([&](double done) { report(done); });
+        } catch (...) {
+            error_ = std::current_exception();
+        }
+        const std::lock_guard lock(mutex_);
+        done_ = true;
+        ended_.notify_all();
+    }
+
+    void report(double done) {
+        source_.set_progress(done);
+        const std::lock_guard lock(report_mutex_);
+        if (server_ == nullptr) return line_.show(finding, done);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - reported_ < 100ms) return;
+        reported_ = now;
+        server_->broadcast("", viewer::progress_message(finding, done));
+    }
+
+    viewer::SceneSource& source_;
+    std::mutex report_mutex_;
+    ProgressLine& line_;
+    viewer::PageServer* server_ = nullptr;
+    std::chrono::steady_clock::time_point reported_;
+    std::mutex mutex_;
+    std::condition_variable_any ended_;
+    bool done_ = false;
+    std::exception_ptr error_;
+    std::jthread thread_;
+};
+
+/// Waits until the source is loaded, and tells the pages.
+void finish_loading(Loading& loading, viewer::PageServer& server, const std::stop_token& stop) {
+    try {
+        while (!loading.wait(1h, stop)) {
+        }
+        server.broadcast("", viewer::ready_message());
+    } catch (const Error& error) {
+        server.broadcast("", viewer::failed_message(error.what()));
+        throw;  // the server sends the message before it ends
+    }
+}
+
+/// Counts the pairs of all frames for the timeline of the page.
+std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& server) {
+    return std::jthread([&](const std::stop_token& stop) {
+        try {
+            source.count_frames([&](std::uint64_t done) { server.broadcast("", viewer::timeline_message(done)); },
+                                stop);
+        } catch (const Error& error) {
+            server.broadcast("", viewer::failed_message(error.what()));
+        }
+    });
+}
+
+/// Serves a scene until a stop request.
+void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
+    viewer::SceneSource source(std::move(view.contents), *view.finder);
+    std::optional<viewer::PageServer> server;
+    Loading loading(source, progress);
+    const bool loaded = loading.wait(300ms, stop);  // a wrong input is an error of the command, not of a page
+    throw_if_stopped(stop);
+    server.emplace(source, server_options(request));
+    loading.report_to(*server);
+    present(request, *server);
+    if (!loaded) finish_loading(loading, *server, stop);
+    std::jthread counting;
+    if (source.moving()) counting = start_counting(source, *server);
+    wait_for_stop(stop);
+}
+
+/// Writes the page of --export and the picture of --screenshot.
+void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
+    viewer::SceneSource source(std::move(view.contents), *view.finder);
+    source.load([&](double done) { progress.show(finding, done); });
+    if (source.moving()) {
+        const auto show = [&](std::uint64_t done) { progress.show(finding, double(done) / double(source.frames())); };
+        source.count_frames(show, stop);
+    }
+    throw_if_stopped(stop);
+    progress.show("writing", 0);
+    std::optional<io::AtomicFile> page, picture;
+    if (!request.export_page.empty()) page.emplace(request.export_page);
+    if (!request.screenshot.empty()) picture.emplace(request.screenshot);
+    if (page) {
+        viewer::write_page(source, [&](std::string_view text) { page->write(text); });
+    }
+    if (picture) {
+        const TemporaryFolder folder;
+        const std::string path = folder.path() + "/page.html";
+        {
+            io::AtomicFile copy(path);
+            viewer::write_page(source, [&](std::string_view text) { copy.write(text); });
+            copy.commit();
+        }
+        progress.show("drawing", 0);
+        picture->write(take_screenshot(path, stop));
+    }
+    if (page) page->commit();
+    if (picture) picture->commit();
+    progress.clear();
+}
+
+int run_view(const ViewRequest& request) {
+    const Interrupt interrupt;
+    ProgressLine progress(!request.detect.quiet);
+#ifdef OCTOPAIR_WITH_SERVICE
+    if (request.detect.engine.is_server()) {
+        view_server(request, interrupt.token());
+        return 0;
+    }
+#endif
+    LoadedView view = load(request, progress, interrupt.token());
+    if (!request.export_page.empty() || !request.screenshot.empty()) {
+        write_files(request, view, progress, interrupt.token());
+    } else {
+        serve_scene(request, view, progress, interrupt.token());
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_view(Command& program, Action& action) {
+    Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");
+    const auto request = std::make_shared<ViewRequest>();
+    add_view_options(command, *request);
+    command.callback([request, &action] {
+        check_view_options(*request);
+        action = [request] { return run_view(*request); };
+    });
+}
+
+}  // namespace octopair::cli

@@ -1,0 +1,186 @@
+#include "cli/view/view_options.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include "cli/command/file_options.hpp"
+#include "cli/command/option_values.hpp"
+#include "cli/server/server_choice.hpp"
+#include "cli/view/result_file.hpp"
+#include "io/formats.hpp"
+#include "octopair/error.hpp"
+
+namespace octopair::cli {
+
+namespace {
+
+[[noreturn]] void refuse_view(const std::string& what) { throw Error(ErrorCode::usage, what); }
+
+void add_search_options(Command& command, DetectRequest& request) {
+    command
+        .add_option(
+            "--objects",
+            [&request](const std::string& word) {
+                check_value("--objects", {"node", "triangle"}, word);
+                request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
+            },
+            "objects of a mesh file: node (default) or triangle")
+        .type_name("WHAT");
+    command
+        .add_option(
+            "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
+            "largest gap per axis at which two boxes still form a pair (default 0)")
+        .type_name("M");
+    command
+        .add_option(
+            "--stage",
+            [&request](const std::string& word) {
+                check_value("--stage", stage_names(), word);
+                request.pipeline.stage = word == "pairs"     ? Stage::pairs
+                                         : word == "objects" ? Stage::objects
+                                                             : Stage::features;
+            },
+            "last stage of the pipeline: pairs, objects or features (default: features for mesh and JSON files)")
+        .type_name("STAGE");
+    command
+        .add_option(
+            "--up",
+            [&request](const std::string& word) {
+                check_value("--up", {"y", "z"}, word);
+                request.pipeline.space.up = word == "y" ? io::UpAxis::y : io::UpAxis::z;
+            },
+            "axis that points up: y or z (default: that of the file format, or else z)")
+        .type_name("AXIS");
+    command
+        .add_option(
+            "--threads",
+            [&request](const std::string& text) {
+                request.engine.threads = unsigned(parse_count("--threads", text, max_threads));
+            },
+            "threads of the search (default 0: one per core)")
+        .type_name("N");
+}
+
+void add_page_options(Command& command, ViewRequest& request) {
+    command.add_option("--export", request.export_page, "write the page with its data as one file, and do not serve it")
+        .type_name("PAGE.html");
+    command
+        .add_option("--screenshot", request.screenshot, "write a picture of the first view, and do not serve the page")
+        .type_name("PICTURE.png");
+    command
+        .add_option(
+            "--port",
+            [&request](const std::string& text) { request.port = unsigned(parse_count("--port", text, 65535)); },
+            "port of the page on this machine (default 0: any that is free)")
+        .type_name("N");
+    command.add_option("--listen", request.listen, "serve other machines, too, at this numeric address; makes a token")
+        .type_name("HOST:PORT");
+    command.add_flag("--no-browser", request.no_browser, "only print the address of the page");
+    command.add_flag("--quiet", request.detect.quiet, "no progress on standard error");
+}
+
+bool is_address(const std::string& input) {
+    if (input.starts_with("unix:")) return true;
+    const std::size_t colon = input.rfind(':');
+    return colon != std::string::npos && colon > 0 && colon + 1 < input.size() &&
+           input.find('/') == std::string::npos &&
+           input.find_first_not_of("0123456789", colon + 1) == std::string::npos;
+}
+
+void check_server_view(ViewRequest& request) {
+    DetectRequest& detect = request.detect;
+    if (detect.inputs.size() > 1) refuse_view("a server is shown alone, not with other inputs");
+    if (!request.export_page.empty() || !request.screenshot.empty())
+        refuse_view("--export and --screenshot: not with a server");
+#ifdef OCTOPAIR_WITH_SERVICE
+    detect.engine.kind = EngineKind::server;
+    detect.engine.server.address = detect.inputs.front();
+    detect.inputs.clear();
+#else
+    refuse_view(detect.inputs.front() + " is the address of a server; this octopair was built without servers");
+#endif
+}
+
+void set_stage(DetectRequest& request) {
+    // A mesh file has shapes. Without --stage they are tested in full, because the page shows contacts.
+    if (!request.pipeline.stage && stage_of(request) == Stage::objects) request.pipeline.stage = Stage::features;
+}
+
+/// Sets apart the result among the inputs.
+void find_result(ViewRequest& request) {
+    std::vector<std::string> scenes;
+    for (const std::string& input : request.detect.inputs) {
+        if (!is_result(input)) {
+            scenes.push_back(input);
+        } else if (request.result.empty()) {
+            request.result = input;
+        } else {
+            refuse_view(fmt::format("{}: {} is a result, too; only one is shown", input, request.result));
+        }
+    }
+    request.detect.inputs = std::move(scenes);
+}
+
+std::string random_token() {
+    std::array<unsigned char, 16> bytes;
+    if (::getrandom(bytes.data(), bytes.size(), 0) != ssize_t(bytes.size())) {
+        throw Error(ErrorCode::io_failed, "the system has no random numbers");
+    }
+    std::string token;
+    for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+    return token;
+}
+
+}  // namespace
+
+void add_view_options(Command& command, ViewRequest& request) {
+    command
+        .add_option("INPUT", request.detect.inputs,
+                    "scene files, a recording, a result of octopair (also with its scene), or the address of a server")
+        .required();
+    add_page_options(command, request);
+    add_search_options(command, request.detect);
+#ifdef OCTOPAIR_WITH_SERVICE
+    add_server_options(command, request.detect.engine.server);
+#endif
+}
+
+void check_view_options(ViewRequest& request) {
+    DetectRequest& detect = request.detect;
+    if (is_address(detect.inputs.front())) return check_server_view(request);
+#ifdef OCTOPAIR_WITH_SERVICE
+    check_server_choice(detect.engine.server);
+#endif
+    const std::string ending = io::ending_of(request.export_page);
+    if (!request.export_page.empty() && ending != ".html" && ending != ".htm") {
+        refuse_view(fmt::format("--export: {}: the name of a page must end in .html or .htm", request.export_page));
+    }
+    if (!request.screenshot.empty() && io::ending_of(request.screenshot) != ".png") {
+        refuse_view(fmt::format("--screenshot: {}: the name of a picture must end in .png", request.screenshot));
+    }
+    std::vector<FileOption> inputs;
+    for (const std::string& input : detect.inputs) inputs.push_back({"", input});
+    check_outputs(inputs, {{"--export", request.export_page}, {"--screenshot", request.screenshot}});
+    find_result(request);
+    if (!detect.inputs.empty() && !is_recording(detect.inputs.front())) set_stage(detect);
+    if (!detect.inputs.empty() && !request.result.empty()) detect.pipeline.stage = Stage::pairs;
+    if (!request.listen.empty()) (void)server_options(request);
+}
+
+viewer::PageServerOptions server_options(const ViewRequest& request) {
+    viewer::PageServerOptions options;
+    options.port = std::uint16_t(request.port);
+    if (request.listen.empty()) return options;
+    if (request.port != 0) refuse_view("--port: not with --listen, which has a port");
+    const std::size_t colon = request.listen.rfind(':');
+    if (colon == std::string::npos) refuse_view(fmt::format("--listen: {} is not HOST:PORT", request.listen));
+    options.port = std::uint16_t(parse_count("--listen", request.listen.substr(colon + 1), 65535));
+    options.host = request.listen.substr(0, colon);
+    if (options.host.starts_with('[') && options.host.ends_with(']')) {
+        options.host = options.host.substr(1, options.host.size() - 2);
+    }
+    options.token = random_token();
+    return options;
+}
+
+}  // namespace octopair::cli
