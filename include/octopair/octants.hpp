@@ -69,7 +69,7 @@ public:
     std::span<const std::uint32_t> objects(std::size_t octant) const noexcept;
     /// Returns for each object the position of its home in all(), or `no_octant` for an index of a scene without an object. Valid as
     /// long as a copy of this list exists. Complexity: constant.
-    std::span<const std::uint32_t> homes() const noexcept;
+    std::span<const std::uint32_t> home_octants() const noexcept;
     /// Returns for each object the level of its home, 0 to OctalCode::max_level, or `no_level` for an index of a scene without an
     /// object. Complexity: linear in the number of objects.
     std::vector<std::uint8_t> levels() const;
