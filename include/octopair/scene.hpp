@@ -161,7 +161,7 @@ public:
     Boxes boxes() const;
 
     /// Lists the octants that a full detection of boxes() uses, with the paddings and the margin of the scene: the same as
-    /// list_octants() of these boxes in the order of their indices, with indices in place of positions. Octants::homes() has
+    /// list_octants() of these boxes in the order of their indices, with indices in place of positions. Octants::home_octants() has
     /// indices() elements. Traits and slack change nothing. A step may use other octants: those of an earlier step while boxes move
     /// little, those of enlarged boxes with slack, or an octree that changes with the objects.
     /// Throws: Error{resource_limit} if the memory does not suffice; Error{cancelled} as list_octants() does.

@@ -16,6 +16,7 @@ find them often      :class:`Engine`; in the background :meth:`Engine.submit`
 follow moves         :class:`Scene`: pairs that begin and end, and queries
 collide shapes       :class:`Shapes` and :func:`collide`; filters: :class:`Pipeline`
 check a mesh         :func:`self_intersections`
+see the octree       :func:`list_octants`, :meth:`Scene.octants`
 replace python-fcl   :class:`octopair.trimesh.CollisionManager`
 read files           :func:`detect`, :func:`generate`, :func:`replay`: what the program does
 use a server         ``Engine("unix:PATH")``, :class:`octopair.remote.JobClient`
@@ -36,6 +37,7 @@ from ._arrays import id_dtype
 from ._core import OctalCode, __version__
 from ._engine import Engine, Job, PairStream, count_pairs, find_pairs, stream_pairs
 from ._errors import (CancelledError, EngineError, Error, FileError, InputError, InputTypeError, ResourceLimitError, UsageError)
+from ._octants import Octants, list_octants
 from ._pipeline import Pipeline, collide, self_intersections
 from ._program import detect, generate, replay
 from ._results import (COLLISION_CLASSES, DEPTH_KINDS, Answers, Collisions, FilterCounts, Hits, JobResult, Neighbors,
@@ -45,9 +47,9 @@ from ._shapes import Geometry, Shapes, make_poses
 
 __all__ = [
     "COLLISION_CLASSES", "DEPTH_KINDS", "Answers", "CancelledError", "Collisions", "Engine", "EngineError", "Error", "FileError",
-    "FilterCounts", "Geometry", "Hits", "InputError", "InputTypeError", "Job", "JobResult", "Neighbors", "OctalCode", "PairStream",
+    "FilterCounts", "Geometry", "Hits", "InputError", "InputTypeError", "Job", "JobResult", "Neighbors", "OctalCode", "Octants", "PairStream",
     "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "UsageError",
-    "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "make_poses", "mpi_engine", "replay",
+    "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "list_octants", "make_poses", "mpi_engine", "replay",
     "self_intersections", "stream_pairs",
 ]
 

@@ -11,6 +11,7 @@ from . import _arrays, _core
 from ._arrays import Array
 from ._engine import MOST_THREADS, float_dtype, path_text
 from ._errors import InputError, InputTypeError
+from ._octants import Octants
 from ._results import Answers, Hits, Neighbors, StepResult
 
 ALL_GROUPS = 0xFFFFFFFF
@@ -197,6 +198,20 @@ class Scene(SceneCalls):
     def enlarged_pairs(self) -> Array:
         """Returns the pairs of the boxes that the last step searched: with slack, enlarged boxes. They contain :meth:`pairs`."""
         return self._scene.enlarged_pairs()
+
+    def boxes(self) -> Array:
+        """Returns a copy of the current boxes by index; shape (:attr:`indices`, 6), in the scene's dtype.
+
+        Rows of indices without an object are NaN. A swept object has its union box until the next step.
+        """
+        boxes, exists = self._scene.boxes()
+        boxes[~exists] = np.nan
+        return boxes
+
+    def octants(self) -> Octants:
+        """Lists the octants that a full search of the current boxes uses, without slack: :func:`octopair.list_octants` of these
+        boxes, with indices as objects. A step may use other octants, because it searches only around what moved."""
+        return Octants(*self._scene.octants())
 
     def overlaps(self, queries: Any, *, groups: int = ALL_GROUPS) -> Answers:
         """Finds the objects that overlap boxes or balls, touching included. Uses the current boxes, without margin and padding.

@@ -14,6 +14,7 @@ namespace py = pybind11;
 
 void bind_engines(py::module_& module);
 void bind_jobs(py::module_& module);
+void bind_octants(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_shapes(py::module_& module);
 void bind_pipeline(py::module_& module);

@@ -61,4 +61,5 @@ PYBIND11_MODULE(_core, module) {
     bind_shapes(module);
     bind_pipeline(module);
     bind_octal_code(module);
+    bind_octants(module);
 }

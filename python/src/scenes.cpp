@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <string>
+#include <variant>
 
 #include "bindings.hpp"
+#include "octants.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::python {
@@ -74,7 +77,30 @@ public:
         return columns_of(in_batches<Neighbor>(rows_of<Box3d, double>(places), find), &Neighbor::distance);
     }
 
+    /// Returns (boxes, exists): a copy of the boxes by index, and whether there is an object at each index.
+    py::tuple boxes() {
+        return get([&] {
+            const auto count = py::ssize_t(scene().indices());
+            py::array_t<bool> exists(count);
+            for (std::uint32_t index = 0; index < count; ++index) exists.mutable_data()[index] = scene().exists(index);
+            const py::array boxes = std::visit([](auto all) { return copied(all); }, scene().boxes());
+            return py::make_tuple(boxes, exists);
+        });
+    }
+    py::tuple octants() {
+        Octants found;
+        run_until_stopped([&](const std::stop_token& stop) { found = scene().octants(stop); });
+        return octants_tuple(found);
+    }
+
 private:
+    template <typename Real>
+    static py::array copied(std::span<const Box<Real>> boxes) {
+        py::array_t<Real> array({py::ssize_t(boxes.size()), py::ssize_t(6)});
+        if (!boxes.empty()) std::memcpy(array.mutable_data(), boxes.data(), boxes.size_bytes());
+        return array;
+    }
+
     /// Finds the answers to all queries. Signal handlers run after each batch of queries, which takes some milliseconds.
     template <typename Answer, typename Query, typename Find>
     Answers<Answer> in_batches(std::span<const Query> queries, Find find) {
@@ -122,6 +148,8 @@ void bind_scenes(py::module_& module) {
     py::class_<LocalScene> scene(module, "Scene");
     scene.def(py::init(&make_scene), py::arg("options"))
         .def("enlarged_pairs", &LocalScene::enlarged_pairs)
+        .def("boxes", &LocalScene::boxes)
+        .def("octants", &LocalScene::octants)
         .def("overlaps", &LocalScene::overlaps, py::arg("queries"), py::arg("groups"))
         .def("hits", &LocalScene::hits, py::arg("rays"), py::arg("all"), py::arg("groups"))
         .def("nearest", &LocalScene::nearest, py::arg("places"), py::arg("limits"), py::arg("groups"));

@@ -106,6 +106,12 @@ protected:
         const Unlocked unlocked;
         work();
     }
+    /// Runs a call that can be cancelled and repeated. Signal handlers run meanwhile.
+    template <typename Work>
+    void run_until_stopped(Work work) {
+        const Turn::Holder turn(turn_);
+        call({scene_->size()}, [&](const std::stop_token& stop, auto&&...) { work(stop); });
+    }
     template <typename Get>
     py::array list(Get find) {
         const Turn::Holder turn(turn_);

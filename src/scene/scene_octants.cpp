@@ -35,7 +35,7 @@ std::vector<std::uint32_t> indices_in_use(const ObjectTable& table) {
 Octants Scene::State::octants(const std::stop_token& stop) {
     const ObjectTable& table = objects_.table();
     const Objects all = table.own_objects();
-    if (table.size() == table.indices()) return list_octants(all, margin_, {{}, table.indices()}, team_, stop);
+    if (table.size() == table.indices()) return copy_octants({all, margin_, table.indices()}, team_, stop);
     try {
         const std::vector<std::uint32_t> indices = indices_in_use(table);
         const std::vector<double> padding = picked(all.padding, indices);
@@ -43,7 +43,7 @@ Octants Scene::State::octants(const std::stop_token& stop) {
             [&]<typename Real>(std::span<const Box<Real>> boxes) {
                 const std::vector<Box<Real>> some = picked(boxes, indices);
                 const Objects objects{std::span<const Box<Real>>(some), padding};
-                return list_octants(objects, margin_, {indices, table.indices()}, team_, stop);
+                return copy_octants({objects, margin_, table.indices(), indices}, team_, stop);
             },
             all.boxes);
     } catch (const std::bad_alloc&) {

@@ -107,7 +107,7 @@ private:
             }
             entries += objects.size();
         }
-        ASSERT_TRUE(std::ranges::equal(octants_.homes(), homes));
+        ASSERT_TRUE(std::ranges::equal(octants_.home_octants(), homes));
         const std::vector<std::uint8_t> levels = octants_.levels();
         ASSERT_EQ(levels.size(), objects_.size());
         for (std::size_t i = 0; i < levels.size(); ++i) ASSERT_EQ(levels[i], all_[homes[i]].code.level());
@@ -167,7 +167,7 @@ private:
         ASSERT_LE(entries.size(), 8u);
         for (const std::uint32_t octant : entries) ASSERT_TRUE(touches(box, octant, 1)) << all_[octant].code.text();
         for (unsigned axis = 0; axis < 3; ++axis) {
-            const auto [low, high] = interval(octants_.homes()[object], axis);
+            const auto [low, high] = interval(octants_.home_octants()[object], axis);
             ASSERT_LE(box.min[axis], high + tolerance(box, axis));
             ASSERT_GE(box.min[axis], low - tolerance(box, axis));
         }
@@ -203,7 +203,7 @@ void expect_equal(const Octants& a, const Octants& b) {
         ASSERT_TRUE(std::ranges::equal(a.all()[i].bounds.min, b.all()[i].bounds.min));
         ASSERT_TRUE(std::ranges::equal(a.objects(i), b.objects(i)));
     }
-    ASSERT_TRUE(std::ranges::equal(a.homes(), b.homes()));
+    ASSERT_TRUE(std::ranges::equal(a.home_octants(), b.home_octants()));
 }
 
 Octants check(const Objects& objects, double margin = 0) {
@@ -267,7 +267,7 @@ TEST(Octants, HugeBoxAmongDust) {
     boxes[huge] = all;
     const Octants octants = check(view(boxes));
     ASSERT_GT(octants.all().size(), 8u);
-    const std::uint32_t home = octants.homes()[huge];
+    const std::uint32_t home = octants.home_octants()[huge];
     EXPECT_FALSE(octants.all()[home].leaf);
     EXPECT_EQ(octants.objects(home)[0], huge);
     EXPECT_EQ(octants.levels()[huge], octants.all()[home].code.level());
@@ -275,7 +275,7 @@ TEST(Octants, HugeBoxAmongDust) {
 
 TEST(Octants, AreValues) {
     const Octants none;
-    EXPECT_TRUE(none.all().empty() && none.homes().empty() && none.levels().empty());
+    EXPECT_TRUE(none.all().empty() && none.home_octants().empty() && none.levels().empty());
     EXPECT_EQ(none.space().max[0], 0);
     const std::vector<Box3f> boxes = make_boxes("uniform", 100, 8);
     Octants first = list_octants(view(boxes));
@@ -303,8 +303,11 @@ TEST(Octants, NameInvalidInput) {
         const std::size_t index = count * 2 / 3;
         std::vector<Box3f> boxes = make_boxes("uniform", count, 9);
         boxes[index].max[1] = std::numeric_limits<float>::quiet_NaN();
-        expect_error([&] { list_octants(view(boxes), {0, 3}); }, ErrorCode::bad_input,
-                     "object " + std::to_string(index));
+        expect_error(
+            [&] {
+                list_octants(view(boxes), {0, 3});
+            },
+            ErrorCode::bad_input, "object " + std::to_string(index));
     }
     const std::vector<Box3f> good = make_boxes("uniform", 100, 9);
     std::vector<double> padding(100, 0.5);

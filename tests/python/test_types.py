@@ -16,7 +16,7 @@ import octopair as op
 
 PACKAGE = pathlib.Path(op.__file__).parent
 ROOT = pathlib.Path(__file__).parents[2]
-MODULES = ["octopair", "octopair._engine", "octopair._pipeline", "octopair._scene", "octopair._shapes", "octopair.mpi",
+MODULES = ["octopair", "octopair._engine", "octopair._octants", "octopair._pipeline", "octopair._scene", "octopair._shapes", "octopair.mpi",
            "octopair.remote", "octopair.trimesh"]
 
 

@@ -79,8 +79,8 @@ struct Expected {
             ASSERT_TRUE(std::ranges::equal(all.objects(i), alone.objects(i), {}, {},
                                            [&](std::uint32_t position) { return indices[position]; }));
         }
-        for (std::size_t i = 0; i < indices.size(); ++i) homes[indices[i]] = alone.homes()[i];
-        ASSERT_TRUE(std::ranges::equal(all.homes(), homes));
+        for (std::size_t i = 0; i < indices.size(); ++i) homes[indices[i]] = alone.home_octants()[i];
+        ASSERT_TRUE(std::ranges::equal(all.home_octants(), homes));
         const std::vector<std::uint8_t> levels = all.levels();
         for (std::size_t index = 0; index < slots.size(); ++index) {
             ASSERT_EQ(levels[index] == Octants::no_level, !slots[index].exists);
@@ -169,7 +169,7 @@ TEST(SceneOctants, ChangeNoStep) {
         each->step();
         each->move(std::span(ids).first(1), std::span<const Box3f>(boxes).last(1));
         if (each == &scene) {
-            EXPECT_EQ(each->octants().homes().size(), boxes.size());
+            EXPECT_EQ(each->octants().home_octants().size(), boxes.size());
         }
         each->step();
     }

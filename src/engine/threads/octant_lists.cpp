@@ -50,9 +50,9 @@ bool begins_here(const CellEntry& entry) {
 /// Copies an octree to lists, octant by octant.
 class OctantCopier {
 public:
-    OctantCopier(const LinearOctree& octree, const BoxSource& source, const ObjectNumbers& numbers,
+    OctantCopier(const LinearOctree& octree, const BoxSource& source, const ListedObjects& listed,
                  detail::OctantLists& lists)
-        : octree_(octree), faces_(octree.space(), source), numbers_(numbers.numbers), lists_(lists) {
+        : octree_(octree), faces_(octree.space(), source), numbers_(listed.numbers), lists_(lists) {
         const std::size_t octants = octree.octants().size();
         lists_.octants.resize(octants);
         lists_.begins.resize(octants + 1);
@@ -60,7 +60,7 @@ public:
             lists_.begins[octant] = octree.entry_count(0, octant);
         }
         lists_.objects.resize(std::size_t(octree.entry_count()));
-        lists_.homes.assign(std::size_t(numbers.limit), Octants::no_octant);
+        lists_.homes.assign(std::size_t(listed.numbers_end), Octants::no_octant);
         for (unsigned axis = 0; axis < 3; ++axis) {
             lists_.space.min[axis] = faces_.face(0, axis);
             lists_.space.max[axis] = faces_.face(octree.space().last_cell(axis) + 1, axis);
@@ -110,9 +110,10 @@ private:
     detail::OctantLists& lists_;
 };
 
-std::shared_ptr<const detail::OctantLists> lists_of(const BoxSource& source, const ObjectNumbers& numbers, Team& team,
+std::shared_ptr<const detail::OctantLists> lists_of(const ListedObjects& listed, Team& team,
                                                     const std::stop_token& stop) {
     throw_if_stopped(stop);
+    const BoxSource source(listed.objects, nullptr, listed.margin);
     TeamExecutor executor(team);
     LinearOctree octree;
     try {
@@ -121,7 +122,7 @@ std::shared_ptr<const detail::OctantLists> lists_of(const BoxSource& source, con
         source.refuse(invalid.begin);
     }
     auto lists = std::make_shared<detail::OctantLists>();
-    const OctantCopier copier(octree, source, numbers, *lists);
+    const OctantCopier copier(octree, source, listed, *lists);
     const std::size_t octants = octree.octants().size();
     executor.for_each((octants + octants_per_share - 1) / octants_per_share, [&](std::size_t share) {
         throw_if_stopped(stop);
@@ -158,15 +159,15 @@ std::span<const std::uint32_t> Octants::objects(std::size_t octant) const noexce
     return std::span(lists_->objects).subspan(std::size_t(begin), std::size_t(end - begin));
 }
 
-std::span<const std::uint32_t> Octants::homes() const noexcept {
+std::span<const std::uint32_t> Octants::home_octants() const noexcept {
     if (lists_ == nullptr) return {};
     return lists_->homes;
 }
 
 std::vector<std::uint8_t> Octants::levels() const {
     std::vector<std::uint8_t> levels;
-    levels.reserve(homes().size());
-    for (const std::uint32_t home : homes()) {
+    levels.reserve(home_octants().size());
+    for (const std::uint32_t home : home_octants()) {
         levels.push_back(home == no_octant ? no_level : std::uint8_t(lists_->octants[home].code.level()));
     }
     return levels;
@@ -174,10 +175,9 @@ std::vector<std::uint8_t> Octants::levels() const {
 
 Box3d Octants::space() const noexcept { return lists_ != nullptr ? lists_->space : Box3d{}; }
 
-Octants list_octants(const Objects& objects, double margin, const ObjectNumbers& numbers, Team& team,
-                     const std::stop_token& stop) {
+Octants copy_octants(const ListedObjects& listed, Team& team, const std::stop_token& stop) {
     try {
-        return detail::make_octants(lists_of(BoxSource(objects, nullptr, margin), numbers, team, stop));
+        return detail::make_octants(lists_of(listed, team, stop));
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     }
@@ -189,7 +189,7 @@ Octants list_octants(const Objects& objects, const OctantOptions& options, std::
     checked.margin = options.margin;
     detail::check_request({objects, nullptr, checked});
     Team team(options.threads);
-    return list_octants(objects, options.margin, {{}, objects.size()}, team, stop);
+    return copy_octants({objects, options.margin, objects.size()}, team, stop);
 }
 
 }  // namespace octopair

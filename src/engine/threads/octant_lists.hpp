@@ -6,7 +6,6 @@
 #include <stop_token>
 #include <vector>
 
-#include "base/private_export.hpp"
 #include "octopair/octants.hpp"
 #include "parallel/team.hpp"
 
@@ -24,15 +23,16 @@ struct OctantLists {
 
 }  // namespace detail
 
-/// The numbers of objects in a list of octants.
-struct ObjectNumbers {
-    std::span<const std::uint32_t> numbers;  ///< by position in the boxes; empty: the position itself
-    std::uint64_t limit;                     ///< every number is smaller
+/// The objects whose octants are listed.
+struct ListedObjects {
+    const Objects& objects;
+    double margin;
+    std::uint64_t numbers_end;                    ///< every number of an object is smaller
+    std::span<const std::uint32_t> numbers = {};  ///< number of each object; empty: its position in `objects`
 };
 
-/// Makes the list of list_octants(). Requires: the arguments are valid, except boxes and paddings.
+/// Builds the octree of the objects, and copies its octants. Requires: the margin and the number of paddings are valid.
 /// Throws: as list_octants() does.
-OCTOPAIR_PRIVATE_EXPORT Octants list_octants(const Objects& objects, double margin, const ObjectNumbers& numbers,
-                                             Team& team, const std::stop_token& stop);
+Octants copy_octants(const ListedObjects& listed, Team& team, const std::stop_token& stop);
 
 }  // namespace octopair
