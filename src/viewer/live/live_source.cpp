@@ -25,7 +25,7 @@ Answer LiveSource::view_answer(const FrameData& data) const {
                       {"near", false}};
     std::vector<std::string> notices = contents_.notices;
     if (objects > feed_.most_shown()) {
-        notices.push_back("Only the first " + std::to_string(feed_.most_shown()) + " of " + std::to_string(objects) +
+        notices.push_back("Only the first " + grouped_number(feed_.most_shown()) + " of " + grouped_number(objects) +
                           " boxes are drawn.");
     }
     return json_answer({{"version", OCTOPAIR_VERSION},

@@ -20,6 +20,12 @@ Json json_of(const Box3d& box) {
             {"max", Json::array({box.max[0], box.max[1], box.max[2]})}};
 }
 
+std::string grouped_number(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t end = text.size(); end > 3;) text.insert(end -= 3, ",");
+    return text;
+}
+
 Answer box_rows(const ShownFrame& frame) {
     std::vector<RelativeBox> rows;
     rows.reserve(frame.shown.size());
@@ -79,8 +85,23 @@ std::vector<std::uint8_t> levels_of(const FrameData& data, const Octants& octant
 static OctalCode home_code(const FrameData& data, std::uint32_t object, const Octants& octants) {
     const auto before = data.exists.begin() + std::ptrdiff_t(data.exists.empty() ? 0 : object);
     const std::size_t position = data.exists.empty() ? object : std::size_t(std::count(data.exists.begin(), before, 1));
-    return octants.all()[octants.homes()[position]].code;
+    return octants.all()[octants.home_octants()[position]].code;
 }
+
+namespace {
+
+/// Returns the part of an octant in which objects are looked up; nothing for an octant beyond.
+std::optional<Box3d> used_part(const OctantSummary& octant, const Box3d& space) {
+    if (!overlap(octant.bounds, space)) return std::nullopt;
+    Box3d part = octant.bounds;
+    for (int i = 0; i < 3; ++i) {
+        part.min[i] = std::max(part.min[i], space.min[i]);
+        part.max[i] = std::min(part.max[i], space.max[i]);
+    }
+    return part;
+}
+
+}  // namespace
 
 Answer octant_summary(const Octants& octants) {
     struct Level {
@@ -88,7 +109,9 @@ Answer octant_summary(const Octants& octants) {
     };
     std::vector<Level> levels;
     std::uint64_t entries = 0;
+    const Box3d space = octants.space();
     for (const OctantSummary& octant : octants.all()) {
+        if (!used_part(octant, space)) continue;
         levels.resize(std::max<std::size_t>(levels.size(), octant.code.level() + 1));
         Level& level = levels[octant.code.level()];
         ++level.octants;
@@ -112,11 +135,14 @@ Answer octant_level(const Octants& octants, unsigned level, const Point3d& origi
     const auto at_most_32_bits = [](std::uint64_t count) {
         return std::uint32_t(std::min<std::uint64_t>(count, 0xFFFFFFFF));
     };
+    const Box3d space = octants.space();
     std::vector<Row> rows;
     for (const OctantSummary& octant : octants.all()) {
         if (octant.code.level() != level || rows.size() == max_listed_octants) continue;
+        const auto part = used_part(octant, space);
+        if (!part) continue;
         const std::uint64_t key = octant.code.key();
-        rows.push_back({relative(octant.bounds, origin), at_most_32_bits(octant.entries), at_most_32_bits(octant.homes),
+        rows.push_back({relative(*part, origin), at_most_32_bits(octant.entries), at_most_32_bits(octant.homes),
                         octant.leaf ? 1u : 0u, std::uint32_t(key >> 32), std::uint32_t(key)});
     }
     return binary_answer(std::span<const Row>(rows));

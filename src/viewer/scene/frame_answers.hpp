@@ -19,6 +19,8 @@ using Json = nlohmann::ordered_json;
 Answer json_answer(const Json& json);
 Json json_of(const Point3d& point);
 Json json_of(const Box3d& box);
+/// Returns a number with commas between groups of three digits.
+std::string grouped_number(std::uint64_t number);
 
 /// A frame as the page sees it. Borrowed.
 struct ShownFrame {

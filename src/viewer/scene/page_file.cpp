@@ -64,7 +64,7 @@ void write_page(SceneSource& source, const std::function<void(std::string_view)>
     }
     SceneSource::Export how{written, {}};
     if (written < frames) {
-        how.notices.push_back("Only the first " + std::to_string(written) + " of " + std::to_string(frames) +
+        how.notices.push_back("Only the first " + grouped_number(written) + " of " + grouped_number(frames) +
                               " frames are in this file.");
     }
     source.prepare_export(std::move(how));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
@@ -13,7 +14,11 @@ namespace octopair::viewer {
 
 namespace {
 
-Json number_or_text(const Fact& fact) { return fact.text.empty() ? Json(fact.number) : Json(fact.text); }
+Json number_or_text(const Fact& fact) {
+    if (!fact.text.empty()) return fact.text;
+    const bool whole = std::floor(fact.number) == fact.number && std::abs(fact.number) < 1e15;
+    return whole ? Json(std::int64_t(fact.number)) : Json(fact.number);
+}
 
 /// Adds facts to an object. "seconds.read" becomes the member "read" of "seconds".
 void add_facts(Json& json, const std::vector<Fact>& facts) {
@@ -58,11 +63,11 @@ void SceneSource::load(const ProgressSink& progress) {
     first_facts_ = first->data.facts;
     has_contacts_ = has_contacts(first->data.findings);
     if (shown_.size() < contents_.objects) {
-        contents_.notices.push_back(std::to_string(contents_.objects - shown_.size()) + " of " +
-                                    std::to_string(contents_.objects) + " boxes are drawn only where you zoom in.");
+        contents_.notices.push_back(grouped_number(contents_.objects - shown_.size()) + " of " +
+                                    grouped_number(contents_.objects) + " boxes are drawn only where you zoom in.");
     }
     if (first->data.more_pairs) {
-        contents_.notices.push_back("Only the first " + std::to_string(first_pairs_) + " pairs are shown; more exist.");
+        contents_.notices.push_back("Only the first " + grouped_number(first_pairs_) + " pairs are shown; more exist.");
     }
     if (!contents_.moving) first->began.clear();
     kept_.push_back(std::move(first));
