@@ -86,8 +86,10 @@ export class App {
   async showFrame(frame: number): Promise<void> {
     this.model.frame = await this.model.readFrame(this.source, frame);
     this.frameChanged(true);
-    await Promise.all([this.table.load(0), this.selection.refresh(), this.showOctants()]);
     this.timeline?.show(frame);
+    void this.table.load(0);
+    void this.showOctants();
+    this.selection.refresh().catch((error: unknown) => this.fail(error));
   }
 
   // The arrays of the model have another frame. `sort` is false if only boxes moved.
@@ -112,7 +114,7 @@ export class App {
     this.states = computeStates(model, objects, [...partners, ...objects]);
     if (this.colours.length !== 4 * model.rows) this.colours = new Uint8Array(4 * model.rows);
     paint(model, this.states, settings.values, palette, this.colours);
-    stage.boxes.setColours(this.colours);
+    stage.boxes.setColours(this.boxColours());
     stage.shapes.setColours(this.colours);
     this.colourNear(palette);
     this.outline(palette);
@@ -130,7 +132,7 @@ export class App {
     this.link.changed();
   }
 
-  // Shapes arrived or a panel changed how layers are drawn.
+  // A setting changed that only concerns how layers are drawn.
   restyle(): void {
     this.stage.apply(this.settings.values, this.low, this.high);
   }
@@ -201,7 +203,7 @@ export class App {
     this.link.changed();
     if (name === 'octants' || name === 'level') return void this.showOctants();
     if (name === 'theme') return this.themeChanged();
-    if (['colour', 'show', 'others', 'lines', 'contacts'].includes(name)) return this.recolour();
+    if (['colour', 'style', 'show', 'others', 'lines', 'contacts'].includes(name)) return this.recolour();
     return this.restyle();
   }
 
@@ -238,6 +240,15 @@ export class App {
     dataset.lines = String(stage.pairs.count);
     dataset.contacts = String(stage.contacts.count);
     placeDepths(stage);
+  }
+
+  // The colours of the boxes: a row whose shape is drawn instead has no box.
+  private boxColours(): Uint8Array {
+    const {model, stage, settings} = this;
+    if (settings.values.style !== 'shapes' || !model.geometry || stage.shapes.shapes.size === 0) return this.colours;
+    const colours = this.colours.slice();
+    for (let row = 0; row < model.rows; ++row) if (stage.shapes.shapes.has(model.geometry[row]!)) colours[4 * row + 3] = 0;
+    return colours;
   }
 
   private colourNear(palette: Palette): void {

@@ -10,12 +10,12 @@ interface Block {
   box: THREE.Box3;
 }
 
-// Boxes below this size are points.
-const pointPixels = 3;
-
 export class BoxLayer {
   readonly group = new THREE.Group();
   drawn = 0;
+  outline = false;
+  // Boxes below this size are points.
+  pointPixels = 3;
   rows = 0;
   blocks: Block[] = [];
   // Slots are the rows of a block in the order of their size, largest first.
@@ -59,6 +59,7 @@ export class BoxLayer {
   }
 
   setOutline(outline: boolean): void {
+    this.outline = outline;
     if (!this.faces) return;
     const material = (this.faces.material as THREE.RawShaderMaterial[])[0]!;
     material.uniforms.outline!.value = outline;
@@ -74,7 +75,7 @@ export class BoxLayer {
     this.points.geometry.clearGroups();
     for (const block of this.blocks) {
       if (!block.visible || !frustum.intersectsBox(block.box)) continue;
-      const least = pointPixels * block.box.distanceToPoint(eye) / pixelsPerUnit;
+      const least = this.pointPixels * block.box.distanceToPoint(eye) / pixelsPerUnit;
       const large = this.countLarger(block, least);
       const asBoxes = Math.ceil(large * share);
       const asPoints = Math.ceil((block.count - large) * share);

@@ -72,9 +72,12 @@ uniform mat4 projectionMatrix;
 uniform mat4 viewMatrix;
 uniform vec3 cutLow;
 uniform vec3 cutHigh;
+uniform vec3 shadeLow;
+uniform vec3 shadeHigh;
 uniform float scale;
 uniform float smallest;
 flat out vec4 tint;
+flat out vec3 shades;
 ${readBox}
 void main() {
   vec3 low, high;
@@ -83,7 +86,7 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * vec4(middle, 1.0);
   vec3 size = high - low;
   gl_PointSize = clamp(scale * max(size.x, max(size.y, size.z)) / gl_Position.w, smallest, 64.0);
-  tint.rgb *= 0.94;
+  shades = vec3(max(shadeHigh.y, shadeHigh.z), shadeLow.x, min(shadeLow.y, shadeLow.z));
   if (tint.a == 0.0 || any(lessThan(middle, cutLow)) || any(greaterThan(middle, cutHigh))) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }
 `;
@@ -92,11 +95,14 @@ const pointsFragment = `
 precision highp float;
 precision highp int;
 flat in vec4 tint;
+flat in vec3 shades;
 out vec4 colour;
 ${screenDoor}
 void main() {
   screenDoor(tint.a);
-  colour = vec4(tint.rgb, 1.0);
+  // A point looks like a small box: a bright top and two sides.
+  float shade = gl_PointCoord.y < 0.34 ? shades.x : gl_PointCoord.x < 0.5 ? shades.y : shades.z;
+  colour = vec4(tint.rgb * shade, 1.0);
 }
 `;
 

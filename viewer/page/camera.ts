@@ -14,6 +14,8 @@ export class Camera {
   fly = false;
   private readonly sceneMiddle = new THREE.Vector3();
   private sceneRadius = 1;
+  private sceneMin: Point = [0, 0, 0];
+  private sceneMax: Point = [1, 1, 1];
 
   // Where the camera looks from, as a direction from the target.
   private outward(): THREE.Vector3 {
@@ -27,6 +29,8 @@ export class Camera {
   }
 
   setScene(min: Point, max: Point): void {
+    this.sceneMin = min;
+    this.sceneMax = max;
     this.sceneMiddle.set(0.5 * (min[0] + max[0]), 0.5 * (min[1] + max[1]), 0.5 * (min[2] + max[2]));
     this.sceneRadius = Math.max(0.5 * Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]), 1e-6);
   }
@@ -41,16 +45,22 @@ export class Camera {
   }
 
   fit(min: Point, max: Point): void {
-    const half = 0.5 * Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]);
-    const narrow = Math.min(1, this.three.aspect);
     this.target.set(0.5 * (min[0] + max[0]), 0.5 * (min[1] + max[1]), 0.5 * (min[2] + max[2]));
-    this.distance = Math.max(half, 1e-5 * this.sceneRadius, 1e-9) * 1.05 / (Math.sin(THREE.MathUtils.degToRad(this.three.fov / 2)) * narrow);
+    this.place();
+    const axes = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
+    this.three.matrixWorld.extractBasis(axes[0], axes[1], axes[2]);
+    const slope = 0.9 * Math.tan(THREE.MathUtils.degToRad(this.three.fov / 2));
+    let distance = Math.max(1e-5 * this.sceneRadius, 1e-9);
+    for (let k = 0; k < 8; ++k) {
+      const corner = new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]).sub(this.target);
+      const wide = Math.max(Math.abs(corner.dot(axes[0])) / this.three.aspect, Math.abs(corner.dot(axes[1])));
+      distance = Math.max(distance, corner.dot(axes[2]) + wide / slope);
+    }
+    this.distance = distance;
   }
 
   fitScene(): void {
-    const r = this.sceneRadius / Math.sqrt(3);
-    const {x, y, z} = this.sceneMiddle;
-    this.fit([x - r, y - r, z - r], [x + r, y + r, z + r]);
+    this.fit(this.sceneMin, this.sceneMax);
   }
 
   rotate(yaw: number, pitch: number): void {

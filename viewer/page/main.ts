@@ -106,7 +106,7 @@ class Page {
   }
 
   private async readShapes(app: App): Promise<void> {
-    await app.stage.shapes.load(this.source, app.model, () => app.restyle());
+    await app.stage.shapes.load(this.source, app.model, () => app.recolour());
     app.recolour();
     document.documentElement.dataset.shapes = String(app.stage.shapes.shapes.size);
   }

@@ -18,6 +18,7 @@ export function hideProgress(): void {
 
 export function showFailure(message: string): void {
   hideProgress();
+  document.documentElement.dataset.side = 'closed';
   byId('failure').hidden = false;
   byId('failure-text').textContent = message;
   document.documentElement.dataset.failed = 'true';

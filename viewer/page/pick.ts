@@ -6,7 +6,7 @@ import type {Shape} from './shape_layer.ts';
 export interface PickScene {
   boxes: Float32Array;
   layer: BoxLayer;
-  // The shape and the pose of a row, if shapes and not boxes are drawn.
+  // The shape and the pose of a row, if shapes are drawn. A row without a shape is a box.
   shapeOf: ((row: number) => {shape: Shape; pose: Float32Array} | null) | null;
   visible: (row: number) => boolean;
   cut: THREE.Box3;
@@ -28,7 +28,7 @@ export function pickRow(scene: PickScene, ray: THREE.Ray): Hit {
   let best = nothing;
   for (const hit of hits) {
     if (hit.at > best.at) break;
-    const at = hitShape(scene, hit.row, ray);
+    const at = hitShape(scene, hit, ray);
     if (at < best.at) best = {row: hit.row, at};
   }
   return best;
@@ -56,10 +56,10 @@ function hitBoxes(scene: PickScene, ray: THREE.Ray): Hit[] {
   return hits;
 }
 
-// The distance to the row's shape, or infinity.
-function hitShape(scene: PickScene, row: number, ray: THREE.Ray): number {
-  const found = scene.shapeOf!(row);
-  if (!found) return Infinity;
+// The distance to the row's shape, or to its box if it has none.
+function hitShape(scene: PickScene, hit: Hit, ray: THREE.Ray): number {
+  const found = scene.shapeOf!(hit.row);
+  if (!found) return hit.at;
   const {shape, pose: p} = found;
   const pose = new THREE.Matrix4().set(p[0]!, p[3]!, p[6]!, p[9]!, p[1]!, p[4]!, p[7]!, p[10]!, p[2]!, p[5]!, p[8]!, p[11]!, 0, 0, 0, 1);
   const inside = ray.clone().applyMatrix4(pose.clone().invert());

@@ -67,6 +67,8 @@ export class ShapeLayer {
   readonly group = new THREE.Group();
   readonly shapes = new Map<number, Shape>();
   leftOut = 0;
+  // Instances that are not hidden.
+  visible = 0;
   private readonly parts: Part[] = [];
   private readonly material: THREE.RawShaderMaterial;
   private poses: Float32Array | null = null;
@@ -105,6 +107,7 @@ export class ShapeLayer {
 
   setColours(colours: Uint8Array): void {
     this.colours = colours;
+    this.visible = 0;
     for (const part of this.parts) this.tint(part);
   }
 
@@ -136,7 +139,10 @@ export class ShapeLayer {
 
   private tint(part: Part): void {
     if (!this.colours.length) return;
-    part.rows.forEach((row, k) => (part.tints.array as Uint8Array).set(this.colours.subarray(4 * row, 4 * row + 4), 4 * k));
+    part.rows.forEach((row, k) => {
+      (part.tints.array as Uint8Array).set(this.colours.subarray(4 * row, 4 * row + 4), 4 * k);
+      if (this.colours[4 * row + 3]) this.visible += 1;
+    });
     part.tints.needsUpdate = true;
   }
 }

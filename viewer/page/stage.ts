@@ -7,13 +7,12 @@ import type {Palette} from './colours.ts';
 import {ContactLayer} from './contact_layer.ts';
 import {EdgeLayer} from './edge_layer.ts';
 import {OctantLayer} from './octant_layer.ts';
+import {isSoftware, Pace} from './pace.ts';
 import {PairLayer} from './pair_layer.ts';
 import type {Values} from './settings.ts';
 import {ShapeLayer} from './shape_layer.ts';
 import type {Point} from './types.ts';
 
-// A picture that takes longer is drawn in part while the camera moves.
-const slowMilliseconds = 45;
 const restMilliseconds = 180;
 
 export class Stage {
@@ -35,11 +34,16 @@ export class Stage {
   private pending = false;
   private restTimer = 0;
   private lastMove = 0;
-  private share = 1;
+  private again = false;
+  private partial = false;
+  private readonly pace: Pace;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, powerPreference: 'high-performance'});
+    const software = isSoftware();
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: !software, powerPreference: 'high-performance'});
     this.renderer.sortObjects = false;
+    this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.again && this.invalidate());
+    for (const layer of [this.boxes, this.near]) layer.pointPixels = software ? 6 : 3;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     for (const part of [this.boxes, this.near, this.shapes, this.octants.edges, this.pairs.lines, this.outlines, this.contacts.arrows,
       this.contacts.points]) this.scene.add(part.group);
@@ -61,18 +65,16 @@ export class Stage {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      this.draw();
+      this.again = this.pace.busy;
+      if (!this.again) this.draw();
     });
   }
 
   // The camera moves: pictures may be partial until it rests.
   moved(): void {
-    const now = performance.now();
-    const interval = now - this.lastMove;
-    this.lastMove = now;
+    this.lastMove = performance.now();
     clearTimeout(this.restTimer);
     this.restTimer = window.setTimeout(() => this.rest(), restMilliseconds);
-    if (interval < restMilliseconds) this.adapt(interval);
     this.invalidate();
   }
 
@@ -86,7 +88,6 @@ export class Stage {
   // Takes over the settings that only change how the layers are drawn.
   apply(values: Values, min: Point, max: Point): void {
     const withShapes = this.shapes.shapes.size > 0;
-    this.boxes.group.visible = values.style !== 'shapes' || !withShapes;
     this.shapes.group.visible = values.style !== 'boxes';
     this.boxes.setOutline(values.style === 'both' && withShapes);
     this.shared.edges.value = values.edges ? 1 : 0;
@@ -152,25 +153,23 @@ export class Stage {
     this.shared.smallest.value = 2 * this.renderer.getPixelRatio();
     const frustum = new THREE.Frustum().setFromProjectionMatrix(
       new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
-    const share = performance.now() - this.lastMove < restMilliseconds ? this.share : 1;
+    const share = performance.now() - this.lastMove < restMilliseconds ? this.pace.share : 1;
+    this.partial = share < 1;
     this.drawn = 0;
     for (const layer of [this.boxes, this.near]) {
       layer.choose(frustum, camera.position, pixels, share);
-      if (layer.group.visible) this.drawn += layer.drawn;
+      this.drawn += layer.drawn;
     }
+    if (this.shapes.group.visible && !this.boxes.outline) this.drawn += this.shapes.visible;
     this.renderer.render(this.scene, camera);
+    this.pace.drew(share);
     for (const listener of this.drawListeners) listener();
   }
 
   private rest(): void {
     this.lastMove = 0;
-    if (this.share < 1) this.invalidate();
+    if (this.partial) this.invalidate();
     for (const listener of this.restListeners) listener();
-  }
-
-  private adapt(interval: number): void {
-    if (interval > slowMilliseconds) this.share = Math.max(0.02, this.share * Math.max(0.4, slowMilliseconds / interval));
-    else if (interval < 0.6 * slowMilliseconds) this.share = Math.min(1, this.share * 1.15);
   }
 
   private applyCut(values: Values, min: Point, max: Point): void {

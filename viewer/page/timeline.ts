@@ -124,10 +124,10 @@ export class Timeline {
     const style = getComputedStyle(document.documentElement);
     const of = (name: string): string => style.getPropertyValue(name).trim();
     const axis = {stroke: of('--muted'), grid: {stroke: of('--line'), width: 1}, ticks: {show: false}, font: '11px system-ui, sans-serif'};
-    const series = (label: string, name: string): uPlot.Series => ({label, stroke: of(name), width: 1.5, points: {show: this.data[0].length < 2}});
+    const series = (label: string, name: string): uPlot.Series => ({label, stroke: of(name), width: 1.5, points: {show: false}});
     const plot = new uPlot({
       width, height, legend: {show: false}, scales: {x: {time: false}, y: {range: (_, low, high) => [Math.min(0, low), Math.max(1, high)]}},
-      axes: [{...axis, size: 22, space: 60}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
+      axes: [{...axis, size: 22, space: 60, incrs: [1, 2, 5].flatMap(k => [k, 10 * k, 100 * k, 1000 * k, 1e4 * k, 1e5 * k, 1e6 * k]).sort((a, b) => a - b)}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
       series: [{label: 'frame'}, series('pairs', '--pairs'), series('began', '--began'), series('ended', '--ended')],
       cursor: {points: {show: false}, drag: {x: false, y: false}, y: false},
       hooks: {draw: [u => this.drawMark(u, of('--accent'))]},
