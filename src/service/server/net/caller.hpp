@@ -40,6 +40,8 @@ struct Caller {
     }
     /// Returns whether the caller sees the jobs of all owners.
     bool sees_all() const { return role == Role::server_operator; }
+    /// Returns whether the caller sees the jobs and scenes of `job_owner`.
+    bool sees(const std::string& job_owner) const { return sees_all() || owner() == job_owner; }
     /// Returns the owner whose jobs the caller sees, unless it sees those of all.
     const std::string& owner() const { return role == Role::reader ? reads : name; }
 };
