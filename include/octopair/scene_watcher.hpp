@@ -49,12 +49,12 @@ struct SceneSnapshot {
     std::uint64_t step = 0;  ///< number of the step; the first step is 1
     /// Boxes by index, in the scene's precision. The box of an index without object has no meaning.
     std::variant<std::vector<Box3f>, std::vector<Box3d>> boxes;
-    std::vector<bool> exists;    ///< by index: true if an object has the index; as many elements as `boxes`
-    std::uint64_t pairs = 0;     ///< number of all pairs
-    std::vector<Pair> listed;    ///< the first pairs, by indices, ascending
-    std::uint64_t began = 0;     ///< number of pairs that began in the step
-    std::uint64_t ended = 0;     ///< number of pairs that ended in the step
-    double step_seconds = 0;     ///< duration of the step on the server
+    std::vector<bool> exists;  ///< by index: true if an object has the index; as many elements as `boxes`
+    std::uint64_t pairs = 0;   ///< number of all pairs
+    std::vector<Pair> listed;  ///< the first pairs, by indices, ascending
+    std::uint64_t began = 0;   ///< number of pairs that began in the step
+    std::uint64_t ended = 0;   ///< number of pairs that ended in the step
+    double step_seconds = 0;   ///< duration of the step on the server
 };
 
 class SceneWatcher {

@@ -22,7 +22,8 @@ void ReceivedSnapshot::take(grpc::ByteBuffer& message) {
     // The head is parsed together with the data of its message, but needed before. So the data are kept until then.
     std::vector<std::byte> data;
     v1::SceneSnapshot small;
-    if (!unpack(message, small, [&](std::span<const std::byte> piece) { data.insert(data.end(), piece.begin(), piece.end()); }) ||
+    if (!unpack(message, small,
+                [&](std::span<const std::byte> piece) { data.insert(data.end(), piece.begin(), piece.end()); }) ||
         small.has_head() == snapshot_.has_value())
         refuse_message();
     if (small.has_head()) begin(small.head());
@@ -35,7 +36,8 @@ std::optional<SceneSnapshot> ReceivedSnapshot::finish() {
         throw Error(ErrorCode::engine_failed, server_ + ": the answer ended in the middle of a snapshot");
     }
     std::vector<bool>& exists = snapshot_->exists;
-    for (std::size_t i = 0; i < exists.size(); ++i) exists[i] = (presence_[i / 8] >> i % 8 & std::byte(1)) != std::byte(0);
+    for (std::size_t i = 0; i < exists.size(); ++i)
+        exists[i] = (presence_[i / 8] >> i % 8 & std::byte(1)) != std::byte(0);
     return std::exchange(snapshot_, std::nullopt);
 }
 

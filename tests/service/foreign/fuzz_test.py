@@ -61,6 +61,7 @@ class Fuzz:
         if name == "Scene":
             return [bytes_of(one) for one in recording.scene_uploads(make_boxes(generator.randrange(1, 20), 1))]
         fields = {"Wait": dict(id=job_id, seconds=0.1), "Result": dict(id=job_id, offset=1), "List": dict(after=job_id),
+                  "ListScenes": dict(after=job_id), "WatchScene": dict(id=self.scene_id, pair_limit=10, seconds=0.1),
                   "Describe": {}}.get(name, dict(id=job_id))
         return [bytes_of(protocol.methods()[name].request(**fields))]
 

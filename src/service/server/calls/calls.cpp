@@ -16,14 +16,13 @@ using WithJobCalls =
     Service::WithRawCallbackMethod_Status<Service::WithRawCallbackMethod_Wait<Service::WithRawCallbackMethod_Cancel<
         Service::WithRawCallbackMethod_Release<Service::WithRawCallbackMethod_List<Base>>>>>;
 template <typename Base>
-using WithWatchCalls =
-    Service::WithRawCallbackMethod_ListScenes<Service::WithRawCallbackMethod_WatchScene<Base>>;
+using WithWatchCalls = Service::WithRawCallbackMethod_ListScenes<Service::WithRawCallbackMethod_WatchScene<Base>>;
 template <typename Base>
 using WithServerCalls = Service::WithRawCallbackMethod_Describe<Service::WithRawCallbackMethod_Drain<Base>>;
 /// All calls receive raw bytes. Protobuf would copy the large fields; and gRPC would answer INTERNAL to messages that cannot be parsed,
 /// before the caller is authenticated.
-using Methods =
-    WithStreams<WithJobCalls<WithWatchCalls<WithServerCalls<Service::WithRawCallbackMethod_DetectSmall<Service::Service>>>>>;
+using Methods = WithStreams<
+    WithJobCalls<WithWatchCalls<WithServerCalls<Service::WithRawCallbackMethod_DetectSmall<Service::Service>>>>>;
 
 class Calls final : public Methods {
 public:

@@ -93,7 +93,7 @@ StepSnapshot ServerScene::snapshot(std::uint64_t pair_limit) {
     snapshot.memory.shrink(all);
     snapshot.data.resize_discard(all);
     std::visit([&](auto boxes) { copy_boxes(boxes, snapshot); }, scene_.boxes());
-    if (snapshot.listed > 0) copy_pairs(scene_.pairs(), std::span(snapshot.data).subspan(snapshot.pairs_at));
+    if (snapshot.listed > 0) copy_pairs(scene_.pairs(), snapshot.data.span().subspan(snapshot.pairs_at));
     return snapshot;
 }
 

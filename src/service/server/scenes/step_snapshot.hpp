@@ -26,7 +26,7 @@ struct StepSnapshot {
     StepNumbers numbers;
     Precision precision = Precision::float32;
     std::uint64_t indices = 0;
-    std::uint64_t listed = 0;  ///< number of pairs in `data`
+    std::uint64_t listed = 0;    ///< number of pairs in `data`
     std::uint64_t pairs_at = 0;  ///< offset of the first pair in `data`, in bytes
     Buffer<std::byte> data;      ///< presence, boxes and pairs, as in octopair.proto's SceneSnapshot
 
