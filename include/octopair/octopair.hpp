@@ -16,6 +16,7 @@
 #include "octopair/job.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
+#include "octopair/octants.hpp"
 #include "octopair/options.hpp"
 #include "octopair/pair_list.hpp"
 #include "octopair/pose.hpp"

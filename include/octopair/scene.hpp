@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "octopair/objects.hpp"
+#include "octopair/octants.hpp"
 #include "octopair/pair_list.hpp"
 #include "octopair/queries.hpp"
 
@@ -150,6 +151,22 @@ public:
     bool contains(ObjectId id) const;
     /// Returns the id of the object at `index`. Throws: Error{bad_input} if there is none.
     ObjectId id(std::uint32_t index) const;
+    /// Returns true if there is an object at `index`, which may be any number. Complexity: constant.
+    bool exists(std::uint32_t index) const noexcept;
+
+    /// Returns the current boxes by index, in the scene's precision: indices() boxes. The box at an index without an object has no
+    /// meaning (exists()). A swept object has its union box until the next step, and then its new box. Boxes are those that the
+    /// caller gave, also with slack. Valid until the scene's next call that is not const.
+    /// Complexity: constant; nothing is copied.
+    Boxes boxes() const;
+
+    /// Lists the octants that a full detection of boxes() uses, with the paddings and the margin of the scene: the same as
+    /// list_octants() of these boxes in the order of their indices, with indices in place of positions. Octants::homes() has
+    /// indices() elements. Traits and slack change nothing. A step may use other octants: those of an earlier step while boxes move
+    /// little, those of enlarged boxes with slack, or an octree that changes with the objects.
+    /// Throws: Error{resource_limit} if the memory does not suffice; Error{cancelled} as list_octants() does.
+    /// Complexity: that of list_octants(), on the scene's threads. If indices are not in use, also a copy of the boxes.
+    Octants octants(std::stop_token stop = {}) const;
 
 private:
     class [[gnu::visibility("hidden")]] State;

@@ -18,11 +18,6 @@ bool is_within(const Box<Real>& inner, const Box<Real>& outer) {
 
 }  // namespace
 
-Objects ObjectTable::objects() const {
-    if (precision_ == Precision::float64) return {searched_.float64.span(), paddings_.span()};
-    return {searched_.float32.span(), paddings_.span()};
-}
-
 std::uint32_t ObjectTable::new_index() {
     if (!free_.empty()) {
         const std::uint32_t index = free_.back();

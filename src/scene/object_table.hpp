@@ -68,7 +68,9 @@ public:
     bool any_padding() const { return padded_; }
     bool any_traits() const { return with_traits_; }
     /// Returns searched boxes and paddings of all indices, including indices that are not in use.
-    Objects objects() const;
+    Objects objects() const { return {boxes_of(searched_), paddings_.span()}; }
+    /// Returns own boxes and paddings of all indices, including indices that are not in use.
+    Objects own_objects() const { return {boxes_of(has_slack() ? own_ : searched_), paddings_.span()}; }
     /// Returns the own boxes of all indices. Requires: has_slack(); the table has the precision of Real.
     template <typename Real>
     std::span<const Box<Real>> own_boxes() const {
@@ -149,6 +151,10 @@ private:
         void set(std::uint32_t index, const Box3d& box);
     };
 
+    Boxes boxes_of(const BoxArray& boxes) const {
+        if (precision_ == Precision::float64) return boxes.float64.span();
+        return boxes.float32.span();
+    }
     std::uint32_t new_index();
     template <typename Real>
     Box<Real> enlarged(const Box<Real>& box) const;

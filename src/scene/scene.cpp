@@ -147,6 +147,17 @@ std::uint64_t Scene::size() const { return state_->objects().table().size(); }
 std::uint64_t Scene::indices() const { return state_->objects().table().indices(); }
 bool Scene::contains(ObjectId id) const { return state_->objects().table().contains(id); }
 
+bool Scene::exists(std::uint32_t index) const noexcept {
+    const ObjectTable& table = state_->objects().table();
+    return index < table.indices() && table.alive(index);
+}
+Boxes Scene::boxes() const { return state_->objects().table().own_objects().boxes; }
+
+Octants Scene::octants(std::stop_token stop) const {
+    const FloatingPointScope scope;
+    return state_->octants(stop);
+}
+
 ObjectId Scene::id(std::uint32_t index) const { return state_->objects().id(index); }
 
 }  // namespace octopair

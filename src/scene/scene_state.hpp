@@ -50,6 +50,8 @@ public:
     SceneQueries& queries() { return queries_; }
     /// Returns what a query of the current objects reads. Builds an octree if there is none to use.
     SceneQueries::View view(std::uint32_t groups);
+    /// Lists the octants of the objects' own boxes (scene_octants.cpp).
+    Octants octants(const std::stop_token& stop);
 
 private:
     // Defined in scene_step.cpp.
