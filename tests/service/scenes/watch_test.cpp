@@ -3,6 +3,9 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -341,6 +344,21 @@ TEST_F(SceneWatching, AServerThatStopsEndsWaits) {
     std::this_thread::sleep_for(50ms);
     server_.server().drain();
     server_.go();
+}
+
+TEST(SceneWatchingFaults, AServerWithoutTheCallsIsTooOld) {
+    const TemporaryDirectory folder;
+    const std::string address = "unix:" + folder.file("socket");
+    v1::Octopair::Service service;  // answers UNIMPLEMENTED to all calls
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(address, grpc::InsecureServerCredentials());
+    builder.RegisterService(&service);
+    const auto server = builder.BuildAndStart();
+    ASSERT_TRUE(server);
+    SceneWatcher watcher(address);
+    const std::string refusal = address + ": the server is too old: its version of octopair cannot show scenes";
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)watcher.list(); }), refusal);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)watcher.next("x", 0, 1s, 0); }), refusal);
 }
 
 TEST(SceneWatchingLimits, ACopyThatDoesNotFitIsRefusedAndTheSceneGoesOn) {

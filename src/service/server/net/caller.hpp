@@ -4,6 +4,7 @@
 //   owner      yes       yes                  its own      its own       own     own      no
 //   reader     yes       no                   one owner's  one owner's   no      no       no
 //   operator   yes       no                   all          no            all     no       yes
+// Who sees jobs lists the scenes of the same owners, and who reads results watches these scenes.
 #pragma once
 
 #include <cstdint>

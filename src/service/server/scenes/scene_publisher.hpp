@@ -3,8 +3,8 @@
 // Invariants
 //   The scene's thread copies its state only if a watcher waits for a step that the scene has done. Otherwise a step costs some
 //   relaxed accesses of atomic numbers.
-//   The scene's thread spends at most 1% of its time on copies, after the first: after a copy it makes none for 100 times its
-//   duration, and for at least 20 ms.
+//   The scene's thread spends at most 1% of its time on copies: after a copy it makes none for 100 times the processor time of the
+//   copy, and for at least 20 ms.
 //   The scene's thread never waits for a watcher: another thread passes snapshots on.
 //   At most `max_snapshots` snapshots of a scene exist. A watcher keeps a snapshot until it is sent.
 //   An error during a copy reaches the watchers, not the scene.
