@@ -142,7 +142,7 @@ class StaticScene {
       version: '0.2.0', title: `mock ${this.kind}`, kind: 'scene', objects: this.n, shown: this.rows, frames: this.frames, origin: [1000, 2000, 3000],
       bounds: {min: [1000 - edge, 2000 - edge, 3000 - edge], max: [1000 + side + edge, 2000 + side + edge, 3000 + side + edge]}, up: 'z', unit: 'm', margin: 0,
       has: {names: this.names !== null, groups: true, shapes: this.shapes !== null, contacts: this.n <= 20000, events: this.kind === 'moving', search: true,
-        near: this.shown !== null},
+        near: this.shown !== null, rows: this.shown !== null},
       notices: this.shown ? [`${(this.n - this.rows).toLocaleString('en-US')} of ${this.n.toLocaleString('en-US')} boxes are not drawn until you zoom in.`] : [],
       summary: {pairs: this.frame(0).pairs.length, format: 'npy', seconds: {read: 0.1, detect: 0.02}},
     };

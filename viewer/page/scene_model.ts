@@ -106,7 +106,7 @@ export class SceneModel {
     const words = (address: string, wanted: boolean): Promise<Uint32Array | null> =>
       wanted ? orNull(source.bytes(address)).then(bytes => bytes && new Uint32Array(bytes)) : Promise.resolve(null);
     const [shown, groups, geometry, names] = await Promise.all([
-      words('shown.u32', this.view.kind === 'scene' && (source.exported || this.view.shown < this.view.objects)),
+      words('shown.u32', this.view.has.rows),
       words('groups.u32', has.groups), words('geometry.u32', has.shapes), has.names ? orNull(source.json<string[]>('names.json')) : null,
     ]);
     this.setShown(shown);

@@ -15,6 +15,7 @@ export interface Has {
   events: boolean;
   search: boolean;
   near: boolean;
+  rows: boolean;
 }
 
 export interface View {
@@ -138,7 +139,7 @@ export interface SocketEvent {
 
 // Fills in all that an answer may leave out.
 export function completeView(answer: Partial<View>): View {
-  const none: Has = {names: false, groups: false, shapes: false, contacts: false, events: false, search: false, near: false};
+  const none: Has = {names: false, groups: false, shapes: false, contacts: false, events: false, search: false, near: false, rows: false};
   return {
     version: '', title: '', kind: 'scene', objects: 0, frames: 1, origin: [0, 0, 0], up: '', unit: '', margin: 0, notices: [], summary: {},
     ...answer, shown: answer.shown ?? answer.objects ?? 0,
