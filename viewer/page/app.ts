@@ -35,6 +35,7 @@ export class App {
   private readonly picker: Picker;
   private states: Uint8Array = new Uint8Array(0);
   private colours: Uint8Array = new Uint8Array(0);
+  private nearColours: Uint8Array = new Uint8Array(0);
   private octantRequest = new AbortController();
   private contactRequest = new AbortController();
   private contactsNow = '';
@@ -76,6 +77,10 @@ export class App {
 
   visible(row: number): boolean {
     return this.colours[4 * row + 3] !== 0;
+  }
+
+  nearVisible(row: number): boolean {
+    return this.nearColours[4 * row + 3] !== 0;
   }
 
   fail(error: unknown): void {
@@ -254,7 +259,7 @@ export class App {
   private colourNear(palette: Palette): void {
     const near = this.near.shown;
     if (!near) return;
-    const colours = new Uint8Array(4 * near.objects.length);
+    const colours = this.nearColours = new Uint8Array(4 * near.objects.length);
     const {objects, partners} = this.selection;
     const others = new Set(partners);
     const {show} = this.settings.values;

@@ -50,13 +50,16 @@ export class Camera {
     const axes = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
     this.three.matrixWorld.extractBasis(axes[0], axes[1], axes[2]);
     const slope = 0.9 * Math.tan(THREE.MathUtils.degToRad(this.three.fov / 2));
-    let distance = Math.max(1e-5 * this.sceneRadius, 1e-9);
-    for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]).sub(this.target);
-      const wide = Math.max(Math.abs(corner.dot(axes[0])) / this.three.aspect, Math.abs(corner.dot(axes[1])));
-      distance = Math.max(distance, corner.dot(axes[2]) + wide / slope);
+    const corners = Array.from({length: 8}, (_, k) =>
+      new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]));
+    // Near corners look larger, so the middle of the picture is not that of the box.
+    for (let round = 0; round < 4; ++round) {
+      const seen = corners.map(corner => corner.clone().sub(this.target)).map(c => axes.map(axis => c.dot(axis)) as Point);
+      this.distance = Math.max(1e-5 * this.sceneRadius, 1e-9, ...seen.map(([x, y, z]) =>
+        z + Math.max(Math.abs(x) / this.three.aspect, Math.abs(y)) / slope));
+      const heights = seen.map(([, y, z]) => y / (this.distance - z));
+      this.target.addScaledVector(axes[1], 0.5 * (Math.max(...heights) + Math.min(...heights)) * this.distance);
     }
-    this.distance = distance;
   }
 
   fitScene(): void {

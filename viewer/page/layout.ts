@@ -28,7 +28,6 @@ export function startLayout(): void {
     setOpen(drawer, !narrow.matches);
     byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
   }
-  byId('bar').classList.add('viewing');
   const tabs = [byId('tab-collisions'), byId('tab-scene')];
   for (const tab of tabs) {
     tab.addEventListener('click', () => showTab(tab.id));

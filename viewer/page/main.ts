@@ -114,12 +114,11 @@ class Page {
   // The first picture is drawn: all that waited for it.
   private firstPicture(app: App): void {
     hideProgress();
-    app.stage.invalidate();
-    requestAnimationFrame(() => requestAnimationFrame(() => {
-      app.stage.finish();
+    requestAnimationFrame(() => {
+      app.stage.drawNow();
       document.documentElement.dataset.firstPicture = String(Math.round(performance.now()));
       document.documentElement.dataset.ready = 'true';
-    }));
+    });
     app.selection.select(app.firstSelection).catch(error => app.fail(error));
   }
 
@@ -141,6 +140,7 @@ class Page {
     const first = !document.documentElement.dataset.ready;
     const rowsChanged = live.apply(frame);
     if (first) this.adoptBounds(app);
+    if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
     this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
     const now = performance.now();
@@ -148,6 +148,12 @@ class Page {
     if (first) this.firstPicture(app);
     // The next frame is asked for when this one is drawn.
     requestAnimationFrame(() => requestAnimationFrame(() => this.feed?.want()));
+  }
+
+  // Other objects may be shown: their names and groups are read again.
+  private readRows(app: App): void {
+    const {has} = app.model.view;
+    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
   }
 
   // What the server computes on request is not asked for with each live frame.
@@ -181,6 +187,7 @@ function offerHooks(app: App): void {
     pixel: (x: number, y: number) => app.stage.pixel(x, y),
     camera: () => app.stage.camera.toText(),
     settings: () => ({...settings.values}),
+    frame: () => ({...app.model.frame.info}),
   }});
 }
 

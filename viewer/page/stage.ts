@@ -127,8 +127,9 @@ export class Stage {
     return this.canvas.height / (2 * Math.tan(THREE.MathUtils.degToRad(this.camera.three.fov / 2)));
   }
 
-  // Waits until all that was asked of the graphics is done.
-  finish(): void {
+  // Draws at once, and waits until the picture is done.
+  drawNow(): void {
+    this.draw();
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
@@ -145,6 +146,7 @@ export class Stage {
   }
 
   private draw(): void {
+    this.again = false;
     this.camera.place();
     const camera = this.camera.three;
     const pixels = this.pixelsPerUnit();

@@ -84,6 +84,8 @@ export class Table {
     byId<HTMLButtonElement>('previous-page').disabled = this.from === 0;
     byId<HTMLButtonElement>('next-page').disabled = last >= this.total;
     byId('depth-column').hidden = !this.rows.some(row => row.depth !== undefined);
+    // A text that all rows have says nothing.
+    byId('state-column').hidden = new Set(this.rows.map(stateText)).size < 2;
     this.body.replaceChildren(...this.rows.map(row => this.makeRow(row)));
     this.mark();
   }
@@ -93,7 +95,7 @@ export class Table {
     line.tabIndex = 0;
     line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
     if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(row.depth), 'number'));
-    line.append(make('td', row.change ?? row.class ?? ''));
+    if (!byId('state-column').hidden) line.append(make('td', stateText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
     line.addEventListener('keydown', event => {
       if (event.key === 'Enter' || event.key === ' ') {
@@ -116,6 +118,10 @@ export class Table {
       if (selected) line.scrollIntoView({block: 'nearest'});
     });
   }
+}
+
+function stateText(row: Collision): string {
+  return row.change || row.class || '';
 }
 
 function cell(object: number, name = ''): HTMLElement {
