@@ -124,7 +124,7 @@ export class App {
     this.colourNear(palette);
     this.outline(palette);
     stage.pairs.show(model, settings.values.lines, objects, partners, palette);
-    showLegend(legend(model, settings.values, palette));
+    showLegend(legend(model, settings.values, palette, objects.length > 0));
     void this.showContacts();
     this.showNotices();
     stage.apply(settings.values, this.low, this.high);
@@ -296,7 +296,7 @@ export class App {
       if (signal.aborted) return;
       const rows = object === undefined || second === undefined ? answer.rows :
         answer.rows.filter(row => row.a === second || row.b === second);
-      this.stage.contacts.show(this.model, rows, this.palette().contact, 0.012 * this.stage.camera.radius());
+      this.stage.contacts.show(this.model, rows, this.palette().contact, 0.02 * this.stage.camera.radius());
       this.stage.invalidate();
     } catch (error) {
       this.fail(error);

@@ -12,6 +12,8 @@ export class Camera {
   pitch = 0.5;
   up: 'y' | 'z' = 'z';
   fly = false;
+  // The part of the canvas's width, from the left, that a panel covers.
+  covered = 0;
   private readonly sceneMiddle = new THREE.Vector3();
   private sceneRadius = 1;
   private sceneMin: Point = [0, 0, 0];
@@ -56,7 +58,7 @@ export class Camera {
     for (let round = 0; round < 4; ++round) {
       const seen = corners.map(corner => corner.clone().sub(this.target)).map(c => axes.map(axis => c.dot(axis)) as Point);
       this.distance = Math.max(1e-5 * this.sceneRadius, 1e-9, ...seen.map(([x, y, z]) =>
-        z + Math.max(Math.abs(x) / this.three.aspect, Math.abs(y)) / slope));
+        z + Math.max(Math.abs(x) / (this.three.aspect * (1 - this.covered)), Math.abs(y)) / slope));
       const heights = seen.map(([, y, z]) => y / (this.distance - z));
       this.target.addScaledVector(axes[1], 0.5 * (Math.max(...heights) + Math.min(...heights)) * this.distance);
     }
@@ -94,11 +96,14 @@ export class Camera {
     this.distance = THREE.MathUtils.clamp(old * factor, 1e-6 * this.sceneRadius, 100 * this.sceneRadius);
     const kept = 0.5 * (1 - this.distance / old);
     const scale = old / this.distance;
-    return this.move(at[0] * this.three.aspect * kept * scale, at[1] * kept * scale, 0);
+    return this.move((at[0] - this.covered) * this.three.aspect * kept * scale, at[1] * kept * scale, 0);
   }
 
-  resize(width: number, height: number): void {
+  // Takes the size of the canvas. The target is in the middle of what is not covered on the left.
+  resize(width: number, height: number, covered: number): void {
     this.three.aspect = width / Math.max(height, 1);
+    this.covered = covered / width;
+    this.three.setViewOffset(width, height, -0.5 * covered, 0, width, height);
   }
 
   // Gives the matrices of three.js the present place.

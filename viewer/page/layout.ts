@@ -23,10 +23,12 @@ export function toggleOpen(drawer: Drawer): void {
   setOpen(drawer, !isOpen(drawer));
 }
 
-export function startLayout(): void {
+// `changed` is called when panels opened or closed.
+export function startLayout(changed: () => void): void {
   for (const drawer of ['options', 'side'] as const) {
     setOpen(drawer, !narrow.matches);
     byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
+    new MutationObserver(changed).observe(document.documentElement, {attributeFilter: [`data-${drawer}`]});
   }
   const tabs = [byId('tab-collisions'), byId('tab-scene')];
   for (const tab of tabs) {

@@ -66,7 +66,7 @@ class Page {
   }
 
   private async startScene(view: View): Promise<void> {
-    startLayout();
+    startLayout(() => this.app?.stage.resize());
     const model = new SceneModel(view);
     settings.begin('up', view.up === 'y' ? 'y' : 'z');
     if (view.has.shapes) settings.begin('style', 'shapes');
@@ -75,6 +75,8 @@ class Page {
     new Keyboard(commands(app));
     byId('zoom-all').addEventListener('click', () => app.zoomAll());
     byId('copy-link').addEventListener('click', () => void copyLink(app));
+    app.stage.resize();
+    if (!location.hash.includes('at=')) app.zoomAll();
     offerHooks(app);
     await model.load(this.source);
     if (view.kind === 'live') return this.startLive(app);

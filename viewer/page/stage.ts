@@ -187,12 +187,19 @@ export class Stage {
     this.shared.cutHigh.value.copy(this.cut.max);
   }
 
-  private resize(): void {
+  // The width of a panel that lies on the left of a wide canvas.
+  private covered(): number {
+    const panel = document.getElementById('options');
+    const {clientWidth} = this.canvas.parentElement!;
+    return panel && panel.offsetParent && clientWidth > 700 ? panel.offsetLeft + panel.offsetWidth : 0;
+  }
+
+  resize(): void {
     const {clientWidth, clientHeight} = this.canvas.parentElement!;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.resize(clientWidth, clientHeight);
+    this.camera.resize(clientWidth, clientHeight, this.covered());
     this.invalidate();
   }
 }

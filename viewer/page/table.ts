@@ -94,7 +94,7 @@ export class Table {
     const line = make('tr');
     line.tabIndex = 0;
     line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
-    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(row.depth), 'number'));
+    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(Number(row.depth.toPrecision(4))), 'number'));
     if (!byId('state-column').hidden) line.append(make('td', stateText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
     line.addEventListener('keydown', event => {
