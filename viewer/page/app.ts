@@ -4,7 +4,7 @@ import {legend, paint, type Palette, paletteOf} from './colours.ts';
 import {isAbort, messageOf} from './dom.ts';
 import {hideLabel, octantText, placeDepths, showLabel} from './hover.ts';
 import {isDark} from './layout.ts';
-import {Link, readLink} from './link.ts';
+import {Link} from './link.ts';
 import {Near} from './near.ts';
 import {octantLimit} from './octant_layer.ts';
 import {Options} from './options.ts';
@@ -12,7 +12,7 @@ import {pairLimit} from './pair_layer.ts';
 import {say, showLegend, showNotices, showSummary, showTitle} from './panel.ts';
 import {Picker} from './picker.ts';
 import {Pointer} from './pointer.ts';
-import type {SceneModel} from './scene_model.ts';
+import type {Frame, SceneModel} from './scene_model.ts';
 import {Search} from './search.ts';
 import {Selection} from './selection.ts';
 import type {Name, Settings} from './settings.ts';
@@ -39,10 +39,10 @@ export class App {
   private octantRequest = new AbortController();
   private contactRequest = new AbortController();
   private contactsNow = '';
-  private readonly low: Point;
-  private readonly high: Point;
+  private low: Point;
+  private high: Point;
 
-  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, canvas: HTMLCanvasElement) {
+  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, canvas: HTMLCanvasElement, camera: string | null) {
     this.stage = new Stage(canvas);
     const failed = (error: unknown): void => this.fail(error);
     this.selection = new Selection(source, model, {changed: () => this.selectionChanged(), zoom: () => this.zoomToSelection()});
@@ -60,16 +60,10 @@ export class App {
     this.link = new Link(settings, () => ({
       camera: this.stage.camera.toText(), frame: model.view.kind === 'live' ? 0 : model.frame.info.frame, selected: this.selection.objects,
     }));
-    const state = readLink(settings);
     this.options = new Options(settings, model);
     this.listen();
-    if (state.camera) this.stage.camera.fromText(state.camera);
-    this.firstFrame = Math.min(state.frame ?? 0, Math.max(model.view.frames - 1, 0));
-    this.firstSelection = state.selected;
+    if (camera) this.stage.camera.fromText(camera);
   }
-
-  readonly firstFrame: number;
-  readonly firstSelection: number[];
 
   palette(): Palette {
     return paletteOf(isDark(this.settings));
@@ -87,9 +81,9 @@ export class App {
     if (!isAbort(error)) say(messageOf(error));
   }
 
-  // Reads and shows a frame of a scene.
-  async showFrame(frame: number): Promise<void> {
-    this.model.frame = await this.model.readFrame(this.source, frame);
+  // Reads and shows a frame of a scene, or shows one that is being read.
+  async showFrame(frame: number, reading: Promise<Frame> = this.model.readFrame(this.source, frame)): Promise<void> {
+    this.model.frame = await reading;
     this.frameChanged(true);
     this.timeline?.show(frame);
     void this.table.load(0);
@@ -97,11 +91,26 @@ export class App {
     this.selection.refresh().catch((error: unknown) => this.fail(error));
   }
 
+  // Boxes may have left the bounds that the scene began with, or it had none. Returns whether it had none.
+  private growBounds(): boolean {
+    const box = new THREE.Box3();
+    for (const block of this.stage.boxes.blocks) box.union(block.box);
+    const known = new THREE.Box3(new THREE.Vector3(...this.low), new THREE.Vector3(...this.high));
+    if (box.isEmpty() || known.containsBox(box)) return false;
+    const had = known.getSize(new THREE.Vector3()).length() > 0;
+    if (had) box.union(known);
+    this.low = box.min.toArray();
+    this.high = box.max.toArray();
+    this.stage.camera.setScene(this.low, this.high);
+    return !had;
+  }
+
   // The arrays of the model have another frame. `sort` is false if only boxes moved.
   frameChanged(sort: boolean): void {
     const {model, stage} = this;
     stage.boxes.setBoxes(model.frame.boxes, model.rows, sort);
     stage.shapes.setPoses(model.frame.poses);
+    if (this.growBounds() && !location.hash.includes('at=')) this.zoomAll();
     this.near.forget();
     if (this.selection.objects.length) this.selection.partners = model.partnersOf(this.selection.objects[0]!);
     this.recolour();

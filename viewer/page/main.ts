@@ -5,6 +5,7 @@ import {commands, copyLink, openHelp} from './commands.ts';
 import {byId, count, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
+import {readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
 import {hideProgress, say, showFailure, showProgress} from './panel.ts';
@@ -13,7 +14,7 @@ import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
 import {findSource, type Source, StillLoading} from './source.ts';
 import {Timeline} from './timeline.ts';
-import {completeView, type Point, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
+import {completeView, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
 
 const settings = new Settings();
 
@@ -25,6 +26,7 @@ class Page {
   private live: LiveScene | null = null;
   private wake: () => void = () => undefined;
   private lastTable = 0;
+  private selected: number[] = [];
 
   async start(): Promise<void> {
     startTheme(settings);
@@ -70,21 +72,31 @@ class Page {
     const model = new SceneModel(view);
     settings.begin('up', view.up === 'y' ? 'y' : 'z');
     if (view.has.shapes) settings.begin('style', 'shapes');
-    const app = this.app = new App(this.source, model, settings, byId<HTMLCanvasElement>('view'));
+    const link = readLink(settings);
+    const first = Math.min(link.frame ?? 0, Math.max(view.frames - 1, 0));
+    // The data come while the graphics start.
+    const rows = early(model.load(this.source));
+    const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
+    const app = this.app = new App(this.source, model, settings, byId<HTMLCanvasElement>('view'), link.camera);
+    this.selected = link.selected;
+    this.prepare(app, link.camera !== null);
+    await rows;
+    if (!frame) return this.startLive(app);
+    await this.startTimeline(app);
+    await app.showFrame(first, frame);
+    this.firstPicture(app);
+    if (view.has.shapes) await this.readShapes(app);
+    return undefined;
+  }
+
+  private prepare(app: App, keepCamera: boolean): void {
     app.stage.setTheme(app.palette());
     new Keyboard(commands(app));
     byId('zoom-all').addEventListener('click', () => app.zoomAll());
     byId('copy-link').addEventListener('click', () => void copyLink(app));
     app.stage.resize();
-    if (!location.hash.includes('at=')) app.zoomAll();
+    if (!keepCamera) app.zoomAll();
     offerHooks(app);
-    await model.load(this.source);
-    if (view.kind === 'live') return this.startLive(app);
-    await this.startTimeline(app);
-    await app.showFrame(app.firstFrame);
-    this.firstPicture(app);
-    if (view.has.shapes) await this.readShapes(app);
-    return undefined;
   }
 
   private startLive(app: App): void {
@@ -121,7 +133,7 @@ class Page {
       document.documentElement.dataset.firstPicture = String(Math.round(performance.now()));
       document.documentElement.dataset.ready = 'true';
     });
-    app.selection.select(app.firstSelection).catch(error => app.fail(error));
+    app.selection.select(this.selected).catch(error => app.fail(error));
   }
 
   private receive(event: SocketEvent): void {
@@ -141,7 +153,6 @@ class Page {
     if (!app || !live) return;
     const first = !document.documentElement.dataset.ready;
     const rowsChanged = live.apply(frame);
-    if (first) this.adoptBounds(app);
     if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
     this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
@@ -166,19 +177,15 @@ class Page {
     if (settings.values.octants) void app.showOctants();
   }
 
-  // A live scene may have had no boxes when the page began.
-  private adoptBounds(app: App): void {
-    const {bounds} = app.model.view;
-    if (bounds.max[0] > bounds.min[0] || location.hash.includes('at=')) return;
-    const box = new THREE.Box3();
-    for (const block of app.stage.boxes.blocks) box.union(block.box);
-    if (!box.isEmpty()) app.stage.camera.setScene(box.min.toArray() as Point, box.max.toArray() as Point);
-    app.zoomAll();
-  }
-
   private reading(address: string, got: number, total: number): void {
     if (!document.documentElement.dataset.ready) showProgress(`Reading ${address}: ${count(got / 1e6)} of ${count(total / 1e6)} MB`, got / total);
   }
+}
+
+// Something that is waited for later: until then its failure is no error.
+function early<T>(promise: Promise<T>): Promise<T> {
+  promise.catch(() => undefined);
+  return promise;
 }
 
 // Functions for tests of the page.

@@ -1,6 +1,6 @@
 // The arrays of the shown objects and of one frame, as they came from the source.
 import {Missing, type Source} from './source.ts';
-import type {FrameInfo, ObjectInfo, Point, View} from './types.ts';
+import type {Found, FrameInfo, ObjectInfo, Point, View} from './types.ts';
 
 export const noPairs = new Uint32Array(0);
 
@@ -82,6 +82,18 @@ export class SceneModel {
       else if (pairs[k + 1] === object) found.push(pairs[k]!);
     }
     return found.sort((a, b) => a - b);
+  }
+
+  // Objects whose name has the text, for pages whose source cannot search.
+  search(text: string, limit: number): Found {
+    const lower = text.toLowerCase();
+    const result: Found = {total: 0, found: []};
+    this.names?.forEach((name, row) => {
+      if (!name.toLowerCase().includes(lower)) return;
+      result.total += 1;
+      if (result.found.length < limit) result.found.push({index: this.objectOf(row), name});
+    });
+    return result;
   }
 
   // All that the arrays say of an object, for pages without the address object/F/I.json.

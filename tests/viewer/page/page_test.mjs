@@ -283,6 +283,12 @@ test('live partners are those of a whole frame', 'live', 300, async ({page, scen
   await waitForData(page, 'lines', scene.history[frame].pairs.length + await page.evaluate(() => window.octopairView.frame().ended));
 });
 
+test('a lost connection is told, and the page keeps its frame', 'live', 50, async ({page, stop}) => {
+  stop();
+  await page.waitForFunction(() => /connection to the program is lost/.test(document.getElementById('message').textContent), null, {timeout: 20_000});
+  assert.equal(await data(page, 'drawn'), '50');
+}, {expected: /WebSocket|Failed to load|Failed to fetch/});
+
 test('jobs and scenes of a server', 'server', 0, async ({page}) => {
   await waitForData(page, 'jobs', '3');
   assert.equal(await page.locator('#scene-rows a').getAttribute('href'), 'scene/crane%207/');
@@ -293,12 +299,12 @@ test('jobs and scenes of a server', 'server', 0, async ({page}) => {
 test('the error of an input', 'failed', 10, async ({page}) => {
   await page.locator('#failure').waitFor();
   assert.match(await text(page, '#failure'), /the minimum of x is above the maximum/);
-}, {failing: true});
+}, {expected: /503/});
 
 test('progress while loading', 'loading', 10, async ({page}) => {
   await ready(page);
   assert.equal(await data(page, 'drawn'), '10');
-}, {failing: true});
+}, {expected: /503/});
 
 for (const colorScheme of ['light', 'dark']) {
   for (const viewport of [{width: 1280, height: 720}, {width: 390, height: 844}]) {
@@ -350,12 +356,12 @@ async function testExport(browser) {
 
 async function testMock(browser, {scene, objects, run, context}) {
   const mock = await startMock({scene, objects, page: options.page});
-  const {failing, ...view} = context;
+  const {expected, ...view} = context;
   const {page, errors, close} = await open(browser, mock.address, view);
   try {
-    if (!failing) await ready(page);
-    await run({page, scene: mock.scene, address: mock.address, browser});
-    assert.deepEqual(errors.filter(error => !failing || !error.includes('503')), []);
+    if (scene !== 'failed') await ready(page);
+    await run({page, scene: mock.scene, address: mock.address, browser, stop: mock.stop});
+    assert.deepEqual(errors.filter(error => !expected?.test(error)), []);
   } finally {
     await close();
     mock.stop();
