@@ -133,7 +133,7 @@ export class App {
     this.colourNear(palette);
     this.outline(palette);
     stage.pairs.show(model, settings.values.lines, objects, partners, palette);
-    showLegend(legend(model, settings.values, palette, objects.length > 0));
+    this.showLegend();
     void this.showContacts();
     this.showNotices();
     stage.apply(settings.values, this.low, this.high);
@@ -191,6 +191,7 @@ export class App {
     }
     if (signal.aborted) return;
     this.showNotices();
+    this.showLegend();
     this.stage.invalidate();
   }
 
@@ -310,6 +311,11 @@ export class App {
     } catch (error) {
       this.fail(error);
     }
+  }
+
+  private showLegend(): void {
+    const boxes = legend(this.model, this.settings.values, this.palette(), this.selection.objects.length > 0);
+    showLegend([...boxes, ...this.stage.octants.legend()]);
   }
 
   private showNotices(): void {

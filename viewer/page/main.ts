@@ -83,7 +83,8 @@ class Page {
     await rows;
     if (!frame) return this.startLive(app);
     await this.startTimeline(app);
-    await app.showFrame(first, frame);
+    // A link may name a frame that is not computed yet.
+    await app.showFrame(first, frame).catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
     this.firstPicture(app);
     if (view.has.shapes) await this.readShapes(app);
     return undefined;

@@ -1,5 +1,6 @@
 // The selected objects, one or the two of a pair, and the panel that describes the first.
 import {byId, button, counted, definitions, make, plain, short} from './dom.ts';
+import {say} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
 import {Missing, type Source} from './source.ts';
 import type {ObjectInfo} from './types.ts';
@@ -32,7 +33,8 @@ export class Selection {
     }
     this.partners = this.model.partnersOf(this.objects[0]!);
     this.actions.changed();
-    return this.refresh();
+    await this.refresh();
+    if (this.info) say(`${this.objects.map(k => this.title(k)).join(' and ')} selected, ${counted(this.info.partner_count, 'partner', 'partners')}`);
   }
 
   // Reads the first object again, for another frame or another selection.

@@ -158,6 +158,7 @@ export class Stage {
     const share = performance.now() - this.lastMove < restMilliseconds ? this.pace.share : 1;
     this.partial = share < 1;
     this.drawn = 0;
+    this.shapes.choose(share);
     for (const layer of [this.boxes, this.near]) {
       layer.choose(frustum, camera.position, pixels, share);
       this.drawn += layer.drawn;

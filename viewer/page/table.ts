@@ -97,14 +97,16 @@ export class Table {
     if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(Number(row.depth.toPrecision(4))), 'number'));
     if (!byId('state-column').hidden) line.append(make('td', stateText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
-    line.addEventListener('keydown', event => {
-      if (event.key === 'Enter' || event.key === ' ') {
-        event.preventDefault();
-        event.stopPropagation();
-        this.actions.open(row);
-      }
-    });
+    line.addEventListener('keydown', event => this.press(event, line, row));
     return line;
+  }
+
+  private press(event: KeyboardEvent, line: HTMLElement, row: Collision): void {
+    const other = event.key === 'ArrowDown' ? line.nextElementSibling : event.key === 'ArrowUp' ? line.previousElementSibling : null;
+    if (event.key === 'Enter' || event.key === ' ') this.actions.open(row);
+    else if (event.key === 'ArrowDown' || event.key === 'ArrowUp') (other as HTMLElement | null)?.focus();
+    else return;
+    event.preventDefault();
   }
 
   private mark(): void {

@@ -76,6 +76,44 @@ test('partners lead to other objects', 'static', 200, async ({page, scene}) => {
   await waitForData(page, 'contacts', scene.object(0, b).partner_count);
 });
 
+test('drag, wheel and double click move the camera', 'static', 50, async ({page, scene}) => {
+  const camera = async () => (await page.evaluate(() => window.octopairView.camera())).split('_').map(Number);
+  const [start] = [await camera()];
+  await page.mouse.move(600, 400);
+  await page.mouse.down();
+  await page.mouse.move(700, 440, {steps: 4});
+  await page.mouse.up();
+  const turned = await camera();
+  assert.ok(turned[4] < start[4] && turned[5] > start[5]);
+  assert.equal(await data(page, 'selected'), '');
+  await page.mouse.wheel(0, -300);
+  await page.waitForTimeout(100);
+  const zoomed = await camera();
+  assert.ok(zoomed[3] < turned[3]);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(650, 400, {steps: 4});
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  assert.notDeepEqual((await camera()).slice(0, 3), zoomed.slice(0, 3));
+  await page.keyboard.press('h');
+  const at = await project(page, middleOf(scene, 3));
+  await page.mouse.dblclick(at.x, at.y);
+  await page.waitForFunction(() => document.documentElement.dataset.selected);
+  assert.ok((await camera())[3] < start[3]);
+});
+
+test('two fingers zoom', 'static', 50, async ({page}) => {
+  const distance = () => page.evaluate(() => Number(window.octopairView.camera().split('_')[3]));
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', {type, touchPoints: points.map(([x, y], id) => ({x, y, id}))});
+  const before = await distance();
+  await touch('touchStart', [180, 400], [220, 400]);
+  for (let k = 1; k <= 5; ++k) await touch('touchMove', [180 - 12 * k, 400], [220 + 12 * k, 400]);
+  await touch('touchEnd');
+  assert.ok(await distance() < 0.6 * before);
+}, {viewport: {width: 390, height: 844}, hasTouch: true});
+
 test('search by name and index', 'static', 100, async ({page}) => {
   await page.keyboard.press('/');
   await page.keyboard.type('plate 42');
@@ -223,7 +261,6 @@ test('shapes are drawn', 'shapes', 30, async ({page, scene}) => {
   await waitForData(page, 'shapes', '3');
   assert.equal((await settings(page)).style, 'shapes');
   await waitForData(page, 'drawn', '30');
-  // A ball is not hit at a corner of its box.
   await page.keyboard.press('b');
   assert.equal((await settings(page)).style, 'both');
   await waitForData(page, 'drawn', '30');
