@@ -6,7 +6,6 @@ import {hideLabel, octantText, placeDepths, showLabel} from './hover.ts';
 import {isDark} from './layout.ts';
 import {Link} from './link.ts';
 import {Near} from './near.ts';
-import {octantLimit} from './octant_layer.ts';
 import {Options} from './options.ts';
 import {pairLimit} from './pair_layer.ts';
 import {say, showLegend, showNotices, showSummary, showTitle} from './panel.ts';
@@ -324,10 +323,12 @@ export class App {
     const texts = [...(near ? [] : model.view.notices)];
     const number = (value: number): string => value.toLocaleString('en-US');
     if (near) texts.push(`${number(near.objects.length)} of ${number(near.total)} more boxes near the target are drawn.`);
-    if (this.settings.values.octants && stage.octants.total > octantLimit) {
-      texts.push(`${number(octantLimit)} of ${number(stage.octants.total)} octants are drawn.`);
-    }
-    if (this.settings.values.lines === 'all' && model.frame.pairs.length > 2 * pairLimit) texts.push(`${number(pairLimit)} pairs have lines.`);
+    const {octants, lines} = this.settings.values;
+    const {edges, total} = stage.octants;
+    if (octants && total > edges.count) texts.push(`${number(edges.count)} of ${number(total)} octants are drawn.`);
+    const withLines = Math.min(pairLimit, model.frame.pairs.length / 2);
+    const {pairs} = model.frame.info;
+    if (lines === 'all' && withLines < pairs) texts.push(`The first ${number(withLines)} of ${number(pairs)} pairs have lines.`);
     if (stage.shapes.leftOut > 0) texts.push(`${number(stage.shapes.leftOut)} shapes are left out.`);
     showNotices(texts);
   }

@@ -8,7 +8,7 @@ import type {OctantLevel} from './types.ts';
 
 const wordsPerOctant = 11;
 // A picture of more lines shows nothing.
-export const octantLimit = 100_000;
+const octantLimit = 100_000;
 
 export interface Octant {
   bounds: Float32Array;
@@ -28,6 +28,7 @@ interface Row {
 export class OctantLayer {
   readonly edges: EdgeLayer;
   levels: OctantLevel[] = [];
+  // All octants that were asked for; not all may be listed.
   total = 0;
   private most = 1;
   private rows: Row[] = [];
@@ -45,7 +46,7 @@ export class OctantLayer {
     if (signal.aborted) return;
     this.levels = levels;
     this.rows = [];
-    this.total = 0;
+    this.total = level < 0 ? levels.reduce((sum, one) => sum + one.leaves, 0) : levels[level]?.octants ?? 0;
     answers.forEach((answer, k) => this.append(new Uint32Array(answer), wanted[k]!, level < 0));
     this.upload();
   }
@@ -92,7 +93,6 @@ export class OctantLayer {
   private append(words: Uint32Array, level: number, leavesOnly: boolean): void {
     for (let at = 0; at + wordsPerOctant <= words.length; at += wordsPerOctant) {
       if (leavesOnly && !(words[at + 8]! & 1)) continue;
-      this.total += 1;
       if (this.rows.length < octantLimit) this.rows.push({level, at, words});
     }
   }

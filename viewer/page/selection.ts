@@ -2,7 +2,7 @@
 import {byId, button, counted, definitions, make, plain, short} from './dom.ts';
 import {say} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
-import {Missing, type Source} from './source.ts';
+import {Missing, type Source, Unreachable} from './source.ts';
 import type {ObjectInfo} from './types.ts';
 
 export interface SelectionActions {
@@ -55,7 +55,7 @@ export class Selection {
     try {
       return await this.source.json<ObjectInfo>(`object/${this.model.frame.info.frame}/${object}.json`);
     } catch (error) {
-      if (error instanceof Missing || error instanceof TypeError) return this.model.describe(object);
+      if (error instanceof Missing || error instanceof Unreachable) return this.model.describe(object);
       throw error;
     }
   }

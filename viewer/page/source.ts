@@ -1,8 +1,10 @@
 // Reads the addresses of the protocol, from the server or from the elements of an exported page. Callers see no difference.
+import {isAbort} from './dom.ts';
 import type {Collision, CollisionQuery, Collisions} from './types.ts';
 
 export class Missing extends Error {}
 export class StillLoading extends Error {}
+export class Unreachable extends Error {}
 
 export interface Source {
   readonly exported: boolean;
@@ -19,7 +21,9 @@ export class ServerSource implements Source {
   constructor(private readonly count: ByteCounter = () => undefined) {}
 
   async bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer> {
-    const answer = await fetch(address, {signal, credentials: 'same-origin'});
+    const answer = await fetch(address, {signal, credentials: 'same-origin'}).catch((error: unknown) => {
+      throw isAbort(error) ? error : new Unreachable('The program does not answer.');
+    });
     if (answer.status === 503) throw new StillLoading('the scene is still loading');
     if (answer.status === 404) throw new Missing(`${address}: not found`);
     if (!answer.ok) throw new Error(`${address}: the server answered ${answer.status}`);
