@@ -38,6 +38,7 @@ export class App {
   private octantRequest = new AbortController();
   private contactRequest = new AbortController();
   private contactsNow = '';
+  private readonly notes: string[] = [];
   private low: Point;
   private high: Point;
 
@@ -83,7 +84,7 @@ export class App {
   // Reads and shows a frame of a scene, or shows one that is being read.
   async showFrame(frame: number, reading: Promise<Frame> = this.model.readFrame(this.source, frame)): Promise<void> {
     this.model.frame = await reading;
-    this.frameChanged(true);
+    this.frameChanged(false);
     this.timeline?.show(frame);
     void this.table.load(0);
     void this.showOctants();
@@ -317,10 +318,16 @@ export class App {
     showLegend([...boxes, ...this.stage.octants.legend()]);
   }
 
+  // A notice that stays, such as the end of the program.
+  note(text: string): void {
+    this.notes.push(text);
+    this.showNotices();
+  }
+
   private showNotices(): void {
     const {stage, model} = this;
     const near = this.near.shown;
-    const texts = [...(near ? [] : model.view.notices)];
+    const texts = [...this.notes, ...(near ? [] : model.view.notices)];
     const number = (value: number): string => value.toLocaleString('en-US');
     if (near) texts.push(`${number(near.objects.length)} of ${number(near.total)} more boxes near the target are drawn.`);
     const {octants, lines} = this.settings.values;

@@ -41,7 +41,7 @@ class Page {
 
   private connect(): void {
     this.feed = new LiveFeed({event: event => this.receive(event), frame: frame => this.receiveFrame(frame),
-      lost: () => say('The connection to the program is lost. The page keeps what it has.')});
+      lost: () => this.note('The connection to the program is lost. The page keeps what it has.')});
   }
 
   private async waitForView(): Promise<View> {
@@ -145,8 +145,13 @@ class Page {
       this.wake();
     }
     if (event.event === 'timeline') this.readTimeline().catch(error => say(messageOf(error)));
-    if (event.event === 'closed') say('The program has ended. The page keeps its last frame.');
+    if (event.event === 'closed') this.note('The program has ended. The page keeps its last frame.');
     if (event.event === 'jobs') showServer(event.jobs ?? [], event.scenes ?? []);
+  }
+
+  private note(text: string): void {
+    if (this.app) this.app.note(text);
+    else say(text);
   }
 
   private receiveFrame(frame: LiveFrame): void {
@@ -201,4 +206,7 @@ function offerHooks(app: App): void {
   }});
 }
 
-new Page().start().catch(error => showFailure(messageOf(error)));
+new Page().start().catch(error => {
+  // What the server said before is more exact.
+  if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
+});

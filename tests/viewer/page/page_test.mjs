@@ -257,10 +257,47 @@ test('a section hides boxes, and colours have a legend', 'static', 500, async ({
   await page.waitForFunction(() => Number(document.documentElement.dataset.drawn) < 500);
 });
 
+test('a section cuts boxes', 'static', 1, async ({page, scene, address, browser}) => {
+  const at = await project(page, middleOf(scene, 0));
+  const [background, seen] = [[243, 245, 247], await pixel(page, at)];
+  assert.notDeepEqual(seen, background);
+  for (const [hash, hidden] of [['section=x&cut=0', true], ['section=x&cut=1', false], ['section=z&cut=1&flip=1', true], ['section=z&cut=0&flip=1', false]]) {
+    const other = await open(browser, `${address}#${hash}`);
+    await ready(other.page);
+    assert.deepEqual(await pixel(other.page, at), hidden ? background : seen, hash);
+    await other.close();
+  }
+});
+
+test('began and ended have their colours', 'moving', 40, async ({page, scene, address, browser}) => {
+  const frame = [...Array(40).keys()].find(f => scene.changes(f).began.length > 0);
+  const [a, b] = scene.changes(frame).began[0];
+  const other = await open(browser, `${address}#frame=${frame}&show=colliding&lines=all`);
+  await ready(other.page);
+  await waitForData(other.page, 'frame', frame);
+  const {boxes} = scene.frame(frame);
+  const hue = async k => {
+    const top = [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * k + 5] : 0.5 * (boxes[6 * k + axis] + boxes[6 * k + axis + 3])));
+    return pixel(other.page, await project(other.page, top));
+  };
+  // One of the two may be behind another box.
+  const found = [await hue(a), await hue(b)].map(String);
+  assert.ok(found.includes('240,176,40'), found.join(' '));
+  await other.close();
+  assert.match(await text(page, '#legend'), /began/);
+});
+
 test('shapes are drawn', 'shapes', 30, async ({page, scene}) => {
   await waitForData(page, 'shapes', '3');
   assert.equal((await settings(page)).style, 'shapes');
   await waitForData(page, 'drawn', '30');
+  const {boxes} = scene.frame(0);
+  // The top of a cube that nothing hides.
+  const cube = [...Array(30).keys()].filter(k => k % 3 === 1).sort((p, q) => boxes[6 * q + 5] - boxes[6 * p + 5])[0];
+  const top = [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * cube + 5] : 0.5 * (boxes[6 * cube + axis] + boxes[6 * cube + axis + 3])));
+  const wanted = scene.partnerCounts(0)[cube] ? [222, 88, 50] : [176, 188, 200];
+  const seen = await pixel(page, await project(page, top));
+  assert.ok(seen.every((value, k) => Math.abs(value - wanted[k]) <= 2), `${seen} instead of ${wanted}`);
   await page.keyboard.press('b');
   assert.equal((await settings(page)).style, 'both');
   await waitForData(page, 'drawn', '30');
@@ -322,7 +359,7 @@ test('live partners are those of a whole frame', 'live', 300, async ({page, scen
 
 test('a lost connection is told, and the page keeps its frame', 'live', 50, async ({page, stop}) => {
   stop();
-  await page.waitForFunction(() => /connection to the program is lost/.test(document.getElementById('message').textContent), null, {timeout: 20_000});
+  await page.waitForFunction(() => /connection to the program is lost/.test(document.getElementById('notices').textContent), null, {timeout: 20_000});
   assert.equal(await data(page, 'drawn'), '50');
 }, {expected: /WebSocket|Failed to load|Failed to fetch/});
 
