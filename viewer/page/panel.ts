@@ -33,6 +33,11 @@ export function say(message: string): void {
   messageTimer = window.setTimeout(() => byId('message').textContent = '', 6000);
 }
 
+// A message for screen readers alone, if the page shows the same elsewhere.
+export function speak(message: string): void {
+  byId('spoken').textContent = message;
+}
+
 export function showTitle(model: SceneModel): void {
   const {view, frame} = model;
   byId('title').textContent = view.title || 'scene';

@@ -1,6 +1,7 @@
 // The selected objects, one or the two of a pair, and the panel that describes the first.
 import {byId, button, counted, definitions, make, plain, short} from './dom.ts';
-import {say} from './panel.ts';
+import {isOpen} from './layout.ts';
+import {say, speak} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
 import {Missing, type Source, Unreachable} from './source.ts';
 import type {ObjectInfo} from './types.ts';
@@ -34,7 +35,10 @@ export class Selection {
     this.partners = this.model.partnersOf(this.objects[0]!);
     this.actions.changed();
     await this.refresh();
-    if (this.info) say(`${this.objects.map(k => this.title(k)).join(' and ')} selected, ${counted(this.info.partner_count, 'partner', 'partners')}`);
+    if (!this.info) return;
+    const names = this.objects.map(k => this.title(k)).join(' and ');
+    // With a closed panel nothing else names the selection.
+    (isOpen('side') ? speak : say)(`${names} selected, ${counted(this.info.partner_count, 'partner', 'partners')}`);
   }
 
   // Reads the first object again, for another frame or another selection.
