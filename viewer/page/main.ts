@@ -12,7 +12,7 @@ import {hideProgress, say, showFailure, showProgress} from './panel.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
-import {findSource, type Source, StillLoading} from './source.ts';
+import {findSource, Missing, type Source, StillLoading} from './source.ts';
 import {Timeline} from './timeline.ts';
 import {completeView, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
 
@@ -116,7 +116,12 @@ class Page {
   }
 
   private async readTimeline(): Promise<void> {
-    const numbers = await this.source.json<Numbers>('timeline.json');
+    const frames = this.app?.model.view.frames ?? 1;
+    // Frames can be shown without their numbers.
+    const numbers = await this.source.json<Numbers>('timeline.json').catch((error: unknown): Numbers => {
+      if (error instanceof Missing) return {frames, done: frames, pairs: [], began: [], ended: []};
+      throw error;
+    });
     this.timeline?.setNumbers(numbers);
   }
 
@@ -175,7 +180,7 @@ class Page {
     if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
   }
 
-  // What the server computes on request is not asked for with each live frame.
+  // Answers that the server computes on request are not asked for with each live frame.
   private refreshSlowly(app: App, now: number): void {
     this.lastTable = now;
     void app.table.load();
@@ -207,6 +212,6 @@ function offerHooks(app: App): void {
 }
 
 new Page().start().catch(error => {
-  // What the server said before is more exact.
+  // A message of the server is more exact.
   if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
 });
