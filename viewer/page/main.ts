@@ -8,6 +8,7 @@ import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
 import {readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
+import {startWithin, tellReport} from './within_report.ts';
 import {hideProgress, say, showFailure, showProgress} from './panel.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
@@ -140,6 +141,7 @@ class Page {
       document.documentElement.dataset.ready = 'true';
     });
     app.selection.select(this.selected).catch(error => app.fail(error));
+    if (this.source.exported) startWithin(app);
   }
 
   private receive(event: SocketEvent): void {
@@ -214,4 +216,5 @@ function offerHooks(app: App): void {
 new Page().start().catch(error => {
   // A message of the server is more exact.
   if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
+  tellReport('failed');
 });
