@@ -42,7 +42,7 @@ LoadedView load(const ViewRequest& request, ProgressLine& progress, const std::s
     return load_scene(request, progress, stop);
 }
 
-void wait_for_stop(const std::stop_token& stop) {
+void sleep_until(const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any never;
     std::unique_lock lock(mutex);
@@ -141,7 +141,7 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     if (!loaded) finish_loading(loading, *server, stop);
     std::jthread counting;
     if (source.moving()) counting = start_counting(source, *server);
-    wait_for_stop(stop);
+    sleep_until(stop);
 }
 
 /// Writes the page of --export and the picture of --screenshot.

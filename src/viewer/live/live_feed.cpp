@@ -1,8 +1,8 @@
 #include "viewer/live/live_feed.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cstring>
 
 #include "viewer/scene/frame_answers.hpp"
 
@@ -18,7 +18,11 @@ Boxes boxes_of(const LiveState& state) {
     return std::visit([](const auto& boxes) { return Boxes(std::span(boxes)); }, state.boxes);
 }
 
-bool same(const RelativeBox& a, const RelativeBox& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+/// Compares the bits, because a box that does not exist is NaN.
+bool same(const RelativeBox& a, const RelativeBox& b) {
+    using Bits = std::array<std::uint32_t, 6>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
 
 }  // namespace
 
@@ -165,6 +169,7 @@ std::string LiveFeed::difference_since(std::uint32_t last) const {
     head.began = std::uint32_t(began.size());
     head.ended = std::uint32_t(ended.size());
     std::vector<RelativeBox> boxes;
+    boxes.reserve(rows.size());
     for (const std::uint32_t row : rows) boxes.push_back(rows_[row]);
     std::string body;
     append_array(body, std::span<const Head>(&head, 1));

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using tcp = asio::ip::tcp;
+using Tcp = asio::ip::tcp;
 using BeastError = beast::error_code;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
@@ -225,7 +225,7 @@ private:
 
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection> {
 public:
-    HttpConnection(tcp::socket socket, ConnectionHost& host)
+    HttpConnection(Tcp::socket socket, ConnectionHost& host)
         : counted_(host), host_(host), stream_(std::move(socket)) {}
 
     void read() {
@@ -315,7 +315,7 @@ private:
 
     void close() {
         BeastError ignored;
-        stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+        stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
     }
 
     Counted counted_;
@@ -329,7 +329,7 @@ private:
 
 }  // namespace
 
-void serve_connection(tcp::socket socket, ConnectionHost& host) {
+void serve_connection(Tcp::socket socket, ConnectionHost& host) {
     std::make_shared<HttpConnection>(std::move(socket), host)->read();
 }
 

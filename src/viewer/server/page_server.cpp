@@ -18,13 +18,13 @@ namespace octopair::viewer {
 namespace {
 
 namespace asio = boost::asio;
-using tcp = asio::ip::tcp;
+using Tcp = asio::ip::tcp;
 using namespace std::chrono_literals;
 
 /// Lets the threads of other programs, and other threads of this program, run first.
 void lower_priority() { ::setpriority(PRIO_PROCESS, 0, 19); }
 
-tcp::endpoint endpoint_of(const PageServerOptions& options) {
+Tcp::endpoint endpoint_of(const PageServerOptions& options) {
     boost::system::error_code error;
     const asio::ip::address address = asio::ip::make_address(options.host, error);
     if (error) throw Error(ErrorCode::usage, '"' + options.host + "\" is not a numeric address, such as 127.0.0.1");
@@ -103,7 +103,7 @@ public:
 
 private:
     std::uint16_t open(const PageServerOptions& options) {
-        const tcp::endpoint endpoint = endpoint_of(options);
+        const Tcp::endpoint endpoint = endpoint_of(options);
         boost::system::error_code error;
         acceptor_.open(endpoint.protocol(), error);
         if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
@@ -118,7 +118,7 @@ private:
     }
 
     void accept() {
-        acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, tcp::socket socket) {
+        acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, Tcp::socket socket) {
             if (error == asio::error::operation_aborted || !self->acceptor_.is_open()) return;
             if (!error && self->accepts(socket)) serve_connection(std::move(socket), *self);
             self->accept();
@@ -126,10 +126,10 @@ private:
     }
 
     /// Without a token, other users of this machine are refused.
-    bool accepts(const tcp::socket& socket) const {
+    bool accepts(const Tcp::socket& socket) const {
         if (connections_ >= max_connections) return false;
         boost::system::error_code error;
-        const tcp::endpoint peer = socket.remote_endpoint(error);
+        const Tcp::endpoint peer = socket.remote_endpoint(error);
         if (error) return false;
         return !options_.token.empty() || (peer.address().is_loopback() && is_own_user({peer.port(), port_}));
     }
@@ -155,7 +155,7 @@ private:
     // Connections that are still open are destroyed with io_, and use the members above.
     asio::io_context io_{1};
     asio::thread_pool pool_{1};
-    tcp::acceptor acceptor_;
+    Tcp::acceptor acceptor_;
     std::uint16_t port_ = 0;
     Access access_;
     std::atomic<bool> notified_ = false;
