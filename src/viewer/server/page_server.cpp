@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <future>
@@ -152,6 +153,8 @@ private:
     std::atomic<unsigned> connections_ = 0;
     // Connections that are still open are destroyed with io_, and use the members above.
     asio::io_context io_{1};
+    // stop() still uses the thread of the connections after the last connection has ended.
+    asio::executor_work_guard<asio::io_context::executor_type> work_ = asio::make_work_guard(io_);
     asio::thread_pool pool_{1};
     tcp::acceptor acceptor_;
     std::uint16_t port_ = 0;
