@@ -73,7 +73,7 @@ template <typename T>
 std::vector<T> array_of(const std::string& bytes) {
     EXPECT_EQ(bytes.size() % sizeof(T), 0u);
     std::vector<T> values(bytes.size() / sizeof(T));
-    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
     return values;
 }
 
