@@ -4,6 +4,7 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <future>
 #include <set>
@@ -51,6 +52,7 @@ public:
         std::promise<void> told;
         asio::post(io_, [&] {
             acceptor_.close();
+            pause_.cancel();
             for (WebSocket* socket : sockets()) socket->send(closed_message());
             told.set_value();
         });
@@ -119,8 +121,17 @@ private:
     void accept() {
         acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, tcp::socket socket) {
             if (error == asio::error::operation_aborted || !self->acceptor_.is_open()) return;
-            if (!error && self->accepts(socket)) serve_connection(std::move(socket), *self);
+            if (error) return self->accept_later();
+            if (self->accepts(socket)) serve_connection(std::move(socket), *self);
             self->accept();
+        });
+    }
+
+    /// Waits before the next connection is accepted, for example because the process has too many open files.
+    void accept_later() {
+        pause_.expires_after(100ms);
+        pause_.async_wait([self = shared_from_this()](boost::system::error_code) {
+            if (self->acceptor_.is_open()) self->accept();
         });
     }
 
@@ -157,6 +168,7 @@ private:
     asio::executor_work_guard<asio::io_context::executor_type> work_ = asio::make_work_guard(io_);
     asio::thread_pool pool_{1};
     tcp::acceptor acceptor_;
+    asio::steady_timer pause_{io_};
     std::uint16_t port_ = 0;
     Access access_;
     std::atomic<bool> notified_ = false;
