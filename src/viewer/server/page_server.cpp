@@ -34,7 +34,7 @@ tcp::endpoint endpoint_of(const PageServerOptions& options) {
 
 }  // namespace
 
-class PageServer::State final : public ConnectionHost, public std::enable_shared_from_this<State> {
+class PageServer::State final : public ConnectionHost {
 public:
     State(Source& source, const PageServerOptions& options)
         : source_(source), options_(options), acceptor_(io_), access_(options.host, open(options), options.token) {}
@@ -119,19 +119,19 @@ private:
     }
 
     void accept() {
-        acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, tcp::socket socket) {
-            if (error == asio::error::operation_aborted || !self->acceptor_.is_open()) return;
-            if (error) return self->accept_later();
-            if (self->accepts(socket)) serve_connection(std::move(socket), *self);
-            self->accept();
+        acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+            if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
+            if (error) return accept_later();
+            if (accepts(socket)) serve_connection(std::move(socket), *this);
+            accept();
         });
     }
 
     /// Waits before the next connection is accepted, for example because the process has too many open files.
     void accept_later() {
         pause_.expires_after(100ms);
-        pause_.async_wait([self = shared_from_this()](boost::system::error_code) {
-            if (self->acceptor_.is_open()) self->accept();
+        pause_.async_wait([this](boost::system::error_code) {
+            if (acceptor_.is_open()) accept();
         });
     }
 
@@ -162,7 +162,8 @@ private:
     PageServerOptions options_;
     std::set<WebSocket*> sockets_;
     std::atomic<unsigned> connections_ = 0;
-    // Connections that are still open are destroyed with io_, and use the members above.
+    // Connections that are still open are destroyed with io_, and use the members above. Handlers that have not run are
+    // destroyed with io_, too, so they must not own this object.
     asio::io_context io_{1};
     // stop() still uses the thread of the connections after the last connection has ended.
     asio::executor_work_guard<asio::io_context::executor_type> work_ = asio::make_work_guard(io_);
@@ -176,7 +177,7 @@ private:
 };
 
 PageServer::PageServer(Source& source, const PageServerOptions& options)
-    : state_(std::make_shared<State>(source, options)) {
+    : state_(std::make_unique<State>(source, options)) {
     state_->start();
 }
 
