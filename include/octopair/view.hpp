@@ -32,7 +32,7 @@ struct ViewOptions {
     std::string host = "127.0.0.1";       ///< numeric address to listen on
     std::uint16_t port = 0;               ///< 0: any free port
     std::string token = {};         ///< required for a `host` that other machines reach; at least 16 letters and digits
-    double frames_per_second = 30;  ///< most frames that are copied in a second
+    double frames_per_second = 30;  ///< most frames that are copied in a second; 0.001 to 1000
 };
 
 class View {

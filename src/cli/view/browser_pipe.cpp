@@ -36,6 +36,7 @@ std::pair<Descriptor, Descriptor> make_pipe() {
 /// Starts a program with `commands` as descriptor 3 and `answers` as descriptor 4. Returns -1 if that fails.
 pid_t start_browser(const std::vector<std::string>& words, const Descriptor& commands, const Descriptor& answers) {
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;

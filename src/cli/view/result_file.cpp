@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -15,12 +16,15 @@
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/results/collision_row.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::cli {
 
 namespace {
 
 constexpr std::uint64_t max_result_frames = 1'000'000;
+constexpr std::uint64_t max_listed_pairs = 100'000'000;  ///< of all frames of a result with events: 800 MB
+constexpr std::uint32_t max_index = 0xFFFFFFFE;
 
 std::string read_text(const io::InputFile& file, std::uint64_t most, const std::stop_token& stop) {
     std::string text(std::size_t(std::min(most, file.size())), '\0');
@@ -87,6 +91,7 @@ public:
     void add(Row row, const std::string& place) {
         if (row.pair.a == row.pair.b) io::refuse(place, "a and b are the same object");
         if (row.pair.a > row.pair.b) std::swap(row.pair.a, row.pair.b);
+        if (row.pair.b > max_index) io::refuse(place, "the index is too large");
         if (row.frame >= max_result_frames)
             io::refuse(place, fmt::format("frame {}: at most {} frames", row.frame, max_result_frames));
         result_.objects = std::max<std::uint64_t>(result_.objects, std::uint64_t(row.pair.b) + 1);
@@ -121,6 +126,7 @@ private:
     void add_up_events() {
         std::vector<Pair> pairs;
         std::size_t next = 0;
+        std::uint64_t listed = 0;
         for (std::uint64_t number = 0; number < result_.frames.size(); ++number) {
             std::vector<Pair> began, ended, remaining, merged;
             for (; next < rows_.size() && rows_[next].frame == number; ++next) {
@@ -129,6 +135,14 @@ private:
             std::set_difference(pairs.begin(), pairs.end(), ended.begin(), ended.end(), std::back_inserter(remaining));
             std::set_union(remaining.begin(), remaining.end(), began.begin(), began.end(), std::back_inserter(merged));
             pairs = merged;
+            listed += pairs.size();
+            if (listed > max_listed_pairs) {
+                throw Error(
+                    ErrorCode::resource_limit,
+                    fmt::format(
+                        "{}: frames 0 to {} have more than {} pairs together; show the scene without the result", file_,
+                        number, max_listed_pairs));
+            }
             result_.frames[std::size_t(number)].pairs = std::move(merged);
         }
     }
@@ -146,7 +160,7 @@ void add_npy_rows(const io::InputFile& file, const io::NpyHeader& header, Result
     file.read(header.data_offset, std::as_writable_bytes(numbers.span()), stop);
     for (std::size_t i = 0; i < numbers.size(); i += 2) {
         const std::string place = fmt::format("{}: row {}", file.path(), i / 2);
-        if (std::max<std::uint64_t>(numbers[i], numbers[i + 1]) > 0xFFFFFFFE)
+        if (std::max<std::uint64_t>(numbers[i], numbers[i + 1]) > max_index)
             io::refuse(place, "the index is too large");
         builder.add({.pair = {std::uint32_t(numbers[i]), std::uint32_t(numbers[i + 1])}}, place);
     }
@@ -239,12 +253,19 @@ public:
         }
         return value;
     }
+    /// Returns a number; 0 if the field is empty or absent.
     double number(std::string_view name) const {
         const std::string_view field = text(name);
         double value = 0;
-        std::from_chars(field.data(), field.data() + field.size(), value);
+        if (field.empty()) return value;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
+            io::refuse(place_, fmt::format("{}: '{}' is not a finite number", name, io::shown_text(field)));
+        }
         return value;
     }
+    /// Returns the points of the field `points`: "x y z;x y z".
+    std::vector<Contact> contacts() const;
 
 private:
     const std::vector<std::string>& header_;
@@ -252,21 +273,23 @@ private:
     std::string place_;
 };
 
-/// Returns the points of the field `points`: "x y z;x y z".
-std::vector<Contact> contacts_of(std::string_view text) {
+std::vector<Contact> CsvRow::contacts() const {
     std::vector<Contact> contacts;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(';'), text.size());
-        std::string_view numbers = text.substr(0, end);
+    for (std::string_view rest = text("points"); !rest.empty();) {
+        const std::size_t end = std::min(rest.find(';'), rest.size());
+        std::string_view numbers = rest.substr(0, end);
         Contact contact;
         for (double& value : contact.point) {
             numbers.remove_prefix(std::min(numbers.find_first_not_of(' '), numbers.size()));
-            const auto [rest, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), value);
-            if (error != std::errc()) return contacts;
-            numbers.remove_prefix(std::size_t(rest - numbers.data()));
+            const auto [after, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), value);
+            if (error != std::errc() || !std::isfinite(value)) {
+                io::refuse(place_, fmt::format("points: '{}' is not three finite numbers",
+                                               io::shown_text(rest.substr(0, end))));
+            }
+            numbers.remove_prefix(std::size_t(after - numbers.data()));
         }
         contacts.push_back(contact);
-        text.remove_prefix(std::min(end + 1, text.size()));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     return contacts;
 }
@@ -290,7 +313,7 @@ void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder&
         row.finding.collision_class = class_of(fields.text("class"));
         row.finding.depth = fields.number("depth");
         row.finding.distance = fields.number("distance");
-        row.finding.contacts = contacts_of(fields.text("points"));
+        row.finding.contacts = fields.contacts();
         if (!fields.text("a_name").empty()) builder.name(row.pair.a, std::string(fields.text("a_name")));
         if (!fields.text("b_name").empty()) builder.name(row.pair.b, std::string(fields.text("b_name")));
         builder.add(std::move(row), place);

@@ -1,14 +1,19 @@
 // A result without its scene: the objects are drawn where their contacts are, because their boxes are not known.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "cli/view/loaded_view.hpp"
 #include "cli/view/result_file.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::cli {
 
 namespace {
+
+constexpr std::uint64_t max_placed_objects = 10'000'000;  ///< 0.5 GB for each frame that is kept
 
 void widen(Box3d& box, const Point3d& point) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -70,6 +75,11 @@ private:
 
 LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) {
     ResultFile result = read_result(request.result, stop);
+    if (result.objects > max_placed_objects) {
+        throw Error(ErrorCode::resource_limit,
+                    fmt::format("{}: object {}: without the scene, at most {} objects are shown; name the scene, too",
+                                request.result, result.objects - 1, max_placed_objects));
+    }
     LoadedView view;
     view.contents.title = request.result.substr(request.result.rfind('/') + 1);
     view.contents.objects = result.objects;

@@ -159,6 +159,7 @@ void check_view_options(ViewRequest& request) {
         refuse_view(fmt::format("--screenshot: {}: the name of a picture must end in .png", request.screenshot));
     }
     std::vector<FileOption> inputs;
+    inputs.reserve(detect.inputs.size());
     for (const std::string& input : detect.inputs) inputs.push_back({"", input});
     check_outputs(inputs, {{"--export", request.export_page}, {"--screenshot", request.screenshot}});
     find_result(request);

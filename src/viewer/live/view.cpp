@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <thread>
 
@@ -22,9 +23,9 @@ using viewer::LiveState;
 void check(const ViewOptions& options) {
     const auto refuse = [](const std::string& what) { throw Error(ErrorCode::usage, "ViewOptions: " + what); };
     if (options.up != "y" && options.up != "z") refuse("up is neither \"y\" nor \"z\"");
-    if (!(options.frames_per_second > 0 && options.frames_per_second <= 1000))
-        refuse("frames_per_second is not in (0, 1000]");
-    if (!(options.margin >= 0)) refuse("margin is not a number >= 0");
+    if (!(options.frames_per_second >= 0.001 && options.frames_per_second <= 1000))
+        refuse("frames_per_second is not in [0.001, 1000]");
+    if (!(options.margin >= 0 && std::isfinite(options.margin))) refuse("margin is not a finite number >= 0");
     const bool loopback = options.host == "127.0.0.1" || options.host == "::1";
     if (options.token.empty() ? !loopback : options.token.size() < 16) {
         refuse("token must have at least 16 letters and digits, because other machines reach the host " + options.host);

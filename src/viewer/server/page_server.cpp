@@ -4,6 +4,7 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <future>
 #include <set>
@@ -33,7 +34,7 @@ Tcp::endpoint endpoint_of(const PageServerOptions& options) {
 
 }  // namespace
 
-class PageServer::State final : public ConnectionHost, public std::enable_shared_from_this<State> {
+class PageServer::State final : public ConnectionHost {
 public:
     State(Source& source, const PageServerOptions& options)
         : source_(source), options_(options), acceptor_(io_), access_(options.host, open(options), options.token) {}
@@ -42,7 +43,6 @@ public:
         accept();
         thread_ = std::thread([this] {
             if (options_.low_priority) lower_priority();
-            const auto more_work = asio::make_work_guard(io_);  // until stop()
             io_.run();
         });
         if (options_.low_priority) asio::post(pool_, lower_priority);
@@ -52,6 +52,7 @@ public:
         std::promise<void> told;
         asio::post(io_, [&] {
             acceptor_.close();
+            pause_.cancel();
             for (WebSocket* socket : sockets()) socket->send(closed_message());
             told.set_value();
         });
@@ -118,10 +119,19 @@ private:
     }
 
     void accept() {
-        acceptor_.async_accept([self = shared_from_this()](boost::system::error_code error, Tcp::socket socket) {
-            if (error == asio::error::operation_aborted || !self->acceptor_.is_open()) return;
-            if (!error && self->accepts(socket)) serve_connection(std::move(socket), *self);
-            self->accept();
+        acceptor_.async_accept([this](boost::system::error_code error, Tcp::socket socket) {
+            if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
+            if (error) return accept_later();
+            if (accepts(socket)) serve_connection(std::move(socket), *this);
+            accept();
+        });
+    }
+
+    /// Waits before the next connection is accepted, for example because the process has too many open files.
+    void accept_later() {
+        pause_.expires_after(100ms);
+        pause_.async_wait([this](boost::system::error_code) {
+            if (acceptor_.is_open()) accept();
         });
     }
 
@@ -152,10 +162,14 @@ private:
     PageServerOptions options_;
     std::set<WebSocket*> sockets_;
     std::atomic<unsigned> connections_ = 0;
-    // Connections that are still open are destroyed with io_, and use the members above.
+    // Connections that are still open are destroyed with io_, and use the members above. Handlers that have not run are
+    // destroyed with io_, too, so they must not own this object.
     asio::io_context io_{1};
+    // stop() still uses the thread of the connections after the last connection has ended.
+    asio::executor_work_guard<asio::io_context::executor_type> work_ = asio::make_work_guard(io_);
     asio::thread_pool pool_{1};
     Tcp::acceptor acceptor_;
+    asio::steady_timer pause_{io_};
     std::uint16_t port_ = 0;
     Access access_;
     std::atomic<bool> notified_ = false;
@@ -163,7 +177,7 @@ private:
 };
 
 PageServer::PageServer(Source& source, const PageServerOptions& options)
-    : state_(std::make_shared<State>(source, options)) {
+    : state_(std::make_unique<State>(source, options)) {
     state_->start();
 }
 

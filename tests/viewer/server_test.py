@@ -1,0 +1,706 @@
+#!/usr/bin/python3
+"""Compares the answers of `octopair view` with the input and with `octopair detect`, and attacks its server.
+
+    server_test.py --program PATH [CLASS[.TEST]...]
+"""
+import argparse
+import array
+import base64
+import csv
+import gzip
+import io
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import scene_files
+from view_process import ViewProcess, WebSocket, parsed, read_all
+
+PROGRAM = ''
+
+
+def numbers(code, data):
+    values = array.array(code)
+    values.frombytes(data)
+    return list(values)
+
+
+def pairs_in(data):
+    values = numbers('I', data)
+    return list(zip(values[::2], values[1::2]))
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def view(self, *arguments, **options):
+        return ViewProcess(PROGRAM, arguments, **options)
+
+    def run_program(self, *arguments):
+        return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=20, check=False)
+
+    def detected(self, path, *arguments):
+        done = self.run_program('detect', path, '--quiet', *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return list(csv.DictReader(io.StringIO(done.stdout)))
+
+
+def relative_rows(data, origin):
+    """Returns the absolute coordinates of rows of boxes."""
+    values = numbers('f', data)
+    return [[values[i + k] + origin[k % 3] for k in range(6)] for i in range(0, len(values), 6)]
+
+
+class Answers(InFolder):
+    def assert_boxes(self, rows, objects, boxes):
+        self.assertEqual(len(rows), len(objects))
+        for row, index in zip(rows, objects):
+            for found, expected in zip(row, boxes[index]):
+                self.assertAlmostEqual(found, expected, places=5)
+
+    def shown(self, view, scene):
+        if scene['shown'] == scene['objects']:
+            status, _, body = view.request('/shown.u32')
+            return list(range(scene['objects'])) if status == 404 else numbers('I', body)
+        return numbers('I', view.get('shown.u32'))
+
+    def check_frame(self, view, scene, number, boxes):
+        pairs = scene_files.true_pairs(boxes)
+        shown = self.shown(view, scene)
+        self.assertEqual(sorted(shown), list(range(len(boxes))))
+        frame = view.get(f'frame/{number}.json')
+        self.assertEqual((frame['frame'], frame['pairs'], frame['pairs_listed']), (number, len(pairs), len(pairs)))
+        self.assert_boxes(relative_rows(view.get(f'frame/{number}.f32'), scene['origin']), shown, boxes)
+        self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), pairs)
+        partners = [sum(1 for pair in pairs if index in pair) for index in range(len(boxes))]
+        self.assertEqual(numbers('I', view.get(f'partners/{number}.u32')), [partners[index] for index in shown])
+        self.check_octants(view, scene, number, boxes, shown)
+        rows = view.get(f'collisions/{number}.json?count=1000')
+        self.assertEqual([(row['a'], row['b']) for row in rows['rows']], pairs)
+        one = view.get(f'object/{number}/3.json')
+        self.assertEqual((one['index'], one['row'], one['partner_count']), (3, shown.index(3), partners[3]))
+        self.assertEqual(one['box'], {'min': list(boxes[3][:3]), 'max': list(boxes[3][3:])})
+        return pairs
+
+    def check_octants(self, view, scene, number, boxes, shown):
+        summary = view.get(f'octants/{number}.json')
+        levels = view.get(f'levels/{number}.u8')
+        homes = {}
+        for level, described in enumerate(summary['levels']):
+            words = numbers('I', view.get(f'octants/{number}/{level}.bin'))
+            self.assertEqual(len(words), 11 * described['listed'])
+            for i in range(0, len(words), 11):
+                homes[(level, words[i + 9] << 32 | words[i + 10])] = words[i + 7]
+        self.assertEqual(sum(homes.values()), len(boxes))
+        for row, index in list(enumerate(shown))[:20]:
+            one = view.get(f'object/{number}/{index}.json')
+            self.assertEqual(one['level'], levels[row])
+            digits = [int(digit) - 1 for digit in one['code'].strip('{}').split(',') if digit]
+            key = sum(digit << 60 - 3 * i for i, digit in enumerate(digits))
+            self.assertGreater(homes[(len(digits), key)], 0)
+
+    def test_boxes(self):
+        boxes = scene_files.random_boxes(1, 120)
+        scene_files.save_boxes(self.path('boxes.npy'), boxes)
+        with self.view(self.path('boxes.npy')) as view:
+            scene = view.get('view.json')
+            self.assertEqual((scene['title'], scene['kind'], scene['objects'], scene['frames']), ('boxes.npy', 'scene', 120, 1))
+            for end, choose in (('min', min), ('max', max)):
+                for axis in range(3):
+                    self.assertEqual(scene['bounds'][end][axis], choose(box[axis + (3 if end == 'max' else 0)] for box in boxes))
+            pairs = self.check_frame(view, scene, 0, boxes)
+            self.assertEqual(scene['summary']['pairs'], len(pairs))
+            rows = self.detected(self.path('boxes.npy'))
+            self.assertEqual([(int(row['a']), int(row['b'])) for row in rows], pairs)
+            for address in ('timeline.json', 'began/0.u32', 'names.json', 'groups.u32', 'shapes.json', 'poses/0.f32', 'nothing',
+                            'frame/1.json', 'shape/0', 'favicon.ico'):
+                self.assertEqual(view.request('/' + address)[0], 404, address)
+            self.assertEqual(view.get('search.json?q=7')['found'], [{'index': 7, 'name': ''}])
+
+    def test_page(self):
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 5))
+        with self.view(self.path('boxes.npy')) as view:
+            status, headers, body = view.request('/')
+            self.assertEqual((status, headers['content-type']), (200, 'text/html; charset=utf-8'))
+            self.assertIn(b'octopair', body)
+            self.assertEqual(headers['x-frame-options'], 'DENY')
+            self.assertEqual(headers['x-content-type-options'], 'nosniff')
+            self.assertEqual(headers['cache-control'], 'no-store')
+            self.assertEqual(view.request('/', headers=['Accept-Encoding: gzip, br'])[2], body)
+            self.assertEqual(view.request('/?anything=1')[2], body)
+            status, headers, empty = view.request('/', method='HEAD')
+            self.assertEqual((status, empty, headers['content-length']), (200, b'', str(len(body))))
+            with view.connect() as connection:  # one connection, several requests
+                request = f'GET /view.json HTTP/1.1\r\nHost: {view.endpoint}\r\n\r\n'.encode()
+                connection.sendall(request * 2 + request.replace(b'\r\n\r\n', b'\r\nConnection: close\r\n\r\n'))
+                self.assertEqual(read_all(connection).count(b'HTTP/1.1 200'), 3)
+            with WebSocket(view) as web_socket:
+                self.assertEqual(json.loads(web_socket.read()[1]), {'event': 'ready'})
+
+    def test_moving_scene(self):
+        frames = scene_files.moving_boxes(2, 8, 60)
+        scene_files.save_moving(self.path('moving.npy'), frames)
+        events = self.detected(self.path('moving.npy'), '--events')
+        with self.view(self.path('moving.npy')) as view:
+            scene = view.get('view.json')
+            self.assertEqual((scene['frames'], scene['has']['events']), (8, True))
+            before = []
+            for number in (0, 1, 2, 7, 4):
+                pairs = self.check_frame(view, scene, number, frames[number])
+                before = scene_files.true_pairs(frames[number - 1]) if number else []
+                began = pairs_in(view.get(f'began/{number}.u32'))
+                self.assertEqual(began, sorted(set(pairs) - set(before)))
+                self.assertEqual(pairs_in(view.get(f'ended/{number}.u32')), sorted(set(before) - set(pairs)))
+                told = sorted((int(row['a']), int(row['b'])) for row in events
+                              if int(row['frame']) == number and row['event'] == 'begin')
+                self.assertEqual(began, told)
+                first = view.get(f'collisions/{number}.json?sort=began&count=1000')['rows']
+                self.assertEqual([row.get('change') for row in first], ['began'] * len(began) + [None] * (len(pairs) - len(began)))
+            end = time.monotonic() + 20
+            while (timeline := view.get('timeline.json'))['done'] < 8 and time.monotonic() < end:
+                time.sleep(0.02)
+            self.assertEqual(timeline['pairs'], [len(scene_files.true_pairs(boxes)) for boxes in frames])
+            self.assertEqual(timeline['began'][0], timeline['pairs'][0])
+
+    def test_mesh_scene(self):
+        scene_files.write_cubes_obj(self.path('cubes.obj'))
+        with self.view(self.path('cubes.obj'), '--up', 'y') as view:
+            scene = view.get('view.json')
+            self.assertEqual((scene['objects'], scene['up']), (3, 'y'))
+            self.assertEqual(scene['has'], scene['has'] | {'names': True, 'shapes': True, 'contacts': True})
+            shown = self.shown(view, scene)
+            self.assertEqual([view.get('names.json')[shown.index(i)] for i in range(3)], [f'cubes.obj/{name}' for name in ('hull', 'deck </script>', 'mast')])
+            rows = view.get('collisions/0.json')['rows']
+            self.assertEqual([(row['a'], row['b'], row['name_b'], row['class']) for row in rows],
+                             [(0, 1, 'cubes.obj/deck </script>', 'penetrating')])
+            self.assertGreater(len(rows[0]['contacts']), 0)
+            for contact in rows[0]['contacts']:
+                self.assertTrue(0.75 - 1e-9 <= contact['point'][0] <= 1 + 1e-9)
+            self.check_shapes(view, scene, shown)
+
+    def check_shapes(self, view, scene, shown):
+        """Places the vertices of each object by its pose. Their bounds must be its box."""
+        shapes = view.get('shapes.json')['shapes']
+        geometry = numbers('I', view.get('geometry.u32'))
+        poses = numbers('f', view.get('poses/0.f32'))
+        for row, index in enumerate(shown):
+            described = shapes[geometry[row]]
+            data = view.get(f'shape/{geometry[row]}')
+            self.assertEqual(len(data), 12 * (described['vertices'] + described['triangles']))
+            vertices = numbers('f', data[:12 * described['vertices']])
+            triangles = numbers('I', data[12 * described['vertices']:])
+            self.assertLess(max(triangles), described['vertices'])
+            pose = poses[12 * row:12 * row + 12]
+            placed = [[sum(pose[3 * column + axis] * vertices[i + column] for column in range(3)) + pose[9 + axis]
+                       + scene['origin'][axis] for axis in range(3)] for i in range(0, len(vertices), 3)]
+            box = view.get(f'object/0/{index}.json')['box']
+            size = max(high - low for low, high in zip(box['min'], box['max']))
+            for axis in range(3):  # a polyhedron in place of a sphere is a little smaller
+                self.assertAlmostEqual(min(p[axis] for p in placed), box['min'][axis], delta=0.05 * size)
+                self.assertAlmostEqual(max(p[axis] for p in placed), box['max'][axis], delta=0.05 * size)
+
+    def test_json_scene(self):
+        scene_files.write_json_scene(self.path('scene.json'))
+        with self.view(self.path('scene.json')) as view:
+            scene = view.get('view.json')
+            self.assertEqual(view.get('search.json?q=BLO')['found'], [{'index': 1, 'name': 'block'}])
+            self.assertEqual(pairs_in(view.get('pairs/0.u32')), [(0, 1)])
+            self.check_shapes(view, scene, self.shown(view, scene))
+
+    def test_results(self):
+        scene_files.write_cubes_obj(self.path('cubes.obj'))
+        detected = self.run_program('detect', self.path('cubes.obj'), '--stage', 'features', '--quiet', '--output', self.path('found.jsonl'))
+        self.assertEqual(detected.returncode, 0)
+        for inputs in ((self.path('found.jsonl'),), (self.path('cubes.obj'), self.path('found.jsonl'))):
+            with self.view(*inputs) as view:
+                scene = view.get('view.json')
+                self.assertEqual(pairs_in(view.get('pairs/0.u32')), [(0, 1)])
+                row = view.get('collisions/0.json')['rows'][0]
+                self.assertEqual((row['class'], row['name_a'], row['name_b']), ('penetrating', 'cubes.obj/hull', 'cubes.obj/deck </script>'))
+                self.assertEqual(scene['objects'], 2 if len(inputs) == 1 else 3)
+                rows = relative_rows(view.get('frame/0.f32'), scene['origin'])
+                self.assertEqual(len(rows), scene['shown'])
+                self.assertFalse(any(math.isnan(value) for box in rows for value in box))
+
+    def test_results_as_pairs(self):
+        boxes = scene_files.random_boxes(5, 50)
+        pairs = scene_files.true_pairs(boxes)
+        scene_files.save_boxes(self.path('boxes.npy'), boxes)
+        for name in ('pairs.npy', 'pairs.csv', 'pairs.jsonl'):
+            self.assertEqual(self.run_program('detect', self.path('boxes.npy'), '--quiet', '--output', self.path(name)).returncode, 0)
+            with self.view(self.path('boxes.npy'), self.path(name)) as view:
+                self.assertEqual(pairs_in(view.get('pairs/0.u32')), pairs, name)
+            with self.view(self.path(name)) as view:
+                self.assertEqual(pairs_in(view.get('pairs/0.u32')), pairs, name)
+                self.assertEqual(view.get('octants/0.json')['entries'], 0)
+
+    def test_results_with_events(self):
+        frames = scene_files.moving_boxes(6, 6, 40)
+        scene_files.save_moving(self.path('moving.npy'), frames)
+        for name in ('events.csv', 'events.jsonl'):
+            done = self.run_program('detect', self.path('moving.npy'), '--events', '--quiet', '--output', self.path(name))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with self.view(self.path('moving.npy'), self.path(name)) as view:
+                for number, boxes in enumerate(frames):
+                    self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), scene_files.true_pairs(boxes), (name, number))
+
+
+class Access(InFolder):
+    def setUp(self):
+        super().setUp()
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 20))
+
+    def test_foreign_hosts_and_origins(self):
+        with self.view(self.path('boxes.npy')) as view:
+            for host in ('evil.example', f'evil.example:{view.port}', '127.0.0.1', f'127.0.0.1:{view.port + 1}', '',
+                         f'127.0.0.1:{view.port}.evil.example', f'localhost.evil.example:{view.port}'):
+                for address in ('/', '/view.json', '/nothing'):
+                    self.assertEqual(view.request(address, host=host)[0], 403, host)
+                with WebSocket(view, host=host or 'x') as web_socket:
+                    self.assertEqual(web_socket.status, 403, host)
+            self.assertEqual(view.request('/view.json', host=f'localhost:{view.port}')[0], 200)
+            for origin in ('null', '', 'http://evil.example', f'https://{view.endpoint}', 'http://127.0.0.1',
+                           f'http://127.0.0.1:{view.port + 1}', f'http://localhost:{view.port}'):
+                self.assertEqual(view.request('/view.json', headers=[f'Origin: {origin}'])[0], 403, origin)
+                with WebSocket(view, headers=[f'Origin: {origin}']) as web_socket:
+                    self.assertEqual(web_socket.status, 403, origin)
+            self.assertEqual(view.request('/view.json', headers=[f'Origin: http://{view.endpoint}'])[0], 200)
+            with WebSocket(view, headers=[f'Origin: http://{view.endpoint}']) as web_socket:
+                self.assertEqual(web_socket.status, 101)
+            # Two headers, of which one is right.
+            both = [f'Origin: http://{view.endpoint}', 'Origin: http://evil.example']
+            self.assertIn(view.request('/view.json', headers=both[::-1])[0], (0, 400, 403))
+            no_host = view.send(b'GET / HTTP/1.0\r\n\r\n')
+            self.assertEqual(parsed(no_host)[0], 403)
+
+    def test_token(self):
+        with self.view(self.path('boxes.npy'), '--listen', '127.0.0.1:0') as view:
+            self.assertRegex(view.token, r'^[0-9a-f]{32}$')
+            for address in ('/', '/view.json', '/?token=', '/?token=' + '0' * 32, '/?token=' + view.token[:-1]):
+                self.assertEqual(view.request(address)[0], 403, address)
+            with WebSocket(view) as web_socket:
+                self.assertEqual(web_socket.status, 403)
+            status, headers, _ = view.request('/?token=' + view.token)
+            self.assertEqual((status, headers['location']), (303, '/'))
+            cookie = headers['set-cookie']
+            self.assertIn('HttpOnly', cookie)
+            self.assertIn('SameSite=Strict', cookie)
+            pair = cookie.split(';')[0]
+            for header in (f'Cookie: {pair}', f'Cookie: other=1; {pair}', f'Authorization: Bearer {view.token}'):
+                self.assertEqual(view.request('/view.json', headers=[header])[0], 200, header)
+                with WebSocket(view, headers=[header]) as web_socket:
+                    self.assertEqual(web_socket.status, 101)
+            for header in (f'Cookie: {pair}x', f'Cookie: x{pair}', f'Authorization: {view.token}', 'Authorization: Bearer '):
+                self.assertEqual(view.request('/view.json', headers=[header])[0], 403, header)
+            self.assertEqual(view.request('/view.json', headers=[f'Cookie: {pair}', 'Origin: http://evil.example'])[0], 403)
+            # The address that follows a token stays on this server, and has no line of its own.
+            for address in ('//evil.example/', '/%2f%2fevil.example/', '/%0d%0aX-Evil:1', '/%5cevil.example', '/a%0d%0ab/'):
+                status, headers, _ = view.request(f'{address}?token={view.token}')
+                self.assertNotIn('x-evil', headers)
+                self.assertFalse(headers.get('location', '').startswith(('//', '/\\')), address)
+        with self.view(self.path('boxes.npy'), '--listen', '127.0.0.1:0') as other:
+            self.assertNotEqual(other.token, view.token)
+
+    def test_addresses(self):
+        with self.view(self.path('boxes.npy')) as view:
+            for address in ('/../etc/passwd', '/..%2f..%2fetc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/.%2e/x', '/frame/../view.json',
+                            '/./view.json', '/%', '/%2', '/%zz', '/view.json?%', '/%00', '/view.json%00', '/x?a=%00'):
+                self.assertEqual(view.request(address)[0], 400, address)
+            for address in ('/..../etc/passwd', '/etc/passwd', '/%252e%252e/view.json', '/view.json/', '//view.json', '/\\..\\view.json',
+                            '/proc/self/environ', '/frame/0.f32/..%5c'):
+                self.assertIn(view.request(address)[0], (200, 404), address)
+                self.assertNotIn(b'root:', view.request(address)[2])
+            self.assertEqual(view.request('http://evil.example/view.json')[0], 400)
+            self.assertEqual(view.request('*')[0], 400)
+            for address in ('/collisions/0.json?from=x', '/collisions/0.json?sort=x', '/near/0.bin', '/near/0.bin?min=1,2,3&max=nan,1,1'):
+                self.assertEqual(view.request(address)[0], 400, address)
+            for address in ('/frame/99999999999999999999.json', '/frame/-1.f32', '/object/0/20.json', '/octants/0/22.bin', '/shape/-1'):
+                self.assertEqual(view.request(address)[0], 404, address)
+
+    def test_methods_and_sizes(self):
+        with self.view(self.path('boxes.npy')) as view:
+            for method in ('POST', 'PUT', 'DELETE', 'OPTIONS', 'PATCH', 'TRACE', 'CONNECT'):
+                self.assertEqual(view.request('/view.json', method=method, headers=['Content-Length: 0'])[0], 405, method)
+            self.assertIn(view.request('/view.json', method='MADE-UP')[0], (0, 400, 405))
+            self.assertEqual(view.request('/view.json', headers=['X: ' + 'a' * 20_000])[0], 431)
+            self.assertEqual(view.request('/' + 'a' * 20_000)[0], 431)
+            self.assertEqual(view.request('/view.json', headers=[f'X-{i}: {i}' for i in range(5000)])[0], 431)
+            self.assertEqual(view.request('/view.json', method='POST', headers=['Content-Length: 5'])[0], 413)
+            self.assertEqual(view.request('/view.json', method='POST', headers=['Content-Length: 99999999999999'])[0], 413)
+            chunked = view.send(f'POST / HTTP/1.1\r\nHost: {view.endpoint}\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nabcde\r\n0\r\n\r\n'
+                                .encode())
+            self.assertIn(parsed(chunked)[0], (0, 400, 405, 413))
+            for garbage in (b'\r\n', b'\0' * 100, b'GET\r\n\r\n', b'GET / HTTP/9.9\r\n\r\n', b'\x16\x03\x01\x02\x00\x01\x00', b'x' * 100_000,
+                            b'GET / HTTP/1.1\r\nHost: a\r\n b\r\n\r\n', b'GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n',
+                            b'GET / HTTP/1.1\nHost: ' + view.endpoint.encode() + b'\n\n', b'PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n'):
+                with view.connect() as connection:
+                    connection.sendall(garbage)
+                    connection.shutdown(1)
+                    read_all(connection)
+                self.assertEqual(view.get('view.json')['objects'], 20)
+
+
+class WebSockets(InFolder):
+    def setUp(self):
+        super().setUp()
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 20))
+        self.server = self.view(self.path('boxes.npy'))
+        self.addCleanup(self.server.__exit__)
+
+    def attack(self, *frames):
+        """Sends frames. The server must end this connection, and answer others."""
+        with WebSocket(self.server) as web_socket:
+            self.assertEqual(web_socket.status, 101)
+            try:
+                for frame in frames:
+                    web_socket.send(**frame)
+            except ConnectionError:
+                pass
+            self.assertTrue(web_socket.is_ended(), frames[0])
+        self.assertTrue(self.server.is_alive())
+        self.assertEqual(self.server.get('view.json')['objects'], 20)
+
+    def test_frames_that_break_the_protocol(self):
+        good = b'{"want": -1}'
+        for frames in ([{'payload': good, 'masked': False}], [{'payload': b'', 'length': 1 << 20}], [{'payload': b'', 'length': 1 << 63}],
+                       [{'payload': b'', 'length': (1 << 64) - 1}], [{'payload': b'', 'length': (1 << 63) - 1}],
+                       [{'payload': b'a' * 1025}], [{'payload': b'{"want": -1' + b' ' * 2000 + b'}'}],
+                       [{'payload': good, 'opcode': 2}], [{'payload': b'{"want": "\xff\xfe"}'}], [{'payload': b'\xff'}], [{'payload': b'not json'}],
+                       [{'payload': b'[' * 1000}], [{'payload': b'{}'}], [{'payload': b''}], [{'payload': b'a' * 126, 'opcode': 9}],
+                       [{'payload': b'', 'opcode': 9, 'fin': False}], [{'payload': b'', 'opcode': 3}], [{'payload': b'', 'opcode': 11}],
+                       [{'payload': good, 'opcode': 0}], [{'payload': b'{', 'fin': False}, {'payload': good}],
+                       [{'payload': b'x' * 600, 'fin': False}, {'payload': b'x' * 600, 'opcode': 0, 'fin': False}],
+                       [{'payload': b'\x03', 'opcode': 8}], [{'payload': b'\x00\x00', 'opcode': 8}], [{'payload': b'', 'opcode': 8}]):
+            with self.subTest(str(frames)[:80]):
+                self.attack(*frames)
+
+    def test_frames_that_are_right(self):
+        with WebSocket(self.server) as web_socket:
+            self.assertEqual(web_socket.read(), (1, b'{"event":"ready"}'))
+            web_socket.send(b'hello', opcode=9)
+            self.assertEqual(web_socket.read(), (10, b'hello'))
+            web_socket.send(b'{"wa', fin=False)
+            web_socket.send(b'between', opcode=9)
+            web_socket.send(b'nt": -1}', opcode=0)
+            self.assertEqual(web_socket.read(), (10, b'between'))
+            for _ in range(1000):  # a scene of a file has no live frames
+                web_socket.send(b'{"want": -1}')
+            web_socket.send(b'last', opcode=9)
+            self.assertEqual(web_socket.read(), (10, b'last'))
+
+    def test_other_paths(self):
+        for path in ('/', '/view.json', '/socketx', '/x'):
+            with WebSocket(self.server, path=path) as web_socket:
+                self.assertEqual(web_socket.status, 404, path)
+        for path in ('/scene/7/socket', '/a/b/socket'):
+            with WebSocket(self.server, path=path) as web_socket:
+                self.assertIn(web_socket.status, (101, 404), path)
+        self.assertEqual(self.server.request('/socket')[0], 404)
+
+
+class Endurance(InFolder):
+    def setUp(self):
+        super().setUp()
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 200))
+
+    def test_many_connections(self):
+        with self.view(self.path('boxes.npy')) as view:
+            files = view.files()
+            connections = [view.connect() for _ in range(300)]
+            time.sleep(0.5)
+            self.assertLessEqual(view.files() - files, 256)
+            for connection in connections:
+                connection.close()
+            self.assert_recovers(view, files)
+            sockets = []
+            for _ in range(300):
+                try:
+                    sockets.append(WebSocket(view))
+                except ConnectionError:
+                    pass
+            self.assertEqual(sum(web_socket.status == 101 for web_socket in sockets), 256)
+            for web_socket in sockets:
+                web_socket.connection.close()
+            self.assert_recovers(view, files)
+
+    def assert_recovers(self, view, files):
+        end = time.monotonic() + 10
+        while view.files() > files and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertLessEqual(view.files(), files)
+        self.assertEqual(view.get('view.json')['objects'], 200)
+
+    def test_garbage(self):
+        with self.view(self.path('boxes.npy')) as view:
+            files = view.files()
+            view.get('frame/0.f32')
+            memory = None
+            for i in range(3000):
+                garbage = os.urandom(i % 300) if i % 3 else b'GET /' + os.urandom(i % 50) + b' HTTP/1.1\r\nHost: ' + view.endpoint.encode() + b'\r\n\r\n'
+                with view.connect() as connection:
+                    try:
+                        connection.sendall(garbage)
+                        if i % 5 == 0:
+                            connection.shutdown(1)
+                            connection.recv(4096)
+                    except ConnectionError:
+                        pass
+                if i == 1000:
+                    memory = view.memory()
+            self.assert_recovers(view, files)
+            self.assertLess(view.memory(), memory + (8 << 20))
+
+    def test_answers_are_not_kept(self):
+        with self.view(self.path('boxes.npy')) as view:
+            memory = None
+            for i in range(600):
+                for address in ('frame/0.f32', 'octants/0.json', 'collisions/0.json?count=1000', f'object/0/{i % 200}.json', '?x'):
+                    self.assertEqual(view.request('/' + address)[0], 200)
+                if i == 200:
+                    memory = view.memory()
+            self.assertLess(view.memory(), memory + (4 << 20))
+
+    def test_slow_requests_end(self):
+        with self.view(self.path('boxes.npy')) as view:
+            connections = [view.connect() for _ in range(20)]
+            begin = time.monotonic()
+            for connection in connections:
+                connection.settimeout(60)
+                connection.sendall(b'GET / HT')
+            self.assertEqual(view.get('view.json')['objects'], 200)
+            while time.monotonic() < begin + 20:
+                time.sleep(5)
+                for connection in connections:
+                    connection.sendall(b'T')
+            for connection in connections:
+                self.assertEqual(read_all(connection), b'')
+                connection.close()
+            self.assertLess(time.monotonic() - begin, 45)
+
+    def test_clients_that_do_not_read(self):
+        scene_files.save_boxes(self.path('large.npy'), scene_files.random_boxes(2, 20_000, 200.0))
+        with self.view(self.path('large.npy')) as view:
+            request = f'GET /frame/0.f32 HTTP/1.1\r\nHost: {view.endpoint}\r\n\r\n'.encode()
+            connections = [view.connect() for _ in range(100)]
+            for connection in connections:
+                connection.sendall(request * 5)
+            self.assertEqual(view.get('view.json')['objects'], 20_000)
+            time.sleep(1)
+            self.assertLess(view.memory(), 400 << 20)
+            for connection in connections:
+                connection.close()
+            self.assertEqual(view.get('view.json')['objects'], 20_000)
+
+    def test_few_open_files(self):
+        with self.view(self.path('boxes.npy'), limit_files=40) as view:
+            connections = [view.connect() for _ in range(100)]
+            time.sleep(0.2)
+            before = self.cpu(view)
+            time.sleep(1)
+            self.assertLess(self.cpu(view) - before, 0.3)  # it does not poll
+            for connection in connections:
+                connection.close()
+            time.sleep(0.5)
+            self.assertEqual(view.get('view.json')['objects'], 200)
+
+    @staticmethod
+    def cpu(view):
+        """Returns the seconds of processor time."""
+        with open(f'/proc/{view.process.pid}/stat', encoding='utf-8') as stat:
+            fields = stat.read().rsplit(')', 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+    def test_parallel_readers(self):
+        frames = scene_files.moving_boxes(3, 30, 40)
+        scene_files.save_moving(self.path('moving.npy'), frames)
+        faults = []
+        with self.view(self.path('moving.npy')) as view:
+            def read(first):
+                try:
+                    for number in range(first, 30):
+                        found = pairs_in(view.get(f'pairs/{number}.u32'))
+                        if found != scene_files.true_pairs(frames[number]):
+                            faults.append(number)
+                except Exception as error:  # pylint: disable=broad-except
+                    faults.append(error)
+            threads = [threading.Thread(target=read, args=(i,)) for i in range(8)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        self.assertEqual(faults, [])
+
+    def test_ends_on_a_signal(self):
+        with self.view(self.path('boxes.npy')) as view:
+            connections = [view.connect() for _ in range(10)]
+            with WebSocket(view) as web_socket:
+                view.process.terminate()
+                view.process.wait(10)
+                self.assertEqual(web_socket.read()[0], 1)
+                self.assertEqual(json.loads(web_socket.read()[1]), {'event': 'closed'})
+            for connection in connections:
+                connection.close()
+
+
+class BadInput(InFolder):
+    def refused(self, status, *arguments):
+        done = self.run_program('view', *arguments, '--no-browser', '--quiet')
+        self.assertEqual(done.returncode, status, (arguments, done.stdout, done.stderr))
+        self.assertEqual(done.stdout, '')
+        self.assertEqual(len(done.stderr.strip().split('\n')), 1, done.stderr)
+        self.assertTrue(done.stderr.startswith('octopair: '), done.stderr)
+        return done.stderr
+
+    def write(self, name, text):
+        with open(self.path(name), 'w', encoding='utf-8') as file:
+            file.write(text)
+        return self.path(name)
+
+    def test_inputs(self):
+        scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))
+        self.refused(4, self.path('missing.npy'))
+        self.refused(4, self.path('missing.jsonl'))
+        self.refused(4, self.folder + '/none/x.csv')
+        scene_files.save_boxes(self.path('nan.npy'), [(0, 0, 0, 1, 1, 1), (0, 0, 0, math.nan, 1, 1)])
+        self.assertIn('1', self.refused(3, self.path('nan.npy')))
+        scene_files.save_boxes(self.path('turned.npy'), [(0, 0, 0, 1, 1, -1)])
+        self.refused(3, self.path('turned.npy'))
+        self.write('scene.xyz', 'x')
+        self.assertIn(self.run_program('view', self.path('scene.xyz'), '--no-browser', '--quiet').returncode, (2, 3))
+        self.refused(3, self.write('empty.npy', ''))
+        self.refused(3, self.write('bad.json', '{'))
+        self.refused(3, self.write('bad.csv', 'a,b,c\n1,2'))
+        self.assertEqual(self.run_program('view', '--no-browser').returncode, 2)
+
+    def test_results(self):
+        scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))
+        good = self.path('good.npy')
+        self.assertIn('10', self.refused(3, good, self.write('beyond.jsonl', '{"a":0,"b":10}\n')))
+        self.refused(3, good, self.write('frame.jsonl', '{"frame":1,"a":0,"b":1}\n'))
+        self.refused(3, self.write('same.jsonl', '{"a":5,"b":5}\n'))
+        for row in ('{', '[]', '{"a":0}', '{"a":0,"b":-1}', '{"a":0,"b":1.5}', '{"a":0,"b":4294967295}', '{"a":0,"b":4294967296}', '{"a":0,"b":1,"contacts":3}',
+                    '{"a":0,"b":1,"contacts":[{"point":[1,2]}]}', '{"a":0,"b":1,"depth":"x"}', '{"a":0,"b":1,"frame":1000000}',
+                    '{"a":0,"b":1,"contacts":[{"point":[1e999,0,0]}]}'):
+            self.assertIn('line 2', self.refused(3, self.write('row.jsonl', '{"a":0,"b":1}\n' + row + '\n')), row)
+        for row in ('0', '0,1,2,3,4', 'x,1', '0,-1', '0,4294967296', ',', '0,1x'):
+            self.assertIn('line 3', self.refused(3, self.write('row.csv', 'a,b\n0,1\n' + row + '\n')), row)
+        self.assertIn('line 2', self.refused(3, self.write('row.csv', 'a,b,depth\n0,1,deep\n')))
+        self.assertIn('line 2', self.refused(3, self.write('row.csv', 'a,b,points\n0,1,inf 0 0\n')))
+        self.assertIn('line 2', self.refused(3, self.write('row.csv', 'a,b,points\n0,1,1 2\n')))
+        scene_files.write_npy(self.path('wrong.npy'), (2, 2), [0, 1, 3, 3], '<u4')
+        self.refused(3, self.path('wrong.npy'))
+        self.refused(2, self.write('one.jsonl', '{"a":0,"b":1}\n'), self.write('two.jsonl', '{"a":0,"b":1}\n'))
+
+    def test_small_results_do_not_take_all_memory(self):
+        self.refused(5, self.write('far.jsonl', '{"a":0,"b":4294967294}\n'))
+        rows = ''.join(f'{{"frame":0,"event":"begin","a":{i},"b":{i + 1}}}\n' for i in range(200))
+        done = self.run_program('view', self.write('long.jsonl', rows + '{"frame":999999,"event":"end","a":0,"b":1}\n'), '--export',
+                                self.path('page.html'), '--quiet')
+        self.assertEqual(done.returncode, 5, done.stderr)
+
+    def test_options(self):
+        scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))
+        good = self.path('good.npy')
+        for arguments in (['--port', '65536'], ['--port', 'x'], ['--listen', 'x'], ['--listen', '127.0.0.1'], ['--listen', '127.0.0.1:99999'],
+                          ['--listen', 'localhost:0'], ['--listen', '127.0.0.1:0', '--port', '5'], ['--up', 'x'], ['--margin', '-1'],
+                          ['--export', self.path('page.txt')], ['--screenshot', self.path('picture.jpg')], ['--unknown'],
+                          ['--export', good], ['--stage', 'x'], ['--listen', ':0']):
+            done = self.run_program('view', good, *arguments, '--no-browser', '--quiet')
+            self.assertEqual(done.returncode, 2, (arguments, done.stderr))
+        self.assertEqual(self.run_program('view', good, '--listen', '192.0.2.1:0', '--no-browser', '--quiet').returncode, 4)
+        with self.view(good) as view:
+            self.refused(4, good, '--port', str(view.port))
+
+
+class Export(InFolder):
+    @staticmethod
+    def data_of(path):
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        found = re.findall(r'<script type="application/octet-stream" data-address="([^"]*)">([A-Za-z0-9+/=]*)</script>', text)
+        return {address: gzip.decompress(base64.b64decode(data)) for address, data in found}, text
+
+    def check_export(self, *inputs):
+        done = self.run_program('view', *inputs, '--export', self.path('page.html'), '--quiet')
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, '', ''))
+        data, text = self.data_of(self.path('page.html'))
+        with self.view(*inputs) as view:
+            self.wait_for_timeline(view)
+            for address, body in data.items():
+                if address == 'view.json' or address.startswith('frame/') and address.endswith('.json'):
+                    continue  # has times
+                query = '?count=1000' if address.startswith('collisions/') else ''
+                self.assertEqual(body, view.request(f'/{address}{query}')[2], address)
+        scene = json.loads(data['view.json'])
+        for frame in range(scene['frames']):
+            for address in (f'frame/{frame}.json', f'frame/{frame}.f32', f'pairs/{frame}.u32', f'octants/{frame}/0.bin'):
+                self.assertIn(address, data)
+        self.assertEqual((scene['has']['search'], scene['has']['near']), (False, False))
+        self.assertEqual(os.listdir(self.folder).count('page.html'), 1)
+        return scene, text
+
+    @staticmethod
+    def wait_for_timeline(view):
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            status, _, body = view.request('/timeline.json')
+            if status == 404 or json.loads(body)['done'] == json.loads(body)['frames']:
+                return
+            time.sleep(0.02)
+
+    def test_each_kind(self):
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 80))
+        self.check_export(self.path('boxes.npy'))
+        scene_files.save_moving(self.path('moving.npy'), scene_files.moving_boxes(2, 5, 30))
+        self.assertEqual(self.check_export(self.path('moving.npy'))[0]['frames'], 5)
+        scene_files.write_cubes_obj(self.path('cubes.obj'))
+        text = self.check_export(self.path('cubes.obj'))[1]
+        self.assertNotIn('deck </script>', text)
+        scene_files.write_json_scene(self.path('scene.json'))
+        self.check_export(self.path('scene.json'))
+        self.run_program('detect', self.path('cubes.obj'), '--stage', 'features', '--quiet', '--output', self.path('found.jsonl'))
+        self.check_export(self.path('found.jsonl'))
+        self.check_export(self.path('cubes.obj'), self.path('found.jsonl'))
+
+    def test_names_of_files_cannot_become_page(self):
+        name = 'x<script>alert(1)<.npy'
+        scene_files.save_boxes(self.path(name), scene_files.random_boxes(1, 8))
+        scene, text = self.check_export(self.path(name))
+        self.assertEqual(scene['title'], name)
+        self.assertNotIn('alert(1)', text)
+
+    def test_failures_leave_nothing_behind(self):
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 8))
+        scene_files.save_boxes(self.path('nan.npy'), [(0, 0, 0, 1, 1, math.nan)])
+        before = sorted(os.listdir(self.folder))
+        for status, arguments in ((4, [self.path('boxes.npy'), '--export', self.path('none/page.html')]),
+                                  (3, [self.path('nan.npy'), '--export', self.path('page.html')]),
+                                  (4, [self.path('boxes.npy'), '--export', '/proc/page.html'])):
+            done = self.run_program('view', *arguments, '--quiet')
+            self.assertEqual(done.returncode, status, done.stderr)
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
+        if os.geteuid() != 0:
+            os.mkdir(self.path('locked'), 0o500)
+            done = self.run_program('view', self.path('boxes.npy'), '--export', self.path('locked/page.html'), '--quiet')
+            self.assertEqual((done.returncode, os.listdir(self.path('locked'))), (4, []))
+
+
+if __name__ == '__main__':
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--program', required=True)
+    known, rest = parser.parse_known_args()
+    PROGRAM = known.program
+    unittest.main(argv=[sys.argv[0], *rest])
