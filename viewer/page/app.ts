@@ -16,18 +16,17 @@ import {Search} from './search.ts';
 import {Selection} from './selection.ts';
 import type {Name, Settings} from './settings.ts';
 import type {Source} from './source.ts';
-import {Stage} from './stage.ts';
+import type {Stage} from './stage.ts';
 import {computeStates, State} from './states.ts';
 import {Table} from './table.ts';
 import type {Timeline} from './timeline.ts';
 import type {Collision, Point} from './types.ts';
 
 export class App {
-  readonly stage: Stage;
   readonly selection: Selection;
   readonly table: Table;
   readonly search: Search;
-  readonly options: Options;
+  options: Options | null = null;
   readonly link: Link;
   readonly near: Near;
   timeline: Timeline | null = null;
@@ -42,8 +41,7 @@ export class App {
   private low: Point;
   private high: Point;
 
-  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, canvas: HTMLCanvasElement, camera: string | null) {
-    this.stage = new Stage(canvas);
+  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, readonly stage: Stage, camera: string | null) {
     const failed = (error: unknown): void => this.fail(error);
     this.selection = new Selection(source, model, {changed: () => this.selectionChanged(), zoom: () => this.zoomToSelection()});
     this.table = new Table(source, {
@@ -54,13 +52,13 @@ export class App {
     this.picker = new Picker(this);
     this.low = model.toRelative(model.view.bounds.min);
     this.high = model.toRelative(model.view.bounds.max);
+    this.stage.hollow = !model.view.has.boxes;
     this.stage.camera.setScene(this.low, this.high);
     this.stage.camera.up = settings.values.up;
     this.stage.camera.fitScene();
     this.link = new Link(settings, () => ({
       camera: this.stage.camera.toText(), frame: model.view.kind === 'live' ? 0 : model.frame.info.frame, selected: this.selection.objects,
     }));
-    this.options = new Options(settings, model);
     this.listen();
     if (camera) this.stage.camera.fromText(camera);
   }
@@ -86,9 +84,24 @@ export class App {
     this.model.frame = await reading;
     this.frameChanged(false);
     this.timeline?.show(frame);
-    void this.table.load(0);
-    void this.showOctants();
-    this.selection.refresh().catch((error: unknown) => this.fail(error));
+    if (this.options) this.followFrame().catch((error: unknown) => this.fail(error));
+  }
+
+  // The panel of settings, which the first picture does not need.
+  startOptions(): void {
+    this.options = new Options(this.settings, this.model);
+  }
+
+  // Reads what the picture of a frame did not need: the table, octants, pairs and the selected object.
+  async followFrame(): Promise<void> {
+    const {model, source, settings} = this;
+    const {frame} = model;
+    const live = model.view.kind === 'live';
+    const levels = settings.values.colour === 'level' || source.exported;
+    await Promise.all([this.table.load(0), this.showOctants(), live ? null : model.readPairs(source, frame), levels ? model.readLevels(source) : null]);
+    if (frame !== model.frame && !live) return;
+    await this.selection.refresh();
+    if (levels || settings.values.lines === 'all') this.recolour();
   }
 
   // Boxes may have left the bounds that the scene began with, or it had none. Returns whether it had none.
@@ -184,7 +197,7 @@ export class App {
     try {
       if (octants) {
         await this.stage.octants.show(this.source, this.model.frame.info.frame, level, signal);
-        this.options.setLevels(this.stage.octants.levels.length);
+        this.options?.setLevels(this.stage.octants.levels.length);
       } else this.stage.octants.clear();
     } catch (error) {
       this.fail(error);
@@ -218,8 +231,14 @@ export class App {
     this.link.changed();
     if (name === 'octants' || name === 'level') return void this.showOctants();
     if (name === 'theme') return this.themeChanged();
+    if (name === 'colour' && this.settings.values.colour === 'level') return void this.colourByLevel();
     if (['colour', 'style', 'show', 'others', 'lines', 'contacts'].includes(name)) return this.recolour();
     return this.restyle();
+  }
+
+  private async colourByLevel(): Promise<void> {
+    await this.model.readLevels(this.source).catch((error: unknown) => this.fail(error));
+    this.recolour();
   }
 
   themeChanged(): void {
@@ -314,7 +333,7 @@ export class App {
   }
 
   private showLegend(): void {
-    const boxes = legend(this.model, this.settings.values, this.palette(), this.selection.objects.length > 0);
+    const boxes = legend(this.model, this.states, this.settings.values, this.palette());
     showLegend([...boxes, ...this.stage.octants.legend()]);
   }
 

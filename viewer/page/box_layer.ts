@@ -13,7 +13,8 @@ interface Block {
 export class BoxLayer {
   readonly group = new THREE.Group();
   drawn = 0;
-  outline = false;
+  // Null: solid boxes. Otherwise their edges, and their faces with this opacity.
+  fill: number | null = null;
   // Boxes below this size are points.
   pointPixels = 3;
   rows = 0;
@@ -58,12 +59,14 @@ export class BoxLayer {
     this.texture.colours.needsUpdate = true;
   }
 
-  setOutline(outline: boolean): void {
-    this.outline = outline;
+  setOutline(fill: number | null): void {
+    this.fill = fill;
     if (!this.faces) return;
     const material = (this.faces.material as THREE.RawShaderMaterial[])[0]!;
-    material.uniforms.outline!.value = outline;
-    material.uniforms.faces!.value = outline ? 6 : 3;
+    material.uniforms.fill!.value = fill ?? -1;
+    material.uniforms.faces!.value = fill === null ? 3 : 6;
+    material.transparent = fill !== null && fill > 0;
+    material.depthWrite = !material.transparent;
   }
 
   // Chooses what to draw. `share` is the part of each block that is drawn while the camera moves.

@@ -44,20 +44,20 @@ precision highp float;
 precision highp int;
 uniform vec3 edgeColour;
 uniform float edges;
-uniform bool outline;
+uniform float fill;
 flat in vec4 tint;
 in vec2 place;
 out vec4 colour;
 ${screenDoor}
 void main() {
-  screenDoor(tint.a);
+  if (fill < 0.0) screenDoor(tint.a);
   vec2 width = max(fwidth(place), vec2(1e-6));
   vec2 near = min(place, 1.0 - place) / width;
   float edge = 1.0 - smoothstep(0.6, 1.6, min(near.x, near.y));
   float pixels = 1.0 / max(width.x, width.y);
-  if (outline) {
-    if (edge < 0.4) discard;
-    colour = vec4(tint.rgb, 1.0);
+  if (fill >= 0.0) {
+    if (fill == 0.0 && edge < 0.4) discard;
+    colour = vec4(tint.rgb, fill == 0.0 ? 1.0 : max(fill, edge));
     return;
   }
   edge *= edges * smoothstep(5.0, 24.0, pixels);
@@ -117,6 +117,9 @@ export interface SharedUniforms {
   edges: THREE.IUniform<number>;
   scale: THREE.IUniform<number>;
   smallest: THREE.IUniform<number>;
+  middle: THREE.IUniform<THREE.Vector3>;
+  radius: THREE.IUniform<number>;
+  gridStep: THREE.IUniform<number>;
 }
 
 export function sharedUniforms(): SharedUniforms {
@@ -125,13 +128,14 @@ export function sharedUniforms(): SharedUniforms {
   return {
     eye: vector(0, 0, 0), cutLow: vector(-far, -far, -far), cutHigh: vector(far, far, far), shadeLow: vector(0.8, 0.72, 0.62),
     shadeHigh: vector(0.86, 0.78, 1), edgeColour: vector(0, 0, 0), edges: {value: 1}, scale: {value: 1}, smallest: {value: 2},
+    middle: vector(0, 0, 0), radius: {value: 1}, gridStep: {value: 1},
   };
 }
 
 function material(shared: SharedUniforms, texture: BoxTexture, vertexShader: string, fragmentShader: string): THREE.RawShaderMaterial {
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader, fragmentShader, side: THREE.DoubleSide,
-    uniforms: {...shared, bounds: {value: texture.bounds}, colours: {value: texture.colours}, faces: {value: 3}, outline: {value: false}},
+    uniforms: {...shared, bounds: {value: texture.bounds}, colours: {value: texture.colours}, faces: {value: 3}, fill: {value: -1}},
   });
 }
 

@@ -14,7 +14,9 @@ export class Camera {
   fly = false;
   // The part of the canvas's width, from the left, that a panel covers.
   covered = 0;
-  private readonly sceneMiddle = new THREE.Vector3();
+  // The part of its height, from below.
+  below = 0;
+  readonly sceneMiddle = new THREE.Vector3();
   private sceneRadius = 1;
   private sceneMin: Point = [0, 0, 0];
   private sceneMax: Point = [1, 1, 1];
@@ -55,12 +57,13 @@ export class Camera {
     const corners = Array.from({length: 8}, (_, k) =>
       new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]));
     // Near corners look larger, so the middle of the picture is not that of the box.
+    const middle = (places: number[]): number => 0.5 * (Math.max(...places) + Math.min(...places)) * this.distance;
     for (let round = 0; round < 4; ++round) {
       const seen = corners.map(corner => corner.clone().sub(this.target)).map(c => axes.map(axis => c.dot(axis)) as Point);
       this.distance = Math.max(1e-5 * this.sceneRadius, 1e-9, ...seen.map(([x, y, z]) =>
-        z + Math.max(Math.abs(x) / (this.three.aspect * (1 - this.covered)), Math.abs(y)) / slope));
-      const heights = seen.map(([, y, z]) => y / (this.distance - z));
-      this.target.addScaledVector(axes[1], 0.5 * (Math.max(...heights) + Math.min(...heights)) * this.distance);
+        z + Math.max(Math.abs(x) / (this.three.aspect * (1 - this.covered)), Math.abs(y) / (1 - this.below)) / slope));
+      this.target.addScaledVector(axes[0], middle(seen.map(([x, , z]) => x / (this.distance - z))));
+      this.target.addScaledVector(axes[1], middle(seen.map(([, y, z]) => y / (this.distance - z))));
     }
   }
 
@@ -96,14 +99,15 @@ export class Camera {
     this.distance = THREE.MathUtils.clamp(old * factor, 1e-6 * this.sceneRadius, 100 * this.sceneRadius);
     const kept = 0.5 * (1 - this.distance / old);
     const scale = old / this.distance;
-    return this.move((at[0] - this.covered) * this.three.aspect * kept * scale, at[1] * kept * scale, 0);
+    return this.move((at[0] - this.covered) * this.three.aspect * kept * scale, (at[1] - this.below) * kept * scale, 0);
   }
 
-  // Takes the size of the canvas. The target is in the middle of what is not covered on the left.
-  resize(width: number, height: number, covered: number): void {
+  // Takes the size of the canvas. The target is in the middle of what is not covered on the left and below.
+  resize(width: number, height: number, covered: number, below: number): void {
     this.three.aspect = width / Math.max(height, 1);
     this.covered = covered / width;
-    this.three.setViewOffset(width, height, -0.5 * covered, 0, width, height);
+    this.below = below / height;
+    this.three.setViewOffset(width, height, -0.5 * covered, 0.5 * below, width, height);
   }
 
   // Gives the matrices of three.js the present place.

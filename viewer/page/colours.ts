@@ -1,4 +1,5 @@
 // Colours of boxes by state, group, level or number of pairs, in the light and the dark theme, and the entries of their legend.
+import {counted} from './dom.ts';
 import type {SceneModel} from './scene_model.ts';
 import {State} from './states.ts';
 import type {Values} from './settings.ts';
@@ -108,9 +109,18 @@ function opacity(state: number, show: string, others: number): number {
   return state === State.free ? others : 255;
 }
 
-export function legend(model: SceneModel, values: Values, palette: Palette, selected: boolean): LegendEntry[] {
+const stateTexts: readonly (readonly [number, string])[] = [
+  [State.free, 'not colliding'], [State.colliding, 'colliding'], [State.began, 'began'], [State.ended, 'ended'],
+  [State.selected, 'selected'], [State.partner, 'partner of selected'],
+];
+
+// The entries for the states that occur.
+export function legend(model: SceneModel, states: Uint8Array, values: Values, palette: Palette): LegendEntry[] {
   const of = (text: string, state: number): LegendEntry => ({text, colour: palette.states[state]!});
-  const marks = selected ? [of('selected', State.selected), of('partner of selected', State.partner)] : [];
+  const occur = new Set(states);
+  const entries = (least: number): LegendEntry[] =>
+    stateTexts.filter(([state]) => state >= least && occur.has(state)).map(([state, text]) => of(text, state));
+  const marks = entries(State.partner);
   const {levels, partners} = model.frame;
   if (values.colour === 'group' && model.groups) {
     const kinds = [...new Set(model.groups.subarray(0, 20000))].sort((a, b) => a - b).slice(0, 8);
@@ -124,11 +134,10 @@ export function legend(model: SceneModel, values: Values, palette: Palette, sele
   if (values.colour === 'pairs') {
     const most = largest(partners);
     const steps = [...new Set([1, Math.round(Math.sqrt(most)), most])].filter(count => count > 0);
-    return [of('no pairs', State.free), ...steps.map(count => ({text: count === 1 ? '1 pair' : `${count} pairs`,
+    return [of('no pairs', State.free), ...steps.map(count => ({text: counted(count, 'pair', 'pairs'),
       colour: rampColour(pairsPart(count, most))})), ...marks];
   }
-  const events = model.view.has.events || model.view.kind === 'live' ? [of('began', State.began), of('ended', State.ended)] : [];
-  return [of('not colliding', State.free), of('colliding', State.colliding), ...events, ...marks];
+  return entries(State.free);
 }
 
 export function css(colour: Colour): string {

@@ -35,6 +35,18 @@ export function short(value: number): string {
   return String(Number(value.toPrecision(5)));
 }
 
+// A measured number with four digits, such as a depth.
+export function significant(value: number): string {
+  const rounded = Number(value.toPrecision(4));
+  const size = Math.abs(rounded);
+  return size !== 0 && (size < 1e-4 || size >= 1e7) ? rounded.toExponential() : rounded.toLocaleString('en-US', {maximumFractionDigits: 8});
+}
+
+// The last part of a path such as "hull/deck/plate", which tells objects apart.
+export function tail(name: string): string {
+  return name.slice(name.lastIndexOf('/', name.length - 2) + 1);
+}
+
 export function seconds(value: number): string {
   if (value < 1e-3) return `${short(Number((value * 1e6).toPrecision(3)))} µs`;
   if (value < 1) return `${short(Number((value * 1e3).toPrecision(3)))} ms`;

@@ -1,6 +1,6 @@
 // Labels over the canvas: what is under the pointer, and the depths of contacts.
 import * as THREE from 'three';
-import {byId, counted, make, short} from './dom.ts';
+import {byId, count, counted, make, significant} from './dom.ts';
 import type {Octant} from './octant_layer.ts';
 import type {Stage} from './stage.ts';
 
@@ -19,7 +19,7 @@ export function hideLabel(): void {
 
 export function octantText(octant: Octant): string {
   const kind = octant.leaf ? ', leaf' : '';
-  return `octant ${octant.code}, level ${octant.level}${kind}\n${counted(octant.entries, 'entry', 'entries')}, ${octant.begins} begin here`;
+  return `octant ${octant.code}, level ${octant.level}${kind}\n${counted(octant.entries, 'entry', 'entries')}, ${count(octant.begins)} begin here`;
 }
 
 // Places the labels of the depths after a picture was drawn.
@@ -30,12 +30,15 @@ export function placeDepths(stage: Stage): void {
   while (host.children.length < labels.length) host.append(make('span'));
   if (!labels.length) return;
   const box = stage.canvas.getBoundingClientRect();
+  const taken: {x: number; y: number}[] = [];
   labels.forEach((label, k) => {
     const element = host.children[k] as HTMLElement;
     const at = stage.project(new THREE.Vector3().copy(label.at));
-    const text = `depth ${short(label.depth)}`;
+    const free = taken.every(other => Math.abs(other.x - at.x) > 100 || Math.abs(other.y - at.y) > 20);
+    const text = `depth ${significant(label.depth)}`;
     if (element.textContent !== text) element.textContent = text;
-    element.hidden = !at.front;
+    element.hidden = !at.front || !free;
+    if (!element.hidden) taken.push(at);
     element.style.left = `${Math.round(at.x - box.left + 8)}px`;
     element.style.top = `${Math.round(at.y - box.top + 8)}px`;
   });

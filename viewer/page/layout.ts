@@ -23,6 +23,24 @@ export function toggleOpen(drawer: Drawer): void {
   setOpen(drawer, !isOpen(drawer));
 }
 
+// The edge of the side panel follows the pointer, and the arrow keys.
+function startSideEdge(): void {
+  const edge = byId('side-edge');
+  const resize = (width: number): void => {
+    const allowed = Math.round(Math.min(Math.max(width, 280), 800, Math.max(0.6 * window.innerWidth, 280)));
+    document.documentElement.style.setProperty('--side', `${allowed}px`);
+    edge.setAttribute('aria-valuenow', String(allowed));
+  };
+  edge.setAttribute('aria-valuenow', '360');
+  edge.addEventListener('pointerdown', event => edge.setPointerCapture(event.pointerId));
+  edge.addEventListener('pointermove', event => edge.hasPointerCapture(event.pointerId) && resize(window.innerWidth - event.clientX));
+  edge.addEventListener('keydown', event => {
+    if (event.key !== 'ArrowLeft' && event.key !== 'ArrowRight') return;
+    resize(byId('side').offsetWidth + (event.key === 'ArrowLeft' ? 20 : -20));
+    event.preventDefault();
+  });
+}
+
 // `changed` is called when panels opened or closed.
 export function startLayout(changed: () => void): void {
   for (const drawer of ['options', 'side'] as const) {
@@ -30,6 +48,7 @@ export function startLayout(changed: () => void): void {
     byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
     new MutationObserver(changed).observe(document.documentElement, {attributeFilter: [`data-${drawer}`]});
   }
+  startSideEdge();
   const tabs = [byId('tab-collisions'), byId('tab-scene')];
   for (const tab of tabs) {
     tab.addEventListener('click', () => showTab(tab.id));

@@ -14,6 +14,7 @@ import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
 import {findSource, Missing, type Source, StillLoading} from './source.ts';
+import {Stage} from './stage.ts';
 import {Timeline} from './timeline.ts';
 import {completeView, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
 
@@ -27,17 +28,23 @@ class Page {
   private live: LiveScene | null = null;
   private wake: () => void = () => undefined;
   private lastTable = 0;
-  private selected: number[] = [];
+  private firstFrame: (() => void) | null = null;
 
   async start(): Promise<void> {
     startTheme(settings);
+    // The graphics start while the program answers.
+    const view = early(this.waitForView());
+    if (!this.source.exported) this.connect();
     settings.listen(name => name === 'theme' && applyTheme(settings));
     byId('theme').addEventListener('click', () => switchTheme(settings));
     byId('open-help').addEventListener('click', openHelp);
-    if (!this.source.exported) this.connect();
-    const view = await this.waitForView();
+    const stage = early(startStage());
+    return this.show(await view, stage);
+  }
+
+  private async show(view: View, stage: Promise<Stage>): Promise<void> {
     if (view.kind === 'server') return this.startServer(view);
-    return this.startScene(view);
+    return this.startScene(view, stage);
   }
 
   private connect(): void {
@@ -68,27 +75,27 @@ class Page {
     showServer([], []);
   }
 
-  private async startScene(view: View): Promise<void> {
+  private async startScene(view: View, stage: Promise<Stage>): Promise<void> {
     startLayout(() => this.app?.stage.resize());
     const model = new SceneModel(view);
-    settings.begin('up', view.up === 'y' ? 'y' : 'z');
-    if (view.has.shapes) settings.begin('style', 'shapes');
+    beginSettings(view);
     const link = readLink(settings);
     const first = Math.min(link.frame ?? 0, Math.max(view.frames - 1, 0));
-    // The data come while the graphics start.
+    // The data come while the parts of the page start.
     const rows = early(model.load(this.source));
     const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
-    const app = this.app = new App(this.source, model, settings, byId<HTMLCanvasElement>('view'), link.camera);
-    this.selected = link.selected;
+    this.startTimeline(view);
+    const app = this.app = new App(this.source, model, settings, await stage, link.camera);
+    app.timeline = this.timeline;
     this.prepare(app, link.camera !== null);
     await rows;
-    if (!frame) return this.startLive(app);
-    await this.startTimeline(app);
+    if (!frame) return this.startLive(app, link.selected);
     // A link may name a frame that is not computed yet.
     await app.showFrame(first, frame).catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
-    this.firstPicture(app);
-    if (view.has.shapes) await this.readShapes(app);
-    return undefined;
+    await firstPicture(app);
+    const rest = this.readRest(app, link.selected);
+    if (this.source.exported) startWithin(app);
+    return rest;
   }
 
   private prepare(app: App, keepCamera: boolean): void {
@@ -101,19 +108,34 @@ class Page {
     offerHooks(app);
   }
 
-  private startLive(app: App): void {
+  private startLive(app: App, selected: number[]): Promise<void> {
     this.live = new LiveScene(app.model);
-    this.timeline = app.timeline = new Timeline(true, 0, {go: async () => undefined, pause: paused => this.feed?.pause(paused)});
     showProgress('Waiting for the first frame', null);
     this.feed?.start();
+    return new Promise(done => this.firstFrame = () => done(firstPicture(app).then(() => this.readRest(app, selected))));
   }
 
-  private async startTimeline(app: App): Promise<void> {
-    const {frames, has} = app.model.view;
-    if (frames < 2 && !has.events) return;
-    this.timeline = app.timeline = new Timeline(false, frames, {go: frame => app.showFrame(frame).catch(error => app.fail(error)),
-      pause: () => undefined});
-    await this.readTimeline();
+  // The timeline takes its part of the page before the camera is placed.
+  private startTimeline(view: View): void {
+    const live = view.kind === 'live';
+    if (!live && view.frames < 2 && !view.has.events) return;
+    this.timeline = new Timeline(live, live ? 0 : view.frames, {
+      go: frame => live ? Promise.resolve() : this.app!.showFrame(frame).catch(error => this.app!.fail(error)),
+      pause: paused => this.feed?.pause(paused),
+    });
+  }
+
+  // Reads and starts what the first picture does not need.
+  private async readRest(app: App, selected: number[]): Promise<void> {
+    const {view} = app.model;
+    app.startOptions();
+    const live = view.kind === 'live';
+    await Promise.all([app.followFrame(), live || !this.timeline ? null : this.readTimeline(), view.has.shapes ? this.readShapes(app) : null,
+      app.model.loadRows(this.source)]);
+    app.recolour();
+    if (selected.length) await app.selection.select(selected);
+    app.stage.drawNow();
+    document.documentElement.dataset.complete = 'true';
   }
 
   private async readTimeline(): Promise<void> {
@@ -130,18 +152,6 @@ class Page {
     await app.stage.shapes.load(this.source, app.model, () => app.recolour());
     app.recolour();
     document.documentElement.dataset.shapes = String(app.stage.shapes.shapes.size);
-  }
-
-  // The first picture is drawn: all that waited for it.
-  private firstPicture(app: App): void {
-    hideProgress();
-    requestAnimationFrame(() => {
-      app.stage.drawNow();
-      document.documentElement.dataset.firstPicture = String(Math.round(performance.now()));
-      document.documentElement.dataset.ready = 'true';
-    });
-    app.selection.select(this.selected).catch(error => app.fail(error));
-    if (this.source.exported) startWithin(app);
   }
 
   private receive(event: SocketEvent): void {
@@ -164,14 +174,15 @@ class Page {
   private receiveFrame(frame: LiveFrame): void {
     const {app, live} = this;
     if (!app || !live) return;
-    const first = !document.documentElement.dataset.ready;
+    const first = this.firstFrame;
     const rowsChanged = live.apply(frame);
     if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
     this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
     const now = performance.now();
-    if (first || now - this.lastTable > 1000) this.refreshSlowly(app, now);
-    if (first) this.firstPicture(app);
+    if (!first && now - this.lastTable > 1000) this.refreshSlowly(app, now);
+    this.firstFrame = null;
+    first?.();
     // The next frame is asked for when this one is drawn.
     requestAnimationFrame(() => requestAnimationFrame(() => this.feed?.want()));
   }
@@ -193,6 +204,29 @@ class Page {
   private reading(address: string, got: number, total: number): void {
     if (!document.documentElement.dataset.ready) showProgress(`Reading ${address}: ${count(got / 1e6)} of ${count(total / 1e6)} MB`, got / total);
   }
+}
+
+async function startStage(): Promise<Stage> {
+  return new Stage(byId<HTMLCanvasElement>('view'));
+}
+
+// The values that this scene begins with.
+function beginSettings(view: View): void {
+  settings.begin('up', view.up === 'y' ? 'y' : 'z');
+  if (view.has.shapes) settings.begin('style', 'shapes');
+  if (view.has.boxes) return;
+  settings.begin('others', 0.15);
+  settings.begin('contacts', 'all');
+}
+
+// Draws the first picture, and waits until it is done.
+function firstPicture(app: App): Promise<void> {
+  hideProgress();
+  app.stage.drawNow();
+  document.documentElement.dataset.firstPicture = String(Math.round(performance.now()));
+  document.documentElement.dataset.ready = 'true';
+  // The browser shows the picture before the rest begins.
+  return new Promise(done => setTimeout(done, 20));
 }
 
 // Something that is waited for later: until then its failure is no error.

@@ -38,7 +38,7 @@ export class PairLayer {
     const {pairs, began, ended} = model.frame;
     const key = (list: Uint32Array, k: number): number => list[k]! * 4294967296 + list[k + 1]!;
     const news = new Set<number>();
-    for (let k = 0; k + 1 < began.length; k += 2) news.add(key(began, k));
+    if (model.frame.info.frame > 0) for (let k = 0; k + 1 < began.length; k += 2) news.add(key(began, k));
     for (let k = 0; k + 1 < pairs.length && k < 2 * pairLimit; k += 2) {
       add(pairs[k]!, pairs[k + 1]!, palette.states[news.has(key(pairs, k)) ? State.began : State.colliding]!);
     }

@@ -112,38 +112,52 @@ export class SceneModel {
     return info;
   }
 
-  // Reads what does not depend on the frame. The first whole frame of a live scene says which objects are shown.
+  // Reads what the first picture needs and does not depend on the frame. The first whole frame of a live scene says which objects are shown.
   async load(source: Source): Promise<void> {
-    const {view} = this;
-    const [shown] = await Promise.all([
-      words(source, 'shown.u32', view.has.rows), this.loadRows(source),
-    ]);
+    const {has} = this.view;
+    const [shown, geometry] = await Promise.all([words(source, 'shown.u32', has.rows), words(source, 'geometry.u32', has.shapes)]);
     this.setShown(shown);
+    this.geometry = geometry;
   }
 
   async loadRows(source: Source): Promise<void> {
     const {has} = this.view;
-    [this.groups, this.geometry, this.names] = await Promise.all([
-      words(source, 'groups.u32', has.groups), words(source, 'geometry.u32', has.shapes),
-      has.names ? orNull(source.json<string[]>('names.json')) : null,
+    [this.groups, this.names] = await Promise.all([
+      words(source, 'groups.u32', has.groups), has.names ? orNull(source.json<string[]>('names.json')) : null,
     ]);
   }
 
+  // Reads what the picture of a frame needs. Pairs and levels come later.
   async readFrame(source: Source, frame: number): Promise<Frame> {
     const {has} = this.view;
     const events = (name: string): Promise<ArrayBuffer | null> =>
       has.events ? orNull(source.bytes(`${name}/${frame}.u32`)) : Promise.resolve(null);
-    const [info, boxes, partners, levels, pairs, poses, began, ended] = await Promise.all([
+    const [info, boxes, partners, poses, began, ended] = await Promise.all([
       source.json<FrameInfo>(`frame/${frame}.json`), source.bytes(`frame/${frame}.f32`), orNull(source.bytes(`partners/${frame}.u32`)),
-      orNull(source.bytes(`levels/${frame}.u8`)), orNull(source.bytes(`pairs/${frame}.u32`)),
       has.shapes ? orNull(source.bytes(`poses/${frame}.f32`)) : null, events('began'), events('ended'),
     ]);
-    const list = (bytes: ArrayBuffer | null): Uint32Array => bytes ? new Uint32Array(bytes) : noPairs;
     return {
-      info, boxes: new Float32Array(boxes), poses: poses && new Float32Array(poses), levels: levels && new Uint8Array(levels),
-      partners: partners ? list(partners) : new Uint32Array(this.rows), pairs: list(pairs), began: list(began), ended: list(ended),
+      info, boxes: new Float32Array(boxes), poses: poses && new Float32Array(poses), levels: null,
+      partners: partners ? list(partners) : new Uint32Array(this.rows), pairs: noPairs, began: list(began), ended: list(ended),
     };
   }
+
+  // Reads the pairs of a frame.
+  async readPairs(source: Source, frame: Frame): Promise<void> {
+    frame.pairs = list(await orNull(source.bytes(`pairs/${frame.info.frame}.u32`)));
+  }
+
+  // Reads the levels of the present frame, for which the program may have to build an octree.
+  async readLevels(source: Source): Promise<void> {
+    const {frame} = this;
+    if (frame.levels || this.view.kind === 'live') return;
+    const levels = await orNull(source.bytes(`levels/${frame.info.frame}.u8`));
+    frame.levels = levels && new Uint8Array(levels);
+  }
+}
+
+function list(bytes: ArrayBuffer | null): Uint32Array {
+  return bytes ? new Uint32Array(bytes) : noPairs;
 }
 
 async function words(source: Source, address: string, wanted: boolean): Promise<Uint32Array | null> {

@@ -1,5 +1,5 @@
 // The selected objects, one or the two of a pair, and the panel that describes the first.
-import {byId, button, counted, definitions, make, plain, short} from './dom.ts';
+import {byId, button, count, counted, definitions, make, plain, tail} from './dom.ts';
 import {isOpen} from './layout.ts';
 import {say, speak} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
@@ -67,18 +67,19 @@ export class Selection {
   private show(info: ObjectInfo): void {
     this.panel.hidden = false;
     const head = make('div', '', 'head');
-    head.append(make('h2', info.name || `Object ${info.index}`), button('Zoom', () => this.actions.zoom(), 'Zoom to the selection'),
+    head.append(make('h2', tail(info.name ?? '') || `Object ${info.index}`), button('Zoom', () => this.actions.zoom(), 'Zoom to the selection'),
       button('×', () => void this.select([]), 'Clear the selection'));
     this.panel.replaceChildren(head, definitions(this.entries(info)), this.partnerList(info));
   }
 
   private entries(info: ObjectInfo): [string, string][] {
     const entries: [string, string][] = [['index', String(info.index)]];
-    const point = (p: readonly number[]): string => p.map(short).join(', ');
+    const place = placeText(info);
+    if (info.name && tail(info.name) !== info.name) entries.push(['name', info.name]);
     const other = this.objects[1];
     if (other !== undefined) entries.push(['with', this.title(other)]);
     for (const [name, value] of Object.entries(info.details ?? {})) entries.push([name, plain(value)]);
-    if (info.box) entries.push(['min', point(info.box.min)], ['max', point(info.box.max)]);
+    if (info.box) entries.push(['min', place(info.box.min)], ['max', place(info.box.max)]);
     if (info.code) entries.push(['octal code', info.code]);
     if (info.level !== undefined) entries.push(['level', String(info.level)]);
     if (info.groups !== undefined) entries.push(['groups', `0x${info.groups.toString(16)}`]);
@@ -88,13 +89,13 @@ export class Selection {
 
   private title(object: number): string {
     const name = this.model.nameOf(object);
-    return name ? `${object} ${name}` : String(object);
+    return name ? `${object} ${tail(name)}` : String(object);
   }
 
   private partnerList(info: ObjectInfo): HTMLElement {
     const box = make('div');
     const listed = Math.min(info.partners.length, buttonLimit);
-    const rest = info.partner_count > listed ? `, ${listed} listed` : '';
+    const rest = info.partner_count > listed ? `, ${count(listed)} listed` : '';
     box.append(make('h3', info.partner_count === 0 ? 'No partners' : counted(info.partner_count, 'partner', 'partners') + rest));
     const list = make('ul', '', 'chips');
     for (const partner of info.partners.slice(0, listed)) {
@@ -105,4 +106,12 @@ export class Selection {
     if (listed) box.append(list);
     return box;
   }
+}
+
+// Coordinates with as many digits as the size of the box needs, also far from the origin.
+function placeText(info: ObjectInfo): (point: readonly number[]) => string {
+  const {min, max} = info.box ?? {min: [0, 0, 0], max: [0, 0, 0]};
+  const size = Math.max(...max.map((value, k) => value - min[k]!)) || Math.max(...max.map(Math.abs)) || 1;
+  const decimals = Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 12);
+  return point => point.map(value => value.toLocaleString('en-US', {maximumFractionDigits: decimals})).join(', ');
 }

@@ -26,6 +26,8 @@ export class Stage {
   readonly contacts = new ContactLayer(this.shared);
   readonly outlines = new EdgeLayer(this.shared, false);
   readonly cut = new THREE.Box3();
+  // Boxes are drawn as outlines, since they only surround what is known of their objects.
+  hollow = false;
   drawn = 0;
   private readonly scene = new THREE.Scene();
   private readonly renderer: THREE.WebGLRenderer;
@@ -38,17 +40,24 @@ export class Stage {
   private partial = false;
   private readonly pace: Pace;
 
-  constructor(readonly canvas: HTMLCanvasElement) {
-    const software = isSoftware();
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: !software, powerPreference: 'high-performance'});
+  readonly canvas: HTMLCanvasElement;
+
+  constructor(canvas: HTMLCanvasElement) {
+    const {renderer, software} = createRenderer(canvas);
+    this.renderer = renderer;
+    this.canvas = renderer.domElement;
     this.renderer.sortObjects = false;
     this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.again && this.invalidate());
     for (const layer of [this.boxes, this.near]) layer.pointPixels = software ? 6 : 3;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     for (const part of [this.boxes, this.near, this.shapes, this.octants.edges, this.pairs.lines, this.outlines, this.contacts.arrows,
       this.contacts.points]) this.scene.add(part.group);
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement!);
     this.resize();
+    // The shaders are compiled while the data come.
+    this.boxes.setBoxes(new Float32Array(6), 1);
+    this.renderer.compile(this.scene, this.camera.three);
+    this.boxes.setBoxes(new Float32Array(0), 0);
   }
 
   onDraw(listener: () => void): void {
@@ -64,6 +73,7 @@ export class Stage {
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame(() => {
+      if (!this.pending) return;
       this.pending = false;
       this.again = this.pace.busy;
       if (!this.again) this.draw();
@@ -89,7 +99,7 @@ export class Stage {
   apply(values: Values, min: Point, max: Point): void {
     const withShapes = this.shapes.shapes.size > 0;
     this.shapes.group.visible = values.style !== 'boxes';
-    this.boxes.setOutline(values.style === 'both' && withShapes);
+    this.boxes.setOutline(this.hollow ? values.others : values.style === 'both' && withShapes ? 0 : null);
     this.shared.edges.value = values.edges ? 1 : 0;
     this.camera.fly = values.camera === 'fly';
     this.camera.up = values.up;
@@ -129,6 +139,7 @@ export class Stage {
 
   // Draws at once, and waits until the picture is done.
   drawNow(): void {
+    this.pending = false;
     this.draw();
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -151,6 +162,9 @@ export class Stage {
     const camera = this.camera.three;
     const pixels = this.pixelsPerUnit();
     this.shared.eye.value.copy(camera.position);
+    this.shared.middle.value.copy(this.camera.sceneMiddle);
+    this.shared.radius.value = this.camera.radius();
+    this.shared.gridStep.value = 10 ** Math.floor(Math.log10(0.4 * this.camera.radius()));
     this.shared.scale.value = pixels;
     this.shared.smallest.value = 2 * this.renderer.getPixelRatio();
     const frustum = new THREE.Frustum().setFromProjectionMatrix(
@@ -163,7 +177,7 @@ export class Stage {
       layer.choose(frustum, camera.position, pixels, share);
       this.drawn += layer.drawn;
     }
-    if (this.shapes.group.visible && !this.boxes.outline) this.drawn += this.shapes.visible;
+    if (this.shapes.group.visible && this.boxes.fill === null) this.drawn += this.shapes.visible;
     this.renderer.render(this.scene, camera);
     this.pace.drew(share);
     for (const listener of this.drawListeners) listener();
@@ -195,12 +209,32 @@ export class Stage {
     return panel && panel.offsetParent && clientWidth > 700 ? panel.offsetLeft + panel.offsetWidth : 0;
   }
 
+  // The height of a drawer that lies on the lower part of a narrow canvas.
+  private below(): number {
+    const box = this.canvas.parentElement!.getBoundingClientRect();
+    if (box.width > 700) return 0;
+    const heights = ['options', 'side'].map(id => document.getElementById(id)).filter(panel => panel && getComputedStyle(panel).display !== 'none')
+      .map(panel => box.bottom - Math.max(panel!.getBoundingClientRect().top, box.top));
+    return Math.min(Math.max(0, ...heights), 0.7 * box.height);
+  }
+
   resize(): void {
     const {clientWidth, clientHeight} = this.canvas.parentElement!;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.resize(clientWidth, clientHeight, this.covered());
+    this.camera.resize(clientWidth, clientHeight, this.covered(), this.below());
     this.invalidate();
   }
+}
+
+// Only a graphics card draws smooth edges. What draws is known with the first context, which takes up to 0.2 s without a card.
+function createRenderer(canvas: HTMLCanvasElement): {renderer: THREE.WebGLRenderer; software: boolean} {
+  const attributes = {alpha: true, depth: true, stencil: false, antialias: false, powerPreference: 'high-performance'} as const;
+  const context = canvas.getContext('webgl2', attributes) as WebGL2RenderingContext | null;
+  if (context && isSoftware(context)) return {renderer: new THREE.WebGLRenderer({canvas, context}), software: true};
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  const other = canvas.cloneNode(false) as HTMLCanvasElement;
+  canvas.replaceWith(other);
+  return {renderer: new THREE.WebGLRenderer({canvas: other, antialias: true, powerPreference: 'high-performance'}), software: false};
 }

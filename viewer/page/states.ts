@@ -17,7 +17,8 @@ export function computeStates(model: SceneModel, selected: readonly number[], pa
     }
   };
   mark(frame.ended, State.ended);
-  mark(frame.began, State.began);
+  // In the first frame, all pairs are new.
+  if (frame.info.frame > 0) mark(frame.began, State.began);
   mark(partners, State.partner);
   mark(selected, State.selected);
   return states;

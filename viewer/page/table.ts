@@ -1,5 +1,5 @@
 // The table of collisions: pages of rows, sorted and filtered by the source.
-import {byId, count, counted, isAbort, make, short} from './dom.ts';
+import {byId, count, counted, isAbort, make, significant, tail} from './dom.ts';
 import type {Source} from './source.ts';
 import type {Collision, CollisionQuery} from './types.ts';
 
@@ -84,8 +84,7 @@ export class Table {
     byId<HTMLButtonElement>('previous-page').disabled = this.from === 0;
     byId<HTMLButtonElement>('next-page').disabled = last >= this.total;
     byId('depth-column').hidden = !this.rows.some(row => row.depth !== undefined);
-    // A text that all rows have says nothing.
-    byId('state-column').hidden = new Set(this.rows.map(stateText)).size < 2;
+    byId('state-column').hidden = !this.rows.some(row => this.stateText(row));
     this.body.replaceChildren(...this.rows.map(row => this.makeRow(row)));
     this.mark();
   }
@@ -94,11 +93,16 @@ export class Table {
     const line = make('tr');
     line.tabIndex = 0;
     line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
-    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(Number(row.depth.toPrecision(4))), 'number'));
-    if (!byId('state-column').hidden) line.append(make('td', stateText(row), row.change ?? ''));
+    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : significant(row.depth), 'number'));
+    if (!byId('state-column').hidden) line.append(make('td', this.stateText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
     line.addEventListener('keydown', event => this.press(event, line, row));
     return line;
+  }
+
+  // In the first frame, all collisions are new.
+  private stateText(row: Collision): string {
+    return (this.actions.frame() > 0 && row.change) || row.class || '';
   }
 
   private press(event: KeyboardEvent, line: HTMLElement, row: Collision): void {
@@ -122,14 +126,10 @@ export class Table {
   }
 }
 
-function stateText(row: Collision): string {
-  return row.change || row.class || '';
-}
-
 function cell(object: number, name = ''): HTMLElement {
   const element = make('td', String(object));
   if (name) {
-    element.append(make('span', name, 'name'));
+    element.append(make('span', tail(name), 'name'));
     element.title = name;
   }
   return element;

@@ -16,6 +16,7 @@ export class Timeline {
   playing = false;
   paused = false;
   frame = 0;
+  // Frames that can be shown: all, until the program says how many it has computed.
   done = 0;
   private plot: uPlot | null = null;
   private data: [number[], number[], number[], number[]] = [[], [], [], []];
@@ -25,6 +26,8 @@ export class Timeline {
 
   constructor(private readonly live: boolean, private readonly frames: number, private readonly actions: TimelineActions) {
     byId('time').hidden = false;
+    this.done = frames;
+    this.slider.max = String(Math.max(0, frames - 1));
     this.play.addEventListener('click', () => this.toggle());
     byId('step-back').addEventListener('click', () => this.step(-1));
     byId('step-forward').addEventListener('click', () => this.step(1));

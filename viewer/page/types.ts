@@ -16,6 +16,7 @@ export interface Has {
   search: boolean;
   near: boolean;
   rows: boolean;
+  boxes: boolean;
 }
 
 export interface View {
@@ -139,7 +140,7 @@ export interface SocketEvent {
 
 // Fills in all that an answer may leave out.
 export function completeView(answer: Partial<View>): View {
-  const none: Has = {names: false, groups: false, shapes: false, contacts: false, events: false, search: false, near: false, rows: false};
+  const none: Has = {names: false, groups: false, shapes: false, contacts: false, events: false, search: false, near: false, rows: false, boxes: true};
   return {
     version: '', title: '', kind: 'scene', objects: 0, frames: 1, origin: [0, 0, 0], up: '', unit: '', margin: 0, notices: [], summary: {},
     ...answer, shown: answer.shown ?? answer.objects ?? 0,

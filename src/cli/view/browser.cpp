@@ -69,10 +69,10 @@ std::string decoded_base64(std::string_view text) {
     return bytes;
 }
 
-/// Waits until the page says that its first picture is drawn.
+/// Waits until the page says that it has drawn all its data.
 void wait_for_picture(BrowserPipe& browser, const std::string& session) {
     const auto end = std::chrono::steady_clock::now() + 60s;
-    const nlohmann::json ready = {{"expression", "document.documentElement.dataset.ready === 'true'"}};
+    const nlohmann::json ready = {{"expression", "document.documentElement.dataset.complete === 'true'"}};
     while (!browser.call("Runtime.evaluate", ready, session)["result"].value("value", false)) {
         if (std::chrono::steady_clock::now() > end) fail_io("the browser did not draw the page");
         std::this_thread::sleep_for(100ms);

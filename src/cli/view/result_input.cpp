@@ -84,6 +84,7 @@ LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) 
     view.contents.title = request.result.substr(request.result.rfind('/') + 1);
     view.contents.objects = result.objects;
     view.contents.moving = result.moving;
+    view.contents.has_boxes = false;
     if (!result.names.empty()) {
         view.contents.names.resize(std::size_t(result.objects));
         for (const auto& [object, name] : result.names) view.contents.names[object] = name;

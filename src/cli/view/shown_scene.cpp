@@ -1,5 +1,6 @@
 #include "cli/view/shown_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/detect/filter_chain.hpp"
@@ -32,8 +33,11 @@ void add_shapes(viewer::SceneContents& contents, const InputSet& set) {
     if (set.shaped == nullptr) return;
     const ShapedObjects objects = set.shaped->objects();
     const Box3d bounds = set.bounds();
-    const double extent =
-        std::hypot(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1], bounds.max[2] - bounds.min[2]);
+    // A plane is drawn around its origin, so it must reach the objects from there.
+    const auto reach = [&](std::size_t axis) {
+        return 2 * std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]));
+    };
+    const double extent = std::hypot(reach(0), reach(1), reach(2));
     for (const Geometry& geometry : objects.geometries) {
         contents.shapes.push_back(shown_shape(geometry.shape(), std::isfinite(extent) ? extent : 1));
     }

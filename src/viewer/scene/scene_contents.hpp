@@ -35,8 +35,9 @@ struct Fact {
 struct SceneContents {
     std::string title;
     std::uint64_t objects = 0;
-    bool moving = false;   ///< true if pairs begin and end
-    std::string up, unit;  ///< "y", "z" or empty; for example "m"
+    bool moving = false;    ///< true if pairs begin and end
+    bool has_boxes = true;  ///< false if boxes only surround the contacts of their objects
+    std::string up, unit;   ///< "y", "z" or empty; for example "m"
     double margin = 0;
     std::vector<std::string> names;
     std::vector<std::uint32_t> groups;

@@ -206,6 +206,7 @@ std::optional<Answer> SceneSource::octant_answer(Frame& frame, std::string_view 
 Answer SceneSource::view_answer() const {
     const std::lock_guard lock(counts_mutex_);
     Json has = {{"rows", !shown_.in_order()},
+                {"boxes", contents_.has_boxes},
                 {"names", !contents_.names.empty()},
                 {"groups", !contents_.groups.empty()},
                 {"shapes", !contents_.shapes.empty()},
