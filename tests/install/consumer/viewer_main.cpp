@@ -1,4 +1,5 @@
 // A program that shows a scene in a browser: two boxes, which meet in the second step. Prints the address of the page.
+#include <octopair/octopair.hpp>
 #include <octopair/view.hpp>
 
 #include <cstdio>
