@@ -32,7 +32,7 @@ LAYERS = {
     "samples": ("seeded scenes", []),
     "io": ("scene and result files", []),
     "service/protocol": ("messages between client and server", []),
-    "service/client": ("an engine behind a socket", ["client", "job_client", "remote_scene"]),
+    "service/client": ("an engine behind a socket", ["client", "job_client", "remote_scene", "scene_watcher"]),
     "service/server": ("jobs of many clients", []),
     "cli/command": ("options, numbers, progress, signals", []),
     "cli/ranks": ("a program as a rank of MPI", []),

@@ -1,2 +1,44 @@
-import {writeFileSync} from 'node:fs';
-writeFileSync(process.argv[2], '<!doctype html><title>octopair</title><!-- data --><script></script>\n');
+// Bundles the page into one HTML file: node build.mjs OUTPUT. The same sources give the same bytes.
+import {createHash} from 'node:crypto';
+import {readFileSync, writeFileSync} from 'node:fs';
+import {dirname, join, resolve} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {gzipSync} from 'node:zlib';
+import {build, transform} from 'esbuild';
+
+const folder = dirname(fileURLToPath(import.meta.url));
+const limits = {bytes: 900_000, gzip: 300_000};
+
+async function bundleScript() {
+  const result = await build({
+    entryPoints: [join(folder, 'page/main.ts')], bundle: true, minify: true, format: 'iife', target: 'es2021', charset: 'utf8',
+    legalComments: 'none', write: false, absWorkingDir: folder, logLevel: 'warning',
+  });
+  return result.outputFiles[0].text.trimEnd();
+}
+
+async function bundleStyle() {
+  const parts = ['node_modules/uplot/dist/uPlot.min.css', 'page/page.css'].map(name => readFileSync(join(folder, name), 'utf8'));
+  const result = await transform(parts.join('\n'), {loader: 'css', minify: true, legalComments: 'none'});
+  return result.code.trimEnd();
+}
+
+function policy(script) {
+  const hash = createHash('sha256').update(script, 'utf8').digest('base64');
+  return `default-src 'none'; script-src 'sha256-${hash}'; style-src 'unsafe-inline'; connect-src 'self'; img-src data: blob:; font-src data:; ` +
+    `base-uri 'none'; form-action 'none'`;
+}
+
+const licences = `<!-- This page contains three.js, lil-gui and uPlot (MIT License; their authors' notices: LICENSES in the viewer's sources). -->`;
+
+const script = await bundleScript();
+const parts = {policy: policy(script), style: await bundleStyle(), licences, script};
+const template = readFileSync(join(folder, 'page/page.html'), 'utf8');
+const page = template.replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
+if (page.split('<!-- data -->').length !== 2) throw new Error('the page must have the data marker once');
+const bytes = Buffer.from(page, 'utf8');
+const gzip = gzipSync(bytes, {level: 9}).length;
+if (bytes.length > limits.bytes || gzip > limits.gzip) throw new Error(`the page is too large: ${bytes.length} bytes, ${gzip} with gzip`);
+if (!process.argv[2]) throw new Error('usage: node build.mjs OUTPUT');
+writeFileSync(resolve(process.argv[2]), bytes);
+console.log(`${process.argv[2]}: ${bytes.length} bytes, ${gzip} with gzip`);

@@ -19,7 +19,7 @@ COMPONENTS = [
     ("mpi", "mpi: ranks of a cluster", "CMake target `octopair::mpi`. When to use this engine: "
      "[engines](../docs/engines.md#ranks).", ["mpi"]),
     ("client", "client: a server finds the pairs", "CMake target `octopair::client`. How to run a server: "
-     "[server](../docs/server.md).", ["client", "job_client", "remote_scene"]),
+     "[server](../docs/server.md).", ["client", "job_client", "remote_scene", "scene_watcher"]),
     ("adapters", "adapters: FCL, CGAL, Bullet", "CMake targets `octopair::fcl`, `octopair::cgal` and `octopair::bullet`. The "
      "guides say what changes: [FCL](../docs/adapters/fcl.md), [CGAL](../docs/adapters/cgal.md), "
      "[Bullet](../docs/adapters/bullet.md).",

@@ -5,7 +5,7 @@
 //
 //     octopair::pipeline     filters.hpp, pipeline.hpp, shapes.hpp, collision.hpp
 //     octopair::processes    processes.hpp
-//     octopair::client       client.hpp, job_client.hpp, remote_scene.hpp
+//     octopair::client       client.hpp, job_client.hpp, remote_scene.hpp, scene_watcher.hpp
 //     octopair::mpi          mpi.hpp
 #pragma once
 

@@ -18,6 +18,7 @@ collide shapes       :class:`Shapes` and :func:`collide`; filters: :class:`Pipel
 check a mesh         :func:`self_intersections`
 see the octree       :func:`list_octants`, :meth:`Scene.octants`
 replace python-fcl   :class:`octopair.trimesh.CollisionManager`
+look at a scene      :class:`View`: a running scene in a browser
 read files           :func:`detect`, :func:`generate`, :func:`replay`: what the program does
 use a server         ``Engine("unix:PATH")``, :class:`octopair.remote.JobClient`
 use MPI              :func:`mpi_engine` with a communicator of mpi4py
@@ -44,11 +45,12 @@ from ._results import (COLLISION_CLASSES, DEPTH_KINDS, Answers, Collisions, Filt
                        PipelineSummary, StepResult, StepSeconds, Summary)
 from ._scene import Scene
 from ._shapes import Geometry, Shapes, make_poses
+from ._viewer import View
 
 __all__ = [
     "COLLISION_CLASSES", "DEPTH_KINDS", "Answers", "CancelledError", "Collisions", "Engine", "EngineError", "Error", "FileError",
     "FilterCounts", "Geometry", "Hits", "InputError", "InputTypeError", "Job", "JobResult", "Neighbors", "OctalCode", "Octants", "PairStream",
-    "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "UsageError",
+    "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "UsageError", "View",
     "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "list_octants", "make_poses", "mpi_engine", "replay",
     "self_intersections", "stream_pairs",
 ]

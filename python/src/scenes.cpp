@@ -145,7 +145,8 @@ std::unique_ptr<LocalScene> make_scene(const py::dict& options) {
 }  // namespace
 
 void bind_scenes(py::module_& module) {
-    py::class_<LocalScene> scene(module, "Scene");
+    py::class_<PythonScene<Scene>>(module, "SceneBase");  // what other modules use
+    py::class_<LocalScene, PythonScene<Scene>> scene(module, "Scene");
     scene.def(py::init(&make_scene), py::arg("options"))
         .def("enlarged_pairs", &LocalScene::enlarged_pairs)
         .def("boxes", &LocalScene::boxes)

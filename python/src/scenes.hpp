@@ -69,6 +69,12 @@ public:
         return list([&] { return &scene_->persisting(); });
     }
 
+    /// Calls use(scene) without the GIL, while no other thread of Python calls the scene.
+    template <typename Use>
+    void use(Use use_scene) {
+        run([&] { use_scene(*scene_); });
+    }
+
     std::uint64_t size() {
         return get([&] { return scene_->size(); });
     }

@@ -11,7 +11,7 @@
 
 #include "fuzz/right_checksums.hpp"
 #include "octopair/error.hpp"
-#include "service/server/calls/uploaded_calls.hpp"
+#include "service/server/scenes/uploaded_calls.hpp"
 
 namespace {
 

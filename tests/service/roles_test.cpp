@@ -5,9 +5,13 @@
 #include <atomic>
 #include <ctime>
 #include <functional>
+#include <optional>
+#include <set>
 #include <tuple>
 
 #include "octopair/job_client.hpp"
+#include "octopair/remote_scene.hpp"
+#include "octopair/scene_watcher.hpp"
 #include "service/guarded.hpp"
 #include "support/kinds.hpp"
 
@@ -147,6 +151,68 @@ TEST_F(Roles, InvalidLinesAreRefusedAndChangeNothing) {
               file + ": line 2: an earlier line has the same client");
     EXPECT_EQ(client("oleg")->list().size(), 0u) << "still an operator";
     EXPECT_EQ(error_of(ErrorCode::usage, [&] { submit("oleg"); }), not_permitted("operator"));
+}
+
+class SceneRoles : public Roles {
+protected:
+    ClientOptions options_of(const std::string& name) const {
+        ClientOptions options;
+        options.token = name + "-0123456789ab";
+        options.patience = std::chrono::milliseconds(300);
+        return options;
+    }
+    std::unique_ptr<SceneWatcher> watcher(const std::string& name) const {
+        return std::make_unique<SceneWatcher>(server_->address().text(), options_of(name));
+    }
+    RemoteScene scene(const std::string& name) const {
+        RemoteScene scene = connect_scene(server_->address().text(), {}, options_of(name));
+        std::vector<ObjectId> ids(boxes_.size());
+        scene.add(Objects{std::span(boxes_)}, ids);
+        (void)scene.step();
+        return scene;
+    }
+    static std::optional<SceneSnapshot> look(SceneWatcher& watcher, const std::string& id) {
+        return watcher.next(id, 0, std::chrono::seconds(60), 10);
+    }
+};
+
+TEST_F(SceneRoles, OwnersAndReadersWatchTheScenesOfOneOwner) {
+    const RemoteScene of_anna = scene("anna"), of_bert = scene("bert");
+    const auto anna = watcher("anna"), bert = watcher("bert"), ruth = watcher("ruth");
+    const auto list = anna->list();
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].owner, "") << "an owner's own scenes";
+    const auto read = ruth->list();
+    ASSERT_EQ(read.size(), 1u);
+    EXPECT_EQ(read[0].id, list[0].id);
+    EXPECT_EQ(read[0].owner, "token:anna");
+    ASSERT_EQ(bert->list().size(), 1u);
+    const std::string other = bert->list()[0].id;
+    EXPECT_NE(other, list[0].id);
+    EXPECT_TRUE(look(*anna, list[0].id));
+    EXPECT_TRUE(look(*ruth, list[0].id));
+    for (SceneWatcher* stranger : {anna.get(), ruth.get()}) {
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)look(*stranger, other); }), "there is no scene " + other);
+    }
+}
+
+TEST_F(SceneRoles, OperatorsListAllScenesAndReadNone) {
+    const RemoteScene of_anna = scene("anna"), of_bert = scene("bert");
+    const auto oleg = watcher("oleg");
+    const auto list = oleg->list();
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_LT(list[0].id, list[1].id);
+    EXPECT_EQ(std::set({list[0].owner, list[1].owner}), std::set<std::string>({"token:anna", "token:bert"}));
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)look(*oleg, list[0].id); }), not_permitted("operator"));
+}
+
+TEST_F(SceneRoles, StrangersSeeNoScenes) {
+    const RemoteScene of_anna = scene("anna");
+    const std::string id = watcher("anna")->list().at(0).id;
+    const auto stranger = watcher("nobody");
+    const std::string refusal = server_->address().text() + ": the server does not accept this token";
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)stranger->list(); }), refusal);
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)look(*stranger, id); }), refusal);
 }
 
 class TokenLines : public Roles {

@@ -1,24 +1,19 @@
 #include "cli/view/browser.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <vector>
 
-#include "base/stop.hpp"
+#include "cli/view/browser_pipe.hpp"
 #include "octopair/error.hpp"
-
-extern char** environ;
 
 namespace octopair::cli {
 
@@ -59,41 +54,28 @@ std::string find_browser() {
     return *found;
 }
 
-/// Starts a program in a process group of its own, without input and output. Signals are as in a new shell.
-pid_t start(const std::vector<std::string>& words) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    for (const int descriptor : {0, 1, 2}) posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
-    pid_t child = -1;
-    const int error = ::posix_spawn(&child, words.front().c_str(), &files, &attributes, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    posix_spawnattr_destroy(&attributes);
-    return error == 0 ? child : -1;
+std::string decoded_base64(std::string_view text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    std::uint32_t word = 0;
+    unsigned bits = 0;
+    for (const char c : text) {
+        const std::size_t digit = digits.find(c);
+        if (digit == std::string_view::npos) break;
+        word = word << 6 | std::uint32_t(digit);
+        bits += 6;
+        if (bits >= 8) bytes += char(word >> (bits -= 8));
+    }
+    return bytes;
 }
 
-/// Waits for a process. Kills its group after `most`, and after a stop request. Returns whether it ended by itself, with status 0.
-bool wait_for(pid_t child, std::chrono::seconds most, const std::stop_token& stop) {
-    const auto end = std::chrono::steady_clock::now() + most;
-    for (;;) {
-        int status = 0;
-        if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-        if (stop.stop_requested() || std::chrono::steady_clock::now() > end) {
-            ::kill(-child, SIGKILL);
-            ::waitpid(child, &status, 0);
-            throw_if_stopped(stop);
-            return false;
-        }
-        std::this_thread::sleep_for(20ms);
+/// Waits until the page says that its first picture is drawn.
+void wait_for_picture(BrowserPipe& browser, const std::string& session) {
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    const nlohmann::json ready = {{"expression", "document.documentElement.dataset.ready === 'true'"}};
+    while (!browser.call("Runtime.evaluate", ready, session)["result"].value("value", false)) {
+        if (std::chrono::steady_clock::now() > end) fail_io("the browser did not draw the page");
+        std::this_thread::sleep_for(100ms);
     }
 }
 
@@ -114,33 +96,43 @@ void open_browser(const std::string& address) {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
     const auto program = find_program({"xdg-open"});
     if (!program) return;
-    const pid_t child = start({*program, address});
-    if (child > 0) std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        // A second child, which init adopts, so that nobody must wait for the browser.
+        sigset_t none;
+        sigemptyset(&none);
+        ::sigprocmask(SIG_SETMASK, &none, nullptr);
+        if (::setsid() < 0 || ::fork() != 0) ::_exit(0);
+        ::execl(program->c_str(), program->c_str(), address.c_str(), nullptr);
+        ::_exit(1);
+    }
+    if (child > 0) ::waitpid(child, nullptr, 0);
 }
 
 std::string take_screenshot(const std::string& page_path, const std::stop_token& stop) {
     const TemporaryFolder folder;
-    const std::string picture = folder.path() + "/picture.png";
-    std::vector<std::string> words = {find_browser(),
-                                      "--headless=new",
-                                      "--no-first-run",
-                                      "--disable-extensions",
-                                      "--disable-background-networking",
-                                      "--user-data-dir=" + folder.path() + "/profile",
-                                      "--hide-scrollbars",
-                                      "--window-size=1280,720",
-                                      "--enable-unsafe-swiftshader",
-                                      "--virtual-time-budget=20000",
-                                      "--screenshot=" + picture,
-                                      "file://" + page_path};
-    if (::geteuid() == 0)
-        words.insert(words.begin() + 1, "--no-sandbox");  // Chromium refuses to run as root with its sandbox
-    const pid_t child = start(words);
-    const bool ended = child > 0 && wait_for(child, 120s, stop);
-    std::ifstream file(picture, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (!ended || bytes.empty()) fail_io("the browser " + words.front() + " did not draw the page");
-    return bytes;
+    constexpr int width = 1280, height = 720;
+    std::vector<std::string> words = {
+        find_browser(),
+        "--headless=new",
+        "--no-first-run",
+        "--disable-extensions",
+        "--disable-background-networking",
+        "--user-data-dir=" + folder.path(),
+        "--hide-scrollbars",
+        "--enable-unsafe-swiftshader"};                        // draws by processor where there is no graphics card
+    if (::geteuid() == 0) words.emplace_back("--no-sandbox");  // Chromium refuses to run as root with its sandbox
+    BrowserPipe browser(std::move(words), stop);
+    const auto target = browser.call("Target.createTarget", {{"url", "about:blank"}});
+    const auto attached =
+        browser.call("Target.attachToTarget", {{"targetId", target.value("targetId", "")}, {"flatten", true}});
+    const std::string session = attached.value("sessionId", "");
+    browser.call("Emulation.setDeviceMetricsOverride",
+                 {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}}, session);
+    browser.call("Page.navigate", {{"url", "file://" + page_path}}, session);
+    wait_for_picture(browser, session);
+    const auto picture = browser.call("Page.captureScreenshot", {{"format", "png"}}, session);
+    return decoded_base64(picture.value("data", ""));
 }
 
 }  // namespace octopair::cli

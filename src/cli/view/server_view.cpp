@@ -1,4 +1,239 @@
 #include "cli/view/server_view.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/server/server_choice.hpp"
+#include "cli/view/browser.hpp"
+#include "cli/view/presentation.hpp"
+#include "cli/view/view_options.hpp"
+#include "octopair/error.hpp"
+#include "octopair/job_client.hpp"
+#include "octopair/scene_watcher.hpp"
+#include "octopair/version.hpp"
+#include "viewer/live/live_source.hpp"
+#include "viewer/server/messages.hpp"
+#include "viewer/server/page_server.hpp"
+
 namespace octopair::cli {
-void view_server(const ViewRequest&, const std::stop_token&) {}
+
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+Json job_json(const JobStatus& job) {
+    constexpr const char* states[] = {"queued", "running", "done", "failed", "cancelled"};
+    return {{"id", job.id},
+            {"owner", job.owner},
+            {"state", states[std::size_t(job.state)]},
+            {"progress", job.progress},
+            {"queued_before", job.queued_before},
+            {"objects", job.objects},
+            {"pairs", job.summary.pairs},
+            {"count_only", job.count_only},
+            {"error", job.error ? job.error->what() : ""}};
+}
+
+Json scene_json(const SceneStatus& scene) {
+    return {{"id", scene.id},       {"owner", scene.owner}, {"objects", scene.objects},
+            {"pairs", scene.pairs}, {"steps", scene.steps}, {"step_seconds", scene.step_seconds}};
+}
+
+viewer::LiveState state_of(SceneSnapshot&& snapshot) {
+    viewer::LiveState state;
+    state.boxes = std::move(snapshot.boxes);
+    state.exists.assign(snapshot.exists.begin(), snapshot.exists.end());
+    state.pairs = std::move(snapshot.listed);
+    state.pair_count = snapshot.pairs;
+    state.step = snapshot.step;
+    state.step_seconds = snapshot.step_seconds;
+    return state;
+}
+
+/// A scene of the server, which is watched while pages show it.
+class WatchedScene {
+public:
+    WatchedScene(std::string id, viewer::SceneContents contents) : id_(std::move(id)), source_(std::move(contents)) {}
+
+    viewer::LiveSource& source() { return source_; }
+
+    /// Watches the scene on a thread, unless a thread does. `server` is borrowed.
+    void watch(SceneWatcher& watcher, viewer::PageServer& server) {
+        if (thread_.joinable() && !ended_) return;
+        ended_ = false;
+        thread_ = std::jthread([this, &watcher, &server](const std::stop_token& stop) {
+            try {
+                run(watcher, server, stop);
+            } catch (const Error& error) {
+                if (!stop.stop_requested()) server.broadcast(path(), viewer::failed_message(error.what()));
+            }
+            ended_ = true;
+        });
+    }
+
+private:
+    std::string path() const { return "scene/" + id_; }
+
+    void run(SceneWatcher& watcher, viewer::PageServer& server, const std::stop_token& stop) {
+        std::uint64_t step = 0;
+        while (!stop.stop_requested() && source_.pages() > 0) {
+            auto snapshot = watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop);
+            if (!snapshot) continue;
+            step = snapshot->step;
+            source_.feed().put(state_of(std::move(*snapshot)));
+            server.notify();
+        }
+    }
+
+    std::string id_;
+    viewer::LiveSource source_;
+    std::atomic<bool> ended_ = false;
+    std::jthread thread_;
+};
+
+/// Offers the jobs and the scenes of a server.
+class ServerSource final : public viewer::Source {
+public:
+    explicit ServerSource(const ServerChoice& choice)
+        : address_(choice.address), jobs_(address_, client_options(choice)), scenes_(address_, client_options(choice)) {
+        message_ = list({});  // a server that cannot be reached is an error of the command
+    }
+
+    /// Sends the state of the server to the pages twice a second, until a stop request.
+    void run(viewer::PageServer& server, const std::stop_token& stop) {
+        server_ = &server;
+        std::mutex mutex;
+        std::condition_variable_any pause;
+        while (!stop.stop_requested()) {
+            std::unique_lock lock(mutex);
+            pause.wait_for(lock, stop, 500ms, [] { return false; });
+            if (pages_ > 0 && !stop.stop_requested()) update(server, stop);
+        }
+        server_ = nullptr;
+        const std::lock_guard lock(mutex_);
+        watched_.clear();
+    }
+
+    std::optional<viewer::Answer> get(const viewer::Address& address) override {
+        if (address.path() == "view.json") return view_answer();
+        const std::vector<std::string_view> parts = address.parts();
+        if (parts.size() < 3 || parts[0] != "scene") return std::nullopt;
+        WatchedScene* const scene = find(std::string(parts[1]));
+        return scene == nullptr ? std::nullopt : scene->source().get(address.below(parts[0]).below(parts[1]));
+    }
+
+    std::vector<std::string> greeting(const std::string& path) override {
+        if (!path.empty())
+            return {find(id_in(path)) == nullptr ? viewer::failed_message("The scene has ended.")
+                                                 : viewer::ready_message()};
+        const std::lock_guard lock(mutex_);
+        return {viewer::ready_message(), message_};
+    }
+
+    viewer::Message live_frame(const std::string& path, std::int64_t last) override {
+        WatchedScene* const scene = find(id_in(path));
+        return scene == nullptr ? nullptr : scene->source().live_frame("", last);
+    }
+
+    void connected(const std::string& path, bool here) override {
+        if (path.empty()) {
+            here ? ++pages_ : --pages_;
+            return;
+        }
+        WatchedScene* const scene = find(id_in(path));
+        if (scene == nullptr) return;
+        scene->source().connected("", here);
+        viewer::PageServer* const server = server_;
+        if (here && server != nullptr) scene->watch(scenes_, *server);
+    }
+
+private:
+    static std::string id_in(const std::string& path) {
+        constexpr std::string_view prefix = "scene/";
+        return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string();
+    }
+
+    /// Returns the message with all jobs and scenes.
+    std::string list(const std::stop_token& stop) {
+        Json jobs = Json::array(), scenes = Json::array();
+        for (const JobStatus& job : jobs_.list(stop)) jobs.push_back(job_json(job));
+        std::vector<SceneStatus> running;
+        if (has_scenes_) {
+            try {
+                running = scenes_.list(stop);
+            } catch (const Error& error) {
+                if (error.code() != ErrorCode::usage) throw;
+                has_scenes_ = false;  // an older server
+            }
+        }
+        for (const SceneStatus& scene : running) scenes.push_back(scene_json(scene));
+        const Json message = {{"event", "jobs"}, {"jobs", std::move(jobs)}, {"scenes", std::move(scenes)}};
+        const std::lock_guard lock(mutex_);
+        known_ = std::move(running);
+        return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+
+    void update(viewer::PageServer& server, const std::stop_token& stop) {
+        try {
+            std::string message = list(stop);
+            {
+                const std::lock_guard lock(mutex_);
+                message_ = message;
+            }
+            server.broadcast("", std::move(message));
+        } catch (const Error& error) {
+            if (!stop.stop_requested()) server.broadcast("", viewer::failed_message(error.what()));
+        }
+    }
+
+    /// Returns a scene that the server has; null if it has none of this id.
+    WatchedScene* find(const std::string& id) {
+        const std::lock_guard lock(mutex_);
+        auto& scene = watched_[id];
+        if (scene != nullptr) return scene.get();
+        for (const SceneStatus& status : known_) {
+            if (status.id != id) continue;
+            viewer::SceneContents contents;
+            contents.title = "scene " + id.substr(0, 8) + " of " + address_;
+            contents.margin = status.margin;
+            scene = std::make_unique<WatchedScene>(id, std::move(contents));
+            return scene.get();
+        }
+        watched_.erase(id);
+        return nullptr;
+    }
+
+    viewer::Answer view_answer() const {
+        return {viewer::AnswerKind::json,
+                Json{{"version", OCTOPAIR_VERSION}, {"title", address_}, {"kind", "server"}, {"notices", Json::array()}}
+                    .dump(-1, ' ', false, Json::error_handler_t::replace)};
+    }
+
+    std::string address_;
+    JobClient jobs_;
+    SceneWatcher scenes_;
+    bool has_scenes_ = true;
+    std::atomic<unsigned> pages_ = 0;
+    std::atomic<viewer::PageServer*> server_ = nullptr;
+    std::mutex mutex_;
+    std::string message_;             // the latest state, guarded by mutex_ like the members below
+    std::vector<SceneStatus> known_;  // the latest list
+    std::map<std::string, std::unique_ptr<WatchedScene>> watched_;
+};
+
+}  // namespace
+
+void view_server(const ViewRequest& request, const std::stop_token& stop) {
+    ServerSource source(request.detect.engine.server);
+    viewer::PageServer server(source, server_options(request));
+    present(request, server);
+    source.run(server, stop);
+}
+
 }  // namespace octopair::cli

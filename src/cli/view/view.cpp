@@ -16,6 +16,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/view/browser.hpp"
 #include "cli/view/loaded_view.hpp"
+#include "cli/view/presentation.hpp"
 #include "cli/view/result_file.hpp"
 #include "cli/view/server_view.hpp"
 #include "cli/view/view_options.hpp"
@@ -46,14 +47,6 @@ void wait_for_stop(const std::stop_token& stop) {
     std::condition_variable_any never;
     std::unique_lock lock(mutex);
     never.wait(lock, stop, [] { return false; });
-}
-
-/// Prints the address, and opens it in the browser.
-void present(const ViewRequest& request, const viewer::PageServer& server) {
-    fmt::print("{}\n", server.address());
-    std::fflush(stdout);
-    if (!request.detect.quiet) fmt::print(stderr, "Open this address in a browser. Ctrl-C ends the viewer.\n");
-    if (!request.no_browser) open_browser(server.address());
 }
 
 /// Loads a source on a thread of its own, so that a page can show the progress of a long search.
@@ -202,6 +195,13 @@ int run_view(const ViewRequest& request) {
 }
 
 }  // namespace
+
+void present(const ViewRequest& request, const viewer::PageServer& server) {
+    fmt::print("{}\n", server.address());
+    std::fflush(stdout);
+    if (!request.detect.quiet) fmt::print(stderr, "Open this address in a browser. Ctrl-C ends the viewer.\n");
+    if (!request.no_browser) open_browser(server.address());
+}
 
 void add_view(Command& program, Action& action) {
     Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");

@@ -19,6 +19,7 @@
 #include "service/server/jobs/watchdog.hpp"
 #include "service/server/log/server_log.hpp"
 #include "service/server/net/access.hpp"
+#include "service/server/scenes/scene_table.hpp"
 #include "service/server/server_options.hpp"
 
 namespace octopair::service {
@@ -52,6 +53,7 @@ public:
     const std::uint64_t connections_per_client;  // over TCP; 0: no limit
     const std::unique_ptr<StateFolder> state;    // null: the server takes no detached jobs
     JobTable jobs;
+    SceneTable scenes;
     Watchdog watchdog;
     CallThreads threads;
     ResultReader result_reader;

@@ -34,7 +34,7 @@ std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_sho
 
 void LiveFeed::put(LiveState&& next) {
     const std::lock_guard lock(mutex_);
-    const bool whole = frame_ < 0 || next.pairs.has_value() || size_of(next) != size_of(*state_);
+    const bool whole = frame_ < 0 || size_of(next) != size_of(*state_);
     if (frame_ < 0) {
         FrameData data;
         data.boxes = boxes_of(next);
@@ -48,13 +48,16 @@ void LiveFeed::put(LiveState&& next) {
     made_.clear();
     if (whole) {
         differences_.clear();
+        kept_events_ = 0;
         oldest_base_ = frame_;
         return;
     }
+    kept_events_ += difference.began.size() + difference.ended.size();
     differences_.push_back(std::move(difference));
-    if (differences_.size() > kept_differences) {
+    while (differences_.size() > max_differences || kept_events_ > max_events) {
+        kept_events_ -= differences_.front().began.size() + differences_.front().ended.size();
+        oldest_base_ = differences_.front().frame;
         differences_.pop_front();
-        oldest_base_ = differences_.front().frame - 1;
     }
 }
 
@@ -87,6 +90,9 @@ static void sort_events(std::vector<LiveState::Event>& events) {
 LiveFeed::Difference LiveFeed::update_pairs(LiveState& next) {
     Difference difference{std::uint32_t(frame_), {}, {}};
     if (next.pairs) {
+        const std::vector<Pair>& now = *next.pairs;
+        std::set_difference(now.begin(), now.end(), pairs_.begin(), pairs_.end(), std::back_inserter(difference.began));
+        std::set_difference(pairs_.begin(), pairs_.end(), now.begin(), now.end(), std::back_inserter(difference.ended));
         pairs_ = std::move(*next.pairs);
         next.pairs.reset();
         return difference;
@@ -175,7 +181,10 @@ Message LiveFeed::frame_after(std::int64_t last) {
     const std::int64_t base = last >= oldest_base_ && last < frame_ ? last : -1;
     Message& made = made_[base];
     if (made == nullptr) {
-        made = std::make_shared<const std::string>(base < 0 ? whole_frame() : difference_since(std::uint32_t(base)));
+        std::string frame = base < 0 ? std::string() : difference_since(std::uint32_t(base));
+        const std::size_t whole = sizeof(Head) + rows_.size() * sizeof(RelativeBox);
+        if (base < 0 || frame.size() > whole) frame = whole_frame();  // the shorter one
+        made = std::make_shared<const std::string>(std::move(frame));
     }
     return made;
 }

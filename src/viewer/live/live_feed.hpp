@@ -26,7 +26,7 @@ namespace octopair::viewer {
 struct LiveState {
     std::variant<std::vector<Box3f>, std::vector<Box3d>> boxes;  ///< by index
     std::vector<std::uint8_t> exists;                            ///< by index; empty: all exist
-    /// All pairs, ascending. If absent, the pairs are those of the last state, changed by the events.
+    /// All pairs, or the first ones, ascending. If absent, the pairs are those of the last state, changed by the events.
     std::optional<std::vector<Pair>> pairs;
     struct Event {
         Pair pair;
@@ -70,7 +70,8 @@ private:
     std::string difference_since(std::uint32_t last) const;
     Head head() const;
 
-    static constexpr std::size_t kept_differences = 256;
+    // Pages with an older frame get a whole one.
+    static constexpr std::size_t max_differences = 256, max_events = 1'000'000;
 
     const std::size_t most_shown_;
     mutable std::mutex mutex_;
@@ -82,6 +83,7 @@ private:
     std::vector<RelativeBox> rows_;
     std::vector<std::uint32_t> changed_;  // by row
     std::deque<Difference> differences_;
+    std::size_t kept_events_ = 0;           // pairs in differences_
     std::map<std::int64_t, Message> made_;  // messages of the latest frame, by the frame that the page has
 };
 

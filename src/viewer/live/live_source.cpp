@@ -16,13 +16,10 @@ void LiveSource::connected(const std::string&, bool here) {
 
 Answer LiveSource::view_answer(const FrameData& data) const {
     const std::size_t objects = std::visit([](auto span) { return span.size(); }, data.boxes);
-    const Json has = {{"names", !contents_.names.empty()},
-                      {"groups", false},
-                      {"shapes", false},
-                      {"contacts", false},
-                      {"events", true},
-                      {"search", true},
-                      {"near", false}};
+    const Json has = {{"rows", false},     {"names", !contents_.names.empty()},
+                      {"groups", false},   {"shapes", false},
+                      {"contacts", false}, {"events", true},
+                      {"search", true},    {"near", false}};
     std::vector<std::string> notices = contents_.notices;
     if (objects > feed_.most_shown()) {
         notices.push_back("Only the first " + grouped_number(feed_.most_shown()) + " of " + grouped_number(objects) +

@@ -208,7 +208,8 @@ std::optional<Answer> SceneSource::octant_answer(Frame& frame, std::string_view 
 
 Answer SceneSource::view_answer() const {
     const std::lock_guard lock(counts_mutex_);
-    Json has = {{"names", !contents_.names.empty()},
+    Json has = {{"rows", !shown_.in_order()},
+                {"names", !contents_.names.empty()},
                 {"groups", !contents_.groups.empty()},
                 {"shapes", !contents_.shapes.empty()},
                 {"contacts", has_contacts_},

@@ -2,8 +2,9 @@
 import grpc
 
 import protocol
+import recording
 from attack_case import AttackCase
-from boxes import equal_boxes, find_pairs, make_boxes
+from boxes import equal_boxes, find_pairs, make_boxes, pairs_in
 from certificates import Authority
 from client import Client, new_id, uploads
 from server import TOKENS
@@ -63,6 +64,37 @@ class Jobs(JobCase):
         for answer in answers:
             self.assert_code(answer, "OK")
             self.assertEqual(answer.messages[-1].summary.pairs, count)
+
+
+class Scenes(AttackCase):
+    """A client receives the state of its scenes, and cannot reach scenes of another client."""
+
+    boxes = make_boxes(1000, seed=5, size=0.2)
+
+    def watch(self, client, scene_id, **fields):
+        request = protocol.messages().WatchSceneRequest(id=scene_id, **fields)
+        return client.call("WatchScene", request)
+
+    def test_a_snapshot_has_the_layout_of_the_protocol(self):
+        pairs = find_pairs(self.boxes)
+        with recording.running_scene(self.anna, self.boxes) as scene_id:
+            answer = self.watch(self.anna, scene_id, pair_limit=1_000_000, seconds=30)
+        self.assert_code(answer, "OK")
+        head, data = answer.messages[0].head, b"".join(message.data for message in answer.messages)
+        self.assertEqual((head.step, head.indices, head.pairs, head.listed), (1, 1000, len(pairs), len(pairs)))
+        self.assertEqual((head.began, head.ended), (len(pairs), 0))
+        boxes = self.boxes.tobytes()
+        self.assertEqual(data[:125], b"\xff" * 125, "presence")
+        self.assertEqual(data[125:125 + len(boxes)], boxes)
+        self.assertEqual(pairs_in(data[125 + len(boxes):]), pairs)
+
+    def test_tokens_separate_clients(self):
+        berta, unknown = self.client("berta"), new_id()
+        with recording.running_scene(self.anna, self.boxes) as scene_id:
+            self.assertEqual(len(berta.call("ListScenes", b"").messages[0].scenes), 0)
+            answer, about_none = self.watch(berta, scene_id), self.watch(berta, unknown)
+            self.assert_code(answer, "INVALID_ARGUMENT")
+            self.assertEqual(answer.text.replace(scene_id, unknown), about_none.text, "the answer reveals the scene")
 
 
 class Tokens(AttackCase):

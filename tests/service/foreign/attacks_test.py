@@ -7,7 +7,7 @@ authenticated clients promptly and right.
 import unittest
 
 import settings
-from access_attacks import Certificates, Jobs, Tokens, TokensAndCertificates
+from access_attacks import Certificates, Jobs, Scenes, Tokens, TokensAndCertificates
 from connection_attacks import FewOpenFiles, Metrics, Strangers
 from flood_attacks import Floods, UnixFloods
 from message_attacks import Large, Malformed, Senseless

@@ -33,8 +33,8 @@ def unexpected_code(name, answer, requests):
     """Returns whether a call with mutated messages must not get this code."""
     if answer.code.name == "OK" and any(is_malformed(protocol.methods()[name].request, one) for one in requests):
         return True
-    if name == "Wait" and answer.code.name == "DEADLINE_EXCEEDED":
-        return False  # the message asks to wait for up to an hour
+    if name in ("Wait", "WatchScene") and answer.code.name == "DEADLINE_EXCEEDED":
+        return False  # the message asks to wait for up to an hour or a minute
     if name == "Submit" and answer.code.name == "UNAVAILABLE" and "released" in answer.text:
         return False  # another connection released the job during the upload
     return answer.code.name not in EXPECTED
@@ -49,6 +49,7 @@ class Fuzz:
         self._boxes = make_boxes(100, seed=1)
         self._pairs = find_pairs(self._boxes)
         self.job_id = "00000000-0000-4000-8000-000000000000"  # a job that exists at most times
+        self.scene_id = ""  # a scene that runs all the time
 
     def valid_messages(self, name, generator):
         """Returns the messages of a valid call of the method."""
@@ -61,6 +62,7 @@ class Fuzz:
         if name == "Scene":
             return [bytes_of(one) for one in recording.scene_uploads(make_boxes(generator.randrange(1, 20), 1))]
         fields = {"Wait": dict(id=job_id, seconds=0.1), "Result": dict(id=job_id, offset=1), "List": dict(after=job_id),
+                  "ListScenes": dict(after=job_id), "WatchScene": dict(id=self.scene_id, pair_limit=10, seconds=0.1),
                   "Describe": {}}.get(name, dict(id=job_id))
         return [bytes_of(protocol.methods()[name].request(**fields))]
 
@@ -71,7 +73,7 @@ class Fuzz:
         requests = self.valid_messages(name, generator)
         at = generator.randrange(len(requests))
         requests[at] = mutated(generator, requests[at])
-        answer = client.call(name, *requests, timeout=2 if name == "Wait" else CALL_SECONDS)
+        answer = client.call(name, *requests, timeout=2 if name in ("Wait", "WatchScene") else CALL_SECONDS)
         self.codes[name, answer.code.name] += 1
         if unexpected_code(name, answer, requests) and answer.code.name not in self._also_accepted:
             self.failures.append(f"message {number}: {name} {[one[:200].hex() for one in requests]}: {answer}")
@@ -114,10 +116,12 @@ def run_all(server, options):
     fuzz, end = Fuzz(server, options.seed, options.also_accept), options.first + options.messages
     threads = [threading.Thread(target=fuzz.run, args=(range(options.first + i, end, CONNECTIONS),))
                for i in range(CONNECTIONS)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with Client(server, "greedy") as client, recording.running_scene(client, make_boxes(100, seed=1)) as scene_id:
+        fuzz.scene_id = scene_id
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
     return fuzz
 
 

@@ -70,7 +70,8 @@ def _test_of(name):
     return test
 
 
-for _name in ("Describe", "Detect", "DetectSmall", "Submit", "Status", "Wait", "Result", "Cancel", "Release", "List", "Scene"):
+for _name in ("Describe", "Detect", "DetectSmall", "Submit", "Status", "Wait", "Result", "Cancel", "Release", "List", "Scene",
+              "ListScenes", "WatchScene"):
     setattr(Malformed, f"test_{_name.lower()}", _test_of(_name))
 
 
@@ -121,10 +122,12 @@ class Senseless(AttackCase):
     def test_job_names_that_do_not_exist(self):
         for job_id in ("", "x", "../state", new_id(), new_id().upper(), "\0", "\r\n2026-01-01T00:00:00.000Z info x",
                        "\N{GRINNING FACE}" * 1000, "y" * MEBIBYTE, "%s%n"):
-            for name in ("Status", "Wait", "Result", "Cancel", "Release"):
+            for name in ("Status", "Wait", "Result", "Cancel", "Release", "WatchScene"):
                 answer = self.anna.call(name, protocol.methods()[name].request(id=job_id))
                 self.assert_code(answer, "INVALID_ARGUMENT")
                 self.assertLess(len(answer.text), 10_000, "the error repeats a huge id")
+            self.assert_code(self.anna.call("ListScenes", protocol.messages().ListScenesRequest(after=job_id)), "OK",
+                             "INVALID_ARGUMENT")
             self.assert_code(self.anna.call("List", protocol.messages().ListRequest(after=job_id)), "OK", "INVALID_ARGUMENT")
 
     def test_times_to_wait(self):
@@ -133,6 +136,18 @@ class Senseless(AttackCase):
         self.anna.wait(job_id)
         for seconds in (float("nan"), float("inf"), -float("inf"), -1.0, 1e308, 5e-324):
             self.assert_code(self.anna.call("Wait", request(id=job_id, seconds=seconds)), "OK", "INVALID_ARGUMENT")
+
+    def test_scenes_and_steps_to_wait_for(self):
+        request = protocol.messages().WatchSceneRequest
+        with recording.running_scene(self.anna, self.boxes) as scene_id:
+            for seconds in (float("nan"), -float("inf"), -1.0, 5e-324):
+                answer = self.anna.call("WatchScene", request(id=scene_id, after_step=2**64 - 1, seconds=seconds))
+                self.assert_code(answer, "OK")
+                self.assertEqual(answer.messages, [], "no step is newer")
+            for limit in (0, 1, 2**63, 2**64 - 1):
+                answer = self.anna.call("WatchScene", request(id=scene_id, pair_limit=limit, seconds=float("inf")))
+                self.assert_code(answer, "OK")
+                self.assertEqual(answer.messages[0].head.listed, min(limit, len(find_pairs(self.boxes))))
 
     def test_offsets_and_hashes(self):
         job_id, pairs = new_id(), find_pairs(self.boxes)

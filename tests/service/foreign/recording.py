@@ -1,5 +1,7 @@
 """Recordings: the messages of a scene (docs/formats.md, "Recordings")."""
+import contextlib
 import struct
+import threading
 
 import protocol
 
@@ -40,3 +42,22 @@ def scene_uploads(boxes):
     """Returns the messages of a scene that adds boxes and makes one step."""
     upload = protocol.messages().SceneUpload
     return [upload(calls=head() + add(boxes)), upload(calls=record(STEP))]
+
+
+@contextlib.contextmanager
+def running_scene(client, boxes):
+    """Runs a scene of these boxes, which has made a step, until the block ends. Gives its id. The client has no other scene."""
+    end = threading.Event()
+
+    def uploads():
+        yield from (one.SerializeToString() for one in scene_uploads(boxes))
+        end.wait()
+
+    call = client.open("Scene", uploads(), timeout=None)
+    try:
+        next(call)
+        reports = client.call("ListScenes", protocol.messages().ListScenesRequest()).messages[0].scenes
+        yield reports[0].id
+    finally:
+        end.set()
+        call.cancel()

@@ -28,6 +28,16 @@ grpc::ServerUnaryReactor* start_detect_small(ServerContext& server, grpc::Callba
 grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_scene(ServerContext& server,
                                                                          grpc::CallbackServerContext& context);
 
+// watch_call.cpp
+
+/// Returns the running scenes that the caller sees.
+grpc::ServerUnaryReactor* start_list_scenes(ServerContext& server, grpc::CallbackServerContext& context,
+                                            const grpc::ByteBuffer& request, grpc::ByteBuffer& response);
+/// Sends the state of a scene after a step.
+grpc::ServerWriteReactor<grpc::ByteBuffer>* start_watch_scene(ServerContext& server,
+                                                              grpc::CallbackServerContext& context,
+                                                              const grpc::ByteBuffer& request);
+
 // submit_call.cpp
 
 /// Stores a detached job in the state folder and queues it.

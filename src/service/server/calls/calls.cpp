@@ -16,11 +16,13 @@ using WithJobCalls =
     Service::WithRawCallbackMethod_Status<Service::WithRawCallbackMethod_Wait<Service::WithRawCallbackMethod_Cancel<
         Service::WithRawCallbackMethod_Release<Service::WithRawCallbackMethod_List<Base>>>>>;
 template <typename Base>
+using WithWatchCalls = Service::WithRawCallbackMethod_ListScenes<Service::WithRawCallbackMethod_WatchScene<Base>>;
+template <typename Base>
 using WithServerCalls = Service::WithRawCallbackMethod_Describe<Service::WithRawCallbackMethod_Drain<Base>>;
 /// All calls receive raw bytes. Protobuf would copy the large fields; and gRPC would answer INTERNAL to messages that cannot be parsed,
 /// before the caller is authenticated.
-using Methods =
-    WithStreams<WithJobCalls<WithServerCalls<Service::WithRawCallbackMethod_DetectSmall<Service::Service>>>>;
+using Methods = WithStreams<
+    WithJobCalls<WithWatchCalls<WithServerCalls<Service::WithRawCallbackMethod_DetectSmall<Service::Service>>>>>;
 
 class Calls final : public Methods {
 public:
@@ -67,6 +69,14 @@ public:
     grpc::ServerUnaryReactor* List(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                    grpc::ByteBuffer* response) override {
         return start_list(server_, *context, *request, *response);
+    }
+    grpc::ServerUnaryReactor* ListScenes(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                                         grpc::ByteBuffer* response) override {
+        return start_list_scenes(server_, *context, *request, *response);
+    }
+    grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchScene(grpc::CallbackServerContext* context,
+                                                           const grpc::ByteBuffer* request) override {
+        return start_watch_scene(server_, *context, *request);
     }
     grpc::ServerUnaryReactor* Drain(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                     grpc::ByteBuffer* response) override {

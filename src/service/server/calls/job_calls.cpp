@@ -14,6 +14,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
+#include "service/server/calls/unary_call.hpp"
 #include "service/server/server_context.hpp"
 #include "service/server/store/detached_jobs.hpp"
 #include "service/server/store/state_folder.hpp"
@@ -23,38 +24,6 @@ namespace octopair::service {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Parses a request. Throws: Error{bad_input}, which becomes INVALID_ARGUMENT.
-template <typename Request>
-Request parsed(grpc::ByteBuffer bytes) {
-    Request request;
-    if (!unpack(bytes, request)) throw Error(ErrorCode::bad_input, "the message cannot be parsed");
-    return request;
-}
-
-/// A unary call that is answered at once.
-struct Unary {
-    ServerContext& server;
-    grpc::CallbackServerContext& context;
-    const grpc::ByteBuffer& request;
-    grpc::ByteBuffer& response;
-};
-
-/// Admits the caller, sends the message that `answer(caller, request)` returns, and finishes the call. An exception of `answer` becomes
-/// the status of the call.
-template <typename Request, typename Answer>
-grpc::ServerUnaryReactor* answer_at_once(const Unary& call, Right right, Answer&& answer) {
-    grpc::ServerUnaryReactor* const reactor = call.context.DefaultReactor();
-    Admission admission;
-    grpc::Status status = call.server.admit(call.context, right, admission);
-    try {
-        if (status.ok()) call.response = pack(answer(std::as_const(admission.caller), parsed<Request>(call.request)));
-    } catch (...) {
-        status = status_of_exception();
-    }
-    reactor->Finish(status);
-    return reactor;
-}
 
 /// The calls Wait and Cancel: answer when the job has ended or the time is over. They fail when the server shuts down.
 class WaitCall final : public grpc::ServerUnaryReactor,

@@ -16,8 +16,9 @@
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
-#include "service/server/calls/server_scene.hpp"
-#include "service/server/calls/uploaded_calls.hpp"
+#include "service/server/scenes/scene_publisher.hpp"
+#include "service/server/scenes/server_scene.hpp"
+#include "service/server/scenes/uploaded_calls.hpp"
 #include "service/server/server_context.hpp"
 
 namespace octopair::service {
@@ -111,6 +112,10 @@ private:
         } catch (...) {
             status = status_of_exception();
         }
+        if (publisher_) {
+            server_.scenes.remove(*publisher_);
+            publisher_->close();
+        }
         scene_.reset();
         slot_ = {};
         {
@@ -131,18 +136,33 @@ private:
         }
         message_.Clear();
         for (RecordedCall call; calls_.next(call);) {
-            if (!scene_) scene_.emplace(server_, admission_.client(), calls_.options());
+            if (!scene_) start_scene(calls_.options());
             call.kind == RecordKind::step ? step() : scene_->make(call);
-            in_frame_ = call.kind != RecordKind::step && call.kind != RecordKind::result;
+            if (call.kind != RecordKind::result) in_frame_ = call.kind != RecordKind::step;
         }
         in_frame_ |= calls_.is_incomplete();
         return true;
     }
 
+    void start_scene(const SceneOptions& options) {
+        scene_.emplace(server_, admission_.client(), options);
+        ScenePublisher::Terms terms;
+        terms.owner = admission_.client();
+        terms.precision = options.precision;
+        terms.margin = options.margin;
+        terms.wake = [this] { set([] {}); };
+        publisher_ = std::make_shared<ScenePublisher>(std::move(terms), server_.result_reader);
+        server_.scenes.enter(publisher_);
+    }
+
     bool wait_for_message() {
         std::unique_lock lock(mutex_);
-        begin(in_frame_ ? Doing::waiting : Doing::idle);
-        changed_.wait(lock, [&] { return read_ != Read::none || refusal_; });
+        if (in_frame_) {
+            begin(Doing::waiting);
+            changed_.wait(lock, [&] { return has_news(); });
+        } else {
+            wait_idle(lock);
+        }
         begin(Doing::working);
         if (refusal_) return false;
         if (read_ == Read::came) {
@@ -152,6 +172,28 @@ private:
         }
         if (!in_frame_) return false;
         throw Error(ErrorCode::bad_input, "the upload ended in the middle of a frame");
+    }
+
+    /// Returns whether a message has come or the call ends. Requires: mutex_ is locked.
+    bool has_news() const { return read_ != Read::none || refusal_; }
+
+    /// Waits between frames, and publishes the scene if a watcher comes.
+    void wait_idle(std::unique_lock<std::mutex>& lock) {
+        for (;;) {
+            begin(Doing::idle);
+            changed_.wait(lock, [&] { return has_news() || publisher_->is_wanted(); });
+            if (has_news()) return;
+            if (changed_.wait_until(lock, publisher_->next_time(), [&] { return has_news(); })) return;
+            begin(Doing::working);
+            lock.unlock();
+            publish_if_wanted();
+            lock.lock();
+        }
+    }
+
+    void publish_if_wanted() {
+        if (!publisher_->is_wanted() || Clock::now() < publisher_->next_time()) return;
+        publisher_->publish([this](std::uint64_t pair_limit) { return scene_->snapshot(pair_limit); });
     }
 
     void step() {
@@ -164,14 +206,16 @@ private:
             const std::lock_guard lock(mutex_);
             begin(Doing::working);
         }
+        publisher_->note_step(scene_->numbers());
         answer(result);
+        publish_if_wanted();
     }
 
     void answer(const StepResult& result) {
         const Bytes began = std::as_bytes(result.began), ended = std::as_bytes(result.ended);
         const std::size_t all = began.size() + ended.size();
         v1::SceneDownload small;
-        small.set_step(++steps_);
+        small.set_step(scene_->numbers().step);
         for (std::size_t sent = 0; sent < all || !small.has_result();) {
             const grpc::Slice piece = piece_of(began, ended, sent);
             sent += piece.size();
@@ -263,7 +307,7 @@ private:
     grpc::ByteBuffer in_, message_, out_;
     UploadedCalls calls_;
     std::optional<ServerScene> scene_;
-    std::uint64_t steps_ = 0;
+    std::shared_ptr<ScenePublisher> publisher_;  // set together with scene_
     bool in_frame_ = true;  // a part of the next frame was received, or the scene's options are missing
 
     std::mutex mutex_;

@@ -4,6 +4,7 @@
 //   owner      yes       yes                  its own      its own       own     own      no
 //   reader     yes       no                   one owner's  one owner's   no      no       no
 //   operator   yes       no                   all          no            all     no       yes
+// Who sees jobs lists the scenes of the same owners, and who reads results watches these scenes.
 #pragma once
 
 #include <cstdint>
@@ -40,6 +41,8 @@ struct Caller {
     }
     /// Returns whether the caller sees the jobs of all owners.
     bool sees_all() const { return role == Role::server_operator; }
+    /// Returns whether the caller sees the jobs and scenes of `job_owner`.
+    bool sees(const std::string& job_owner) const { return sees_all() || owner() == job_owner; }
     /// Returns the owner whose jobs the caller sees, unless it sees those of all.
     const std::string& owner() const { return role == Role::reader ? reads : name; }
 };

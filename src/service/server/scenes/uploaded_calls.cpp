@@ -1,4 +1,4 @@
-#include "service/server/calls/uploaded_calls.hpp"
+#include "service/server/scenes/uploaded_calls.hpp"
 
 #include <cstring>
 #include <string>

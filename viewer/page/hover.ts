@@ -1,0 +1,42 @@
+// Labels over the canvas: what is under the pointer, and the depths of contacts.
+import * as THREE from 'three';
+import {byId, counted, make, short} from './dom.ts';
+import type {Octant} from './octant_layer.ts';
+import type {Stage} from './stage.ts';
+
+export function showLabel(stage: Stage, text: string, clientX: number, clientY: number): void {
+  const label = byId('label');
+  const box = stage.canvas.getBoundingClientRect();
+  label.textContent = text;
+  label.hidden = !text;
+  label.style.left = `${Math.min(clientX - box.left + 14, Math.max(0, box.width - label.offsetWidth - 4))}px`;
+  label.style.top = `${Math.min(clientY - box.top + 14, Math.max(0, box.height - label.offsetHeight - 4))}px`;
+}
+
+export function hideLabel(): void {
+  byId('label').hidden = true;
+}
+
+export function octantText(octant: Octant): string {
+  const kind = octant.leaf ? ', leaf' : '';
+  return `octant ${octant.code}, level ${octant.level}${kind}\n${counted(octant.entries, 'entry', 'entries')}, ${octant.begins} begin here`;
+}
+
+// Places the labels of the depths after a picture was drawn.
+export function placeDepths(stage: Stage): void {
+  const host = byId('depths');
+  const labels = stage.contacts.labels;
+  while (host.children.length > labels.length) host.lastChild!.remove();
+  while (host.children.length < labels.length) host.append(make('span'));
+  if (!labels.length) return;
+  const box = stage.canvas.getBoundingClientRect();
+  labels.forEach((label, k) => {
+    const element = host.children[k] as HTMLElement;
+    const at = stage.project(new THREE.Vector3().copy(label.at));
+    const text = `depth ${short(label.depth)}`;
+    if (element.textContent !== text) element.textContent = text;
+    element.hidden = !at.front;
+    element.style.left = `${Math.round(at.x - box.left + 10)}px`;
+    element.style.top = `${Math.round(at.y - box.top - 9)}px`;
+  });
+}

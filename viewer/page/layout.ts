@@ -1,0 +1,70 @@
+// Panels that open and close, the tabs, and the theme of the page.
+import {byId} from './dom.ts';
+import type {Settings} from './settings.ts';
+
+type Drawer = 'options' | 'side';
+
+const narrow = window.matchMedia('(max-width: 760px)');
+const prefersDark = window.matchMedia('(prefers-color-scheme: dark)');
+
+export function isOpen(drawer: Drawer): boolean {
+  return document.documentElement.dataset[drawer] !== 'closed';
+}
+
+export function setOpen(drawer: Drawer, open: boolean): void {
+  document.documentElement.dataset[drawer] = open ? 'open' : 'closed';
+  byId(`toggle-${drawer}`).setAttribute('aria-expanded', String(open));
+  // A phone has room for one drawer.
+  const other = drawer === 'side' ? 'options' : 'side';
+  if (open && narrow.matches && isOpen(other)) setOpen(other, false);
+}
+
+export function toggleOpen(drawer: Drawer): void {
+  setOpen(drawer, !isOpen(drawer));
+}
+
+export function startLayout(): void {
+  for (const drawer of ['options', 'side'] as const) {
+    setOpen(drawer, !narrow.matches);
+    byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
+  }
+  byId('bar').classList.add('viewing');
+  const tabs = [byId('tab-collisions'), byId('tab-scene')];
+  for (const tab of tabs) {
+    tab.addEventListener('click', () => showTab(tab.id));
+    tab.addEventListener('keydown', event => {
+      if (event.key !== 'ArrowLeft' && event.key !== 'ArrowRight') return;
+      const other = tabs[tab === tabs[0] ? 1 : 0]!;
+      showTab(other.id);
+      other.focus();
+    });
+  }
+}
+
+export function showTab(id: string): void {
+  for (const tab of [byId('tab-collisions'), byId('tab-scene')]) {
+    const chosen = tab.id === id;
+    tab.setAttribute('aria-selected', String(chosen));
+    tab.tabIndex = chosen ? 0 : -1;
+    byId(tab.getAttribute('aria-controls')!).hidden = !chosen;
+  }
+}
+
+export function isDark(settings: Settings): boolean {
+  const {theme} = settings.values;
+  return theme === 'dark' || (theme === 'system' && prefersDark.matches);
+}
+
+export function applyTheme(settings: Settings): void {
+  document.documentElement.dataset.theme = isDark(settings) ? 'dark' : 'light';
+}
+
+export function startTheme(settings: Settings): void {
+  applyTheme(settings);
+  prefersDark.addEventListener('change', () => settings.changed('theme'));
+}
+
+// From light to dark or back, whatever the system prefers.
+export function switchTheme(settings: Settings): void {
+  settings.set('theme', isDark(settings) ? 'light' : 'dark');
+}

@@ -1,0 +1,77 @@
+// Applies live frames to the model: boxes, pairs and numbers of partners.
+import type {LiveFrame} from './live_feed.ts';
+import type {SceneModel} from './scene_model.ts';
+
+export class LiveScene {
+  private pairs = new Map<string | number, readonly [number, number]>();
+  private partial = false;
+
+  constructor(private readonly model: SceneModel) {}
+
+  // Returns whether the rows changed, and not only their boxes.
+  apply(live: LiveFrame): boolean {
+    const rowsChanged = live.whole;
+    if (live.whole) this.replace(live);
+    else this.change(live);
+    const {frame} = this.model;
+    frame.info = {
+      frame: live.frame, pairs: live.pairs, pairs_listed: this.pairs.size, began: live.began, ended: live.ended,
+      seconds: {step: live.stepSeconds},
+    };
+    frame.pairs = this.list();
+    frame.began = live.beganList;
+    frame.ended = live.endedList;
+    this.countPartners();
+    return rowsChanged;
+  }
+
+  private replace(live: LiveFrame): void {
+    const {model} = this;
+    model.rows = live.shown;
+    model.view.objects = live.objects;
+    model.view.shown = live.shown;
+    model.setShown(live.shownObjects);
+    model.frame.boxes = live.boxes;
+    model.frame.levels = null;
+    this.partial = live.listed < live.pairs;
+    this.pairs.clear();
+    this.add(live.pairList);
+  }
+
+  private change(live: LiveFrame): void {
+    const {boxes} = this.model.frame;
+    live.movedRows.forEach((row, k) => boxes.set(live.boxes.subarray(6 * k, 6 * k + 6), 6 * row));
+    if (this.partial) return;
+    for (let k = 0; k + 1 < live.endedList.length; k += 2) this.pairs.delete(key(live.endedList[k]!, live.endedList[k + 1]!));
+    this.add(live.beganList);
+  }
+
+  private add(list: Uint32Array): void {
+    for (let k = 0; k + 1 < list.length; k += 2) this.pairs.set(key(list[k]!, list[k + 1]!), [list[k]!, list[k + 1]!]);
+  }
+
+  private list(): Uint32Array {
+    const list = new Uint32Array(2 * this.pairs.size);
+    let at = 0;
+    for (const pair of this.pairs.values()) {
+      list[at++] = pair[0];
+      list[at++] = pair[1];
+    }
+    return list;
+  }
+
+  private countPartners(): void {
+    const {model} = this;
+    const partners = new Uint32Array(model.rows);
+    for (const object of model.frame.pairs) {
+      const row = model.rowOf(object);
+      if (row >= 0) partners[row]! += 1;
+    }
+    model.frame.partners = partners;
+  }
+}
+
+// Numbers are faster than texts, and exact for all but very large indices.
+function key(a: number, b: number): string | number {
+  return a < 2097152 ? a * 4294967296 + b : `${a} ${b}`;
+}

@@ -1,0 +1,142 @@
+// The arrays of the shown objects and of one frame, as they came from the source.
+import {Missing, type Source} from './source.ts';
+import type {FrameInfo, ObjectInfo, Point, View} from './types.ts';
+
+export const noPairs = new Uint32Array(0);
+
+export interface Frame {
+  info: FrameInfo;
+  boxes: Float32Array;
+  poses: Float32Array | null;
+  partners: Uint32Array;
+  levels: Uint8Array | null;
+  pairs: Uint32Array;
+  began: Uint32Array;
+  ended: Uint32Array;
+}
+
+export class SceneModel {
+  rows = 0;
+  objects: Uint32Array | null = null;
+  groups: Uint32Array | null = null;
+  geometry: Uint32Array | null = null;
+  names: string[] | null = null;
+  frame: Frame = {
+    info: {frame: 0, pairs: 0}, boxes: new Float32Array(0), poses: null, partners: noPairs, levels: null, pairs: noPairs, began: noPairs,
+    ended: noPairs,
+  };
+  private rowsByObject: Map<number, number> | null = null;
+
+  constructor(readonly view: View) {
+    this.rows = view.shown;
+  }
+
+  setShown(objects: Uint32Array | null): void {
+    this.objects = objects;
+    this.rowsByObject = null;
+    if (!objects) return;
+    this.rowsByObject = new Map();
+    objects.forEach((object, row) => this.rowsByObject!.set(object, row));
+  }
+
+  objectOf(row: number): number {
+    return this.objects ? this.objects[row]! : row;
+  }
+
+  rowOf(object: number): number {
+    if (this.rowsByObject) return this.rowsByObject.get(object) ?? -1;
+    return object < this.rows ? object : -1;
+  }
+
+  nameOf(object: number): string {
+    const row = this.rowOf(object);
+    return row >= 0 ? this.names?.[row] ?? '' : '';
+  }
+
+  exists(row: number): boolean {
+    return !Number.isNaN(this.frame.boxes[6 * row]!);
+  }
+
+  // The middle of a row's box, relative to the origin.
+  middle(row: number): Point {
+    const boxes = this.frame.boxes;
+    const axis = (k: number): number => 0.5 * (boxes[6 * row + k]! + boxes[6 * row + k + 3]!);
+    return [axis(0), axis(1), axis(2)];
+  }
+
+  toRelative(point: Point): Point {
+    const o = this.view.origin;
+    return [point[0] - o[0], point[1] - o[1], point[2] - o[2]];
+  }
+
+  toAbsolute(point: Point): Point {
+    const o = this.view.origin;
+    return [point[0] + o[0], point[1] + o[1], point[2] + o[2]];
+  }
+
+  partnersOf(object: number, limit = 1000): number[] {
+    const found: number[] = [];
+    const pairs = this.frame.pairs;
+    for (let k = 0; k + 1 < pairs.length && found.length < limit; k += 2) {
+      if (pairs[k] === object) found.push(pairs[k + 1]!);
+      else if (pairs[k + 1] === object) found.push(pairs[k]!);
+    }
+    return found.sort((a, b) => a - b);
+  }
+
+  // All that the arrays say of an object, for pages without the address object/F/I.json.
+  describe(object: number): ObjectInfo {
+    const row = this.rowOf(object);
+    const partners = this.partnersOf(object);
+    const info: ObjectInfo = {index: object, row, name: this.nameOf(object), partners, partner_count: partners.length};
+    if (row < 0) return info;
+    info.partner_count = Math.max(this.frame.partners[row] ?? 0, partners.length);
+    if (this.frame.levels) info.level = this.frame.levels[row];
+    if (this.groups) info.groups = this.groups[row];
+    const b = this.frame.boxes.subarray(6 * row, 6 * row + 6);
+    if (this.exists(row)) {
+      info.box = {min: this.toAbsolute([b[0]!, b[1]!, b[2]!]), max: this.toAbsolute([b[3]!, b[4]!, b[5]!])};
+    }
+    return info;
+  }
+
+  // Reads what does not depend on the frame.
+  async load(source: Source): Promise<void> {
+    const {has} = this.view;
+    const words = (address: string, wanted: boolean): Promise<Uint32Array | null> =>
+      wanted ? orNull(source.bytes(address)).then(bytes => bytes && new Uint32Array(bytes)) : Promise.resolve(null);
+    const [shown, groups, geometry, names] = await Promise.all([
+      words('shown.u32', this.view.has.rows),
+      words('groups.u32', has.groups), words('geometry.u32', has.shapes), has.names ? orNull(source.json<string[]>('names.json')) : null,
+    ]);
+    this.setShown(shown);
+    this.groups = groups;
+    this.geometry = geometry;
+    this.names = names;
+  }
+
+  async readFrame(source: Source, frame: number): Promise<Frame> {
+    const {has} = this.view;
+    const events = (name: string): Promise<ArrayBuffer | null> =>
+      has.events ? orNull(source.bytes(`${name}/${frame}.u32`)) : Promise.resolve(null);
+    const [info, boxes, partners, levels, pairs, poses, began, ended] = await Promise.all([
+      source.json<FrameInfo>(`frame/${frame}.json`), source.bytes(`frame/${frame}.f32`), orNull(source.bytes(`partners/${frame}.u32`)),
+      orNull(source.bytes(`levels/${frame}.u8`)), orNull(source.bytes(`pairs/${frame}.u32`)),
+      has.shapes ? orNull(source.bytes(`poses/${frame}.f32`)) : null, events('began'), events('ended'),
+    ]);
+    const words = (bytes: ArrayBuffer | null): Uint32Array => bytes ? new Uint32Array(bytes) : noPairs;
+    return {
+      info, boxes: new Float32Array(boxes), poses: poses && new Float32Array(poses), levels: levels && new Uint8Array(levels),
+      partners: partners ? words(partners) : new Uint32Array(this.rows), pairs: words(pairs), began: words(began), ended: words(ended),
+    };
+  }
+}
+
+async function orNull<T>(answer: Promise<T>): Promise<T | null> {
+  try {
+    return await answer;
+  } catch (error) {
+    if (error instanceof Missing) return null;
+    throw error;
+  }
+}

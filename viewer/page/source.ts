@@ -1,0 +1,130 @@
+// Reads the addresses of the protocol, from the server or from the elements of an exported page. Callers see no difference.
+import type {Collision, CollisionQuery, Collisions, Found} from './types.ts';
+
+export class Missing extends Error {}
+export class StillLoading extends Error {}
+
+export interface Source {
+  readonly exported: boolean;
+  bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer>;
+  json<T>(address: string, signal?: AbortSignal): Promise<T>;
+  collisions(frame: number, query: CollisionQuery, signal?: AbortSignal): Promise<Collisions>;
+  search(text: string, frame: number, signal?: AbortSignal): Promise<Found>;
+}
+
+export type ByteCounter = (address: string, got: number, total: number) => void;
+
+export class ServerSource implements Source {
+  readonly exported = false;
+
+  constructor(private readonly count: ByteCounter = () => undefined) {}
+
+  async bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer> {
+    const answer = await fetch(address, {signal, credentials: 'same-origin'});
+    if (answer.status === 503) throw new StillLoading('the scene is still loading');
+    if (answer.status === 404) throw new Missing(`${address}: not found`);
+    if (!answer.ok) throw new Error(`${address}: the server answered ${answer.status}`);
+    return this.collect(address, answer);
+  }
+
+  async json<T>(address: string, signal?: AbortSignal): Promise<T> {
+    return JSON.parse(new TextDecoder().decode(await this.bytes(address, signal))) as T;
+  }
+
+  collisions(frame: number, query: CollisionQuery, signal?: AbortSignal): Promise<Collisions> {
+    const parameters = new URLSearchParams({from: String(query.from), count: String(query.count), sort: query.sort});
+    if (query.object !== undefined) parameters.set('object', String(query.object));
+    if (query.q) parameters.set('q', query.q);
+    return this.json(`collisions/${frame}.json?${parameters}`, signal);
+  }
+
+  search(text: string, frame: number, signal?: AbortSignal): Promise<Found> {
+    return this.json(`search.json?${new URLSearchParams({q: text, f: String(frame)})}`, signal);
+  }
+
+  // Reads the body piece by piece only if it is large, so that progress can be shown.
+  private async collect(address: string, answer: Response): Promise<ArrayBuffer> {
+    const total = Number(answer.headers.get('Content-Length') ?? 0);
+    if (!answer.body || total < 500_000) return answer.arrayBuffer();
+    const reader = answer.body.getReader();
+    const pieces: Uint8Array[] = [];
+    let got = 0;
+    for (let piece = await reader.read(); !piece.done; piece = await reader.read()) {
+      pieces.push(piece.value);
+      got += piece.value.length;
+      this.count(address, got, Math.max(total, got));
+    }
+    const all = new Uint8Array(got);
+    let at = 0;
+    for (const piece of pieces) {
+      all.set(piece, at);
+      at += piece.length;
+    }
+    return all.buffer;
+  }
+}
+
+export class ExportSource implements Source {
+  readonly exported = true;
+  private names: Promise<string[]> | null = null;
+  private readonly tables = new Map<number, Promise<Collisions>>();
+
+  constructor(private readonly elements: Map<string, Element>) {}
+
+  async bytes(address: string): Promise<ArrayBuffer> {
+    const element = this.elements.get(address);
+    if (!element) throw new Missing(`${address}: not in this page`);
+    const packed = Uint8Array.from(atob((element.textContent ?? '').trim()), letter => letter.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+    return new Response(stream).arrayBuffer();
+  }
+
+  async json<T>(address: string): Promise<T> {
+    return JSON.parse(new TextDecoder().decode(await this.bytes(address))) as T;
+  }
+
+  async collisions(frame: number, query: CollisionQuery): Promise<Collisions> {
+    let table = this.tables.get(frame);
+    if (!table) this.tables.set(frame, table = this.json<Collisions>(`collisions/${frame}.json`));
+    const {total, rows} = await table;
+    const selected = selectCollisions(rows, query);
+    const all = query.object === undefined && !query.q;
+    return {total: all ? Math.max(total, rows.length) : selected.length, rows: selected.slice(query.from, query.from + query.count)};
+  }
+
+  async search(text: string): Promise<Found> {
+    this.names ??= this.json<string[]>('names.json').catch(() => []);
+    const names = await this.names;
+    const objects = await this.bytes('shown.u32').then(bytes => new Uint32Array(bytes)).catch(() => null);
+    const lower = text.toLowerCase();
+    const found: Found = {total: 0, found: []};
+    names.forEach((name, row) => {
+      const index = objects ? objects[row]! : row;
+      if (!name.toLowerCase().includes(lower) && String(index) !== text) return;
+      found.total += 1;
+      if (found.found.length < 50) found.found.push({index, name});
+    });
+    return found;
+  }
+}
+
+// Filters and sorts the rows as the server does.
+export function selectCollisions(rows: Collision[], query: CollisionQuery): Collision[] {
+  const lower = (query.q ?? '').toLowerCase();
+  const fits = (row: Collision): boolean => !lower || String(row.a) === lower || String(row.b) === lower ||
+    (row.name_a ?? '').toLowerCase().includes(lower) || (row.name_b ?? '').toLowerCase().includes(lower);
+  const kept = rows.filter(row => (query.object === undefined || row.a === query.object || row.b === query.object) && fits(row));
+  const byPair = (p: Collision, q: Collision): number => p.a - q.a || p.b - q.b;
+  if (query.sort === 'depth') return kept.sort((p, q) => (q.depth ?? 0) - (p.depth ?? 0) || byPair(p, q));
+  if (query.sort === 'began') return kept.sort((p, q) => Number(q.change === 'began') - Number(p.change === 'began') || byPair(p, q));
+  return kept.sort(byPair);
+}
+
+// The elements of an exported page, if it is one.
+export function findSource(count: ByteCounter): Source {
+  const elements = new Map<string, Element>();
+  for (const element of document.querySelectorAll('script[data-address]')) {
+    elements.set(element.getAttribute('data-address') ?? '', element);
+  }
+  return elements.size ? new ExportSource(elements) : new ServerSource(count);
+}

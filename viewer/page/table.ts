@@ -1,0 +1,128 @@
+// The table of collisions: pages of rows, sorted and filtered by the source.
+import {byId, count, counted, isAbort, make, short} from './dom.ts';
+import type {Source} from './source.ts';
+import type {Collision, CollisionQuery} from './types.ts';
+
+const pageRows = 100;
+
+export interface TableActions {
+  frame(): number;
+  selected(): readonly number[];
+  open(row: Collision): void;
+  failed(error: unknown): void;
+}
+
+export class Table {
+  rows: Collision[] = [];
+  total = 0;
+  private from = 0;
+  private abort = new AbortController();
+  private readonly body = byId('rows');
+  private readonly sort = byId<HTMLSelectElement>('sort');
+  private readonly only = byId<HTMLInputElement>('only-selected');
+  private readonly text = byId<HTMLInputElement>('filter');
+
+  constructor(private readonly source: Source, private readonly actions: TableActions, features: {contacts: boolean; events: boolean}) {
+    byId('previous-page').addEventListener('click', () => this.turn(-1));
+    byId('next-page').addEventListener('click', () => this.turn(1));
+    for (const control of [this.sort, this.only]) control.addEventListener('change', () => void this.load(0));
+    let timer = 0;
+    this.text.addEventListener('input', () => {
+      clearTimeout(timer);
+      timer = window.setTimeout(() => void this.load(0), 200);
+    });
+    this.sort.querySelector<HTMLOptionElement>('[value=began]')!.hidden = !features.events;
+    this.sort.querySelector<HTMLOptionElement>('[value=depth]')!.hidden = !features.contacts;
+  }
+
+  turn(step: number): void {
+    const from = this.from + step * pageRows;
+    if (from >= 0 && from < this.total) void this.load(from);
+  }
+
+  async load(from = this.from): Promise<void> {
+    this.abort.abort();
+    this.abort = new AbortController();
+    const {signal} = this.abort;
+    const first = this.actions.selected()[0];
+    const object = this.only.checked && first !== undefined ? first : undefined;
+    const query: CollisionQuery = {from, count: pageRows, sort: this.sort.value, object, q: this.text.value.trim()};
+    try {
+      const answer = await this.source.collisions(this.actions.frame(), query, signal);
+      if (signal.aborted) return;
+      this.from = from;
+      this.total = answer.total;
+      this.rows = answer.rows;
+      this.show();
+    } catch (error) {
+      if (!isAbort(error)) this.actions.failed(error);
+    }
+  }
+
+  // The selection changed: marks its row, and reads other rows if only those of the selection are shown.
+  selectionChanged(): void {
+    if (this.only.checked) void this.load(0);
+    this.mark();
+  }
+
+  // Opens the row after or before the marked one.
+  step(by: number): void {
+    const at = this.rows.findIndex(row => this.isSelected(row));
+    const next = this.rows[at < 0 ? 0 : (at + by + this.rows.length) % this.rows.length];
+    if (next) this.actions.open(next);
+  }
+
+  private isSelected(row: Collision): boolean {
+    const [a, b] = this.actions.selected();
+    return (row.a === a && row.b === b) || (row.a === b && row.b === a);
+  }
+
+  private show(): void {
+    const last = Math.min(this.from + this.rows.length, this.total);
+    byId('table-totals').textContent = this.total === 0 ? 'No collisions' :
+      `${count(this.from + 1)} to ${count(last)} of ${counted(this.total, 'collision', 'collisions')}`;
+    byId<HTMLButtonElement>('previous-page').disabled = this.from === 0;
+    byId<HTMLButtonElement>('next-page').disabled = last >= this.total;
+    byId('depth-column').hidden = !this.rows.some(row => row.depth !== undefined);
+    this.body.replaceChildren(...this.rows.map(row => this.makeRow(row)));
+    this.mark();
+  }
+
+  private makeRow(row: Collision): HTMLElement {
+    const line = make('tr');
+    line.tabIndex = 0;
+    line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
+    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(row.depth), 'number'));
+    line.append(make('td', row.change ?? row.class ?? ''));
+    line.addEventListener('click', () => this.actions.open(row));
+    line.addEventListener('keydown', event => {
+      if (event.key === 'Enter' || event.key === ' ') {
+        event.preventDefault();
+        event.stopPropagation();
+        this.actions.open(row);
+      }
+    });
+    return line;
+  }
+
+  private mark(): void {
+    this.rows.forEach((row, k) => {
+      const line = this.body.children[k];
+      if (!line) return;
+      const selected = this.isSelected(row);
+      line.classList.toggle('marked', selected);
+      if (selected) line.setAttribute('aria-current', 'true');
+      else line.removeAttribute('aria-current');
+      if (selected) line.scrollIntoView({block: 'nearest'});
+    });
+  }
+}
+
+function cell(object: number, name = ''): HTMLElement {
+  const element = make('td', String(object));
+  if (name) {
+    element.append(make('span', name, 'name'));
+    element.title = name;
+  }
+  return element;
+}

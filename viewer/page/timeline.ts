@@ -1,0 +1,160 @@
+// The plot of pairs, began and ended over the frames, and the controls that step and play.
+import uPlot from 'uplot';
+import {byId, count, seconds} from './dom.ts';
+import type {Timeline as Numbers} from './types.ts';
+
+export interface TimelineActions {
+  go(frame: number): Promise<void>;
+  pause(paused: boolean): void;
+}
+
+const livePoints = 5000;
+
+export class Timeline {
+  playing = false;
+  paused = false;
+  frame = 0;
+  done = 0;
+  private plot: uPlot | null = null;
+  private data: [number[], number[], number[], number[]] = [[], [], [], []];
+  private busy = false;
+  private readonly slider = byId<HTMLInputElement>('frame-slider');
+  private readonly play = byId<HTMLButtonElement>('play');
+
+  constructor(private readonly live: boolean, private readonly frames: number, private readonly actions: TimelineActions) {
+    byId('time').hidden = false;
+    this.play.addEventListener('click', () => this.toggle());
+    byId('step-back').addEventListener('click', () => this.step(-1));
+    byId('step-forward').addEventListener('click', () => this.step(1));
+    this.slider.addEventListener('input', () => void this.go(Number(this.slider.value)));
+    for (const id of ['step-back', 'step-forward', 'frame-slider', 'speed-label']) byId(id).hidden = live;
+    this.label();
+    new ResizeObserver(() => this.draw()).observe(byId('plot'));
+  }
+
+  setNumbers(numbers: Numbers): void {
+    this.done = numbers.done;
+    const column = (values: number[] = []): number[] => values.slice(0, numbers.done);
+    this.data = [Array.from({length: numbers.done}, (_, k) => k), column(numbers.pairs), column(numbers.began), column(numbers.ended)];
+    this.slider.max = String(Math.max(0, numbers.done - 1));
+    this.draw();
+    this.show(this.frame);
+  }
+
+  // Adds the numbers of a live frame.
+  append(frame: number, pairs: number, began: number, ended: number, stepSeconds: number): void {
+    [frame, pairs, began, ended].forEach((value, k) => this.data[k]!.push(value));
+    if (this.data[0].length > livePoints) this.data = this.data.map(column => column.filter((_, k) => k % 2 === 0)) as typeof this.data;
+    this.frame = frame;
+    byId('frame-text').textContent = `frame ${count(frame)}, step ${seconds(stepSeconds)}`;
+    this.draw();
+  }
+
+  setTheme(): void {
+    this.plot?.destroy();
+    this.plot = null;
+    this.draw();
+  }
+
+  show(frame: number): void {
+    this.frame = frame;
+    this.slider.value = String(frame);
+    const waiting = this.done < this.frames ? `, ${count(this.done)} computed` : '';
+    if (!this.live) byId('frame-text').textContent = `frame ${count(frame)} of ${count(this.frames)}${waiting}`;
+    this.plot?.redraw(false);
+  }
+
+  step(by: number): void {
+    if (!this.live) void this.go(this.frame + by);
+  }
+
+  toggle(): void {
+    if (this.live) {
+      this.paused = !this.paused;
+      this.actions.pause(this.paused);
+    } else {
+      this.playing = !this.playing;
+      if (this.playing) void this.run();
+    }
+    this.label();
+  }
+
+  private label(): void {
+    const runs = this.live ? !this.paused : this.playing;
+    this.play.textContent = runs ? 'Pause' : 'Play';
+  }
+
+  private async go(frame: number): Promise<void> {
+    const wanted = Math.min(Math.max(frame, 0), Math.max(this.done - 1, 0));
+    if (this.busy || wanted === this.frame) return;
+    this.busy = true;
+    try {
+      await this.actions.go(wanted);
+    } finally {
+      this.busy = false;
+    }
+    // The slider may have moved on while the frame was read.
+    const now = Number(this.slider.value);
+    if (!this.playing && document.activeElement === this.slider && now !== wanted) await this.go(now);
+  }
+
+  private async run(): Promise<void> {
+    while (this.playing) {
+      const began = performance.now();
+      const next = this.frame + 1 >= this.done ? 0 : this.frame + 1;
+      if (next === 0 && this.done < this.frames) await pause(300);
+      else await this.go(next);
+      const wanted = 1000 / Number(byId<HTMLSelectElement>('speed').value);
+      await pause(Math.max(5, wanted - (performance.now() - began)));
+    }
+  }
+
+  private draw(): void {
+    const host = byId('plot');
+    const [width, height] = [host.clientWidth, host.clientHeight];
+    if (width < 40 || height < 30 || this.data[0].length === 0) return;
+    if (!this.plot) this.plot = this.makePlot(host, width, height);
+    else {
+      if (this.plot.width !== width || this.plot.height !== height) this.plot.setSize({width, height});
+      this.plot.setData(this.data);
+    }
+  }
+
+  private makePlot(host: HTMLElement, width: number, height: number): uPlot {
+    const style = getComputedStyle(document.documentElement);
+    const of = (name: string): string => style.getPropertyValue(name).trim();
+    const axis = {stroke: of('--muted'), grid: {stroke: of('--line'), width: 1}, ticks: {show: false}, font: '11px system-ui, sans-serif'};
+    const series = (label: string, name: string): uPlot.Series => ({label, stroke: of(name), width: 1.5, points: {show: false}});
+    const plot = new uPlot({
+      width, height, legend: {show: false}, scales: {x: {time: false}, y: {range: (_, low, high) => [Math.min(0, low), Math.max(1, high)]}},
+      axes: [{...axis, size: 22, space: 60, incrs: [1, 2, 5].flatMap(k => [k, 10 * k, 100 * k, 1000 * k, 1e4 * k, 1e5 * k, 1e6 * k]).sort((a, b) => a - b)}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
+      series: [{label: 'frame'}, series('pairs', '--pairs'), series('began', '--began'), series('ended', '--ended')],
+      cursor: {points: {show: false}, drag: {x: false, y: false}, y: false},
+      hooks: {draw: [u => this.drawMark(u, of('--accent'))]},
+    }, this.data, host);
+    plot.over.addEventListener('click', event => {
+      const box = plot.over.getBoundingClientRect();
+      if (!this.live) void this.go(Math.round(plot.posToVal(event.clientX - box.left, 'x')));
+    });
+    return plot;
+  }
+
+  // A line at the present frame.
+  private drawMark(plot: uPlot, colour: string): void {
+    const x = Math.round(plot.valToPos(this.frame, 'x', true));
+    const {ctx, bbox} = plot;
+    ctx.save();
+    ctx.fillStyle = colour;
+    ctx.fillRect(x - 1, bbox.top, 2, bbox.height);
+    ctx.restore();
+  }
+}
+
+function shortTick(value: number): string {
+  if (value >= 1e6) return `${value / 1e6}M`;
+  return value >= 1e4 ? `${value / 1e3}k` : String(value);
+}
+
+function pause(milliseconds: number): Promise<void> {
+  return new Promise(done => setTimeout(done, milliseconds));
+}
