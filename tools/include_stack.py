@@ -29,6 +29,7 @@ LAYERS = {
     "scene": ("objects that persist and move", ["queries", "scene"]),
     "narrow_phase": ("exact tests of shapes", ["collision", "shapes"]),
     "pipeline": ("filters behind any engine", ["filters", "pipeline"]),
+    "viewer": ("scenes in a browser", ["view"]),
     "samples": ("seeded scenes", []),
     "io": ("scene and result files", []),
     "service/protocol": ("messages between client and server", []),
@@ -63,6 +64,7 @@ USES = {
     "scene": ["base", "parallel", "geometry", "boxes", "octree", "engine", "engine/threads"],
     "narrow_phase": ["base", "geometry"],
     "pipeline": ["base", "parallel", "geometry", "boxes", "narrow_phase"],
+    "viewer": [],
     "samples": ["base"],
     "io": ["base", "geometry", "boxes"],
     "service/protocol": ["base", "engine"],
@@ -70,7 +72,7 @@ USES = {
     "service/server": ["base", "engine", "scene", "service/protocol"],
     "cli/command": ["base"],
     "cli/ranks": ["base", "engine/mpi", "cli/command"],
-    "cli": ["base", "parallel", "boxes", "octree", "verification", "engine", "engine/mpi", "scene", "samples", "io",
+    "cli": ["base", "parallel", "boxes", "octree", "verification", "engine", "engine/mpi", "scene", "viewer", "samples", "io",
             "service/protocol", "service/client", "service/server", "cli/command", "cli/ranks"],
     "bench/machine": ["base"],
     "bench/baselines": ["octree"],
@@ -88,7 +90,8 @@ PUBLIC = {
     "io": ["narrow_phase", "pipeline"],
     "service/client": ["boxes"],
     "service/server": ["boxes"],
-    "cli": ["pipeline", "engine/processes"],
+    "viewer": ["base", "geometry", "boxes", "octree", "engine", "engine/threads", "scene", "narrow_phase"],
+    "cli": ["pipeline", "engine/processes", "narrow_phase"],
     "cli/ranks": ["boxes"],
     "bench/baselines": ["boxes"],
     "bench/paper": ["engine"],
@@ -99,10 +102,10 @@ PUBLIC = {
 THIRD_PARTY = {
     "tbb": {"parallel", "bench/baselines"}, "oneapi": {"parallel"},
     "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
-    "assimp": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase"},
+    "assimp": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase", "viewer"}, "zlib.h": {"viewer"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"}, "systemd": {"cli"},
-    "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "cli", "bench"},
+    "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "viewer", "cli", "bench"},
 }
 # Third-party headers that a public header may include, because every user of its component has them.
 IN_PUBLIC = {"mpi.hpp": {"mpi.h"}}

@@ -1,6 +1,6 @@
 // Bundles the page into one HTML file: node build.mjs OUTPUT. The same sources give the same bytes.
 import {createHash} from 'node:crypto';
-import {readFileSync, writeFileSync} from 'node:fs';
+import {readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
@@ -29,10 +29,18 @@ function policy(script) {
     `base-uri 'none'; form-action 'none'`;
 }
 
-const licences = `<!-- This page contains three.js, lil-gui and uPlot (MIT License; their authors' notices: LICENSES in the viewer's sources). -->`;
+// The licences of the libraries in the page ask for their texts.
+function licences() {
+  const texts = ['three', 'lil-gui', 'uplot'].map(name => {
+    const folderOf = join(folder, 'node_modules', name);
+    const file = readdirSync(folderOf).find(entry => /^licen[cs]e/i.test(entry));
+    return `${name} ${JSON.parse(readFileSync(join(folderOf, 'package.json'), 'utf8')).version}\n\n${readFileSync(join(folderOf, file), 'utf8').trim()}`;
+  });
+  return `<!--\n${texts.join('\n\n').replace(/\r/g, '').replace(/--+/g, '-')}\n-->`;
+}
 
 const script = await bundleScript();
-const parts = {policy: policy(script), style: await bundleStyle(), licences, script};
+const parts = {policy: policy(script), style: await bundleStyle(), licences: licences(), script};
 const template = readFileSync(join(folder, 'page/page.html'), 'utf8');
 const page = template.replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 if (page.split('<!-- data -->').length !== 2) throw new Error('the page must have the data marker once');

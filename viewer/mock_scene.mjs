@@ -66,7 +66,8 @@ const bytesOf = array => Buffer.from(array.buffer, array.byteOffset, array.byteL
 
 // A tetrahedron, a cube and a ball, each from -1 to 1.
 function makeShapes() {
-  const cube = {vertices: [], triangles: [0, 1, 3, 0, 3, 2, 4, 7, 5, 4, 6, 7, 0, 5, 1, 0, 4, 5, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3]};
+  const cube = {vertices: [], triangles: [
+    0, 1, 3, 0, 3, 2, 4, 7, 5, 4, 6, 7, 0, 5, 1, 0, 4, 5, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3]};
   for (let k = 0; k < 8; ++k) cube.vertices.push(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
   const ball = {vertices: [], triangles: []};
   const [rings, sectors] = [10, 16];

@@ -64,11 +64,16 @@ function answer(scene, page, request, response) {
 export function startMock({scene: kind = 'static', objects = 1000, page, port = 0}) {
   const scene = makeScene(kind, objects);
   const server = createServer((request, response) => answer(scene, page, request, response));
-  server.on('upgrade', (request, socket) => serveSocket(scene, request, socket));
+  const sockets = new Set();
+  server.on('upgrade', (request, socket) => {
+    sockets.add(socket);
+    serveSocket(scene, request, socket);
+  });
   return new Promise(done => server.listen(port, '127.0.0.1', () => done({
     scene, address: `http://127.0.0.1:${server.address().port}/`,
     stop: () => {
       scene.stop?.();
+      for (const socket of sockets) socket.destroy();
       server.closeAllConnections();
       server.close();
     },

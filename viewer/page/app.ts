@@ -4,15 +4,14 @@ import {legend, paint, type Palette, paletteOf} from './colours.ts';
 import {isAbort, messageOf} from './dom.ts';
 import {hideLabel, octantText, placeDepths, showLabel} from './hover.ts';
 import {isDark} from './layout.ts';
-import {Link, readLink} from './link.ts';
+import {Link} from './link.ts';
 import {Near} from './near.ts';
-import {octantLimit} from './octant_layer.ts';
 import {Options} from './options.ts';
 import {pairLimit} from './pair_layer.ts';
 import {say, showLegend, showNotices, showSummary, showTitle} from './panel.ts';
 import {Picker} from './picker.ts';
 import {Pointer} from './pointer.ts';
-import type {SceneModel} from './scene_model.ts';
+import type {Frame, SceneModel} from './scene_model.ts';
 import {Search} from './search.ts';
 import {Selection} from './selection.ts';
 import type {Name, Settings} from './settings.ts';
@@ -35,13 +34,15 @@ export class App {
   private readonly picker: Picker;
   private states: Uint8Array = new Uint8Array(0);
   private colours: Uint8Array = new Uint8Array(0);
+  private nearColours: Uint8Array = new Uint8Array(0);
   private octantRequest = new AbortController();
   private contactRequest = new AbortController();
   private contactsNow = '';
-  private readonly low: Point;
-  private readonly high: Point;
+  private readonly notes: string[] = [];
+  private low: Point;
+  private high: Point;
 
-  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, canvas: HTMLCanvasElement) {
+  constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, canvas: HTMLCanvasElement, camera: string | null) {
     this.stage = new Stage(canvas);
     const failed = (error: unknown): void => this.fail(error);
     this.selection = new Selection(source, model, {changed: () => this.selectionChanged(), zoom: () => this.zoomToSelection()});
@@ -59,16 +60,10 @@ export class App {
     this.link = new Link(settings, () => ({
       camera: this.stage.camera.toText(), frame: model.view.kind === 'live' ? 0 : model.frame.info.frame, selected: this.selection.objects,
     }));
-    const state = readLink(settings);
     this.options = new Options(settings, model);
     this.listen();
-    if (state.camera) this.stage.camera.fromText(state.camera);
-    this.firstFrame = Math.min(state.frame ?? 0, Math.max(model.view.frames - 1, 0));
-    this.firstSelection = state.selected;
+    if (camera) this.stage.camera.fromText(camera);
   }
-
-  readonly firstFrame: number;
-  readonly firstSelection: number[];
 
   palette(): Palette {
     return paletteOf(isDark(this.settings));
@@ -78,18 +73,36 @@ export class App {
     return this.colours[4 * row + 3] !== 0;
   }
 
+  nearVisible(row: number): boolean {
+    return this.nearColours[4 * row + 3] !== 0;
+  }
+
   fail(error: unknown): void {
     if (!isAbort(error)) say(messageOf(error));
   }
 
-  // Reads and shows a frame of a scene.
-  async showFrame(frame: number): Promise<void> {
-    this.model.frame = await this.model.readFrame(this.source, frame);
-    this.frameChanged(true);
+  // Reads and shows a frame of a scene, or shows one that is being read.
+  async showFrame(frame: number, reading: Promise<Frame> = this.model.readFrame(this.source, frame)): Promise<void> {
+    this.model.frame = await reading;
+    this.frameChanged(false);
     this.timeline?.show(frame);
     void this.table.load(0);
     void this.showOctants();
     this.selection.refresh().catch((error: unknown) => this.fail(error));
+  }
+
+  // Boxes may have left the bounds that the scene began with, or it had none. Returns whether it had none.
+  private growBounds(): boolean {
+    const box = new THREE.Box3();
+    for (const block of this.stage.boxes.blocks) box.union(block.box);
+    const known = new THREE.Box3(new THREE.Vector3(...this.low), new THREE.Vector3(...this.high));
+    if (box.isEmpty() || known.containsBox(box)) return false;
+    const had = known.getSize(new THREE.Vector3()).length() > 0;
+    if (had) box.union(known);
+    this.low = box.min.toArray();
+    this.high = box.max.toArray();
+    this.stage.camera.setScene(this.low, this.high);
+    return !had;
   }
 
   // The arrays of the model have another frame. `sort` is false if only boxes moved.
@@ -97,6 +110,7 @@ export class App {
     const {model, stage} = this;
     stage.boxes.setBoxes(model.frame.boxes, model.rows, sort);
     stage.shapes.setPoses(model.frame.poses);
+    if (this.growBounds() && !location.hash.includes('at=')) this.zoomAll();
     this.near.forget();
     if (this.selection.objects.length) this.selection.partners = model.partnersOf(this.selection.objects[0]!);
     this.recolour();
@@ -119,7 +133,7 @@ export class App {
     this.colourNear(palette);
     this.outline(palette);
     stage.pairs.show(model, settings.values.lines, objects, partners, palette);
-    showLegend(legend(model, settings.values, palette));
+    this.showLegend();
     void this.showContacts();
     this.showNotices();
     stage.apply(settings.values, this.low, this.high);
@@ -177,6 +191,7 @@ export class App {
     }
     if (signal.aborted) return;
     this.showNotices();
+    this.showLegend();
     this.stage.invalidate();
   }
 
@@ -254,7 +269,7 @@ export class App {
   private colourNear(palette: Palette): void {
     const near = this.near.shown;
     if (!near) return;
-    const colours = new Uint8Array(4 * near.objects.length);
+    const colours = this.nearColours = new Uint8Array(4 * near.objects.length);
     const {objects, partners} = this.selection;
     const others = new Set(partners);
     const {show} = this.settings.values;
@@ -291,23 +306,36 @@ export class App {
       if (signal.aborted) return;
       const rows = object === undefined || second === undefined ? answer.rows :
         answer.rows.filter(row => row.a === second || row.b === second);
-      this.stage.contacts.show(this.model, rows, this.palette().contact, 0.012 * this.stage.camera.radius());
+      this.stage.contacts.show(this.model, rows, this.palette().contact, 0.02 * this.stage.camera.radius());
       this.stage.invalidate();
     } catch (error) {
       this.fail(error);
     }
   }
 
+  private showLegend(): void {
+    const boxes = legend(this.model, this.settings.values, this.palette(), this.selection.objects.length > 0);
+    showLegend([...boxes, ...this.stage.octants.legend()]);
+  }
+
+  // A notice that stays, such as the end of the program.
+  note(text: string): void {
+    this.notes.push(text);
+    this.showNotices();
+  }
+
   private showNotices(): void {
     const {stage, model} = this;
     const near = this.near.shown;
-    const texts = [...(near ? [] : model.view.notices)];
+    const texts = [...this.notes, ...(near ? [] : model.view.notices)];
     const number = (value: number): string => value.toLocaleString('en-US');
     if (near) texts.push(`${number(near.objects.length)} of ${number(near.total)} more boxes near the target are drawn.`);
-    if (this.settings.values.octants && stage.octants.total > octantLimit) {
-      texts.push(`${number(octantLimit)} of ${number(stage.octants.total)} octants are drawn.`);
-    }
-    if (this.settings.values.lines === 'all' && model.frame.pairs.length > 2 * pairLimit) texts.push(`${number(pairLimit)} pairs have lines.`);
+    const {octants, lines} = this.settings.values;
+    const {edges, total} = stage.octants;
+    if (octants && total > edges.count) texts.push(`${number(edges.count)} of ${number(total)} octants are drawn.`);
+    const withLines = Math.min(pairLimit, model.frame.pairs.length / 2);
+    const {pairs} = model.frame.info;
+    if (lines === 'all' && withLines < pairs) texts.push(`The first ${number(withLines)} of ${number(pairs)} pairs have lines.`);
     if (stage.shapes.leftOut > 0) texts.push(`${number(stage.shapes.leftOut)} shapes are left out.`);
     showNotices(texts);
   }

@@ -27,10 +27,10 @@ export class BoxLayer {
 
   constructor(private readonly shared: SharedUniforms) {}
 
-  // Takes the boxes of all rows. `sort` is false for small changes: then the order of the slots is kept.
+  // Takes the boxes of all rows. `sort` is false if boxes only moved: then the order of the slots is kept.
   setBoxes(boxes: Float32Array, rows: number, sort = true): void {
     if (!this.texture || this.texture.capacity < rows) this.allocate(rows);
-    if (sort || rows !== this.rows) this.arrange(boxes, rows);
+    if (sort || rows !== this.rows || this.hasGrown(boxes)) this.arrange(boxes, rows);
     this.rows = rows;
     const data = this.texture!.boundsData;
     for (let slot = 0; slot < rows; ++slot) {
@@ -105,9 +105,7 @@ export class BoxLayer {
   private arrange(boxes: Float32Array, rows: number): void {
     const size = new Float32Array(rows);
     for (let row = 0; row < rows; ++row) {
-      const k = 6 * row;
-      const extent = Math.max(boxes[k + 3]! - boxes[k]!, boxes[k + 4]! - boxes[k + 1]!, boxes[k + 5]! - boxes[k + 2]!);
-      size[row] = Number.isNaN(extent) ? 0 : extent;
+      size[row] = extent(boxes, row);
     }
     this.rowOfSlot = Uint32Array.from({length: rows}, (_, row) => row);
     this.blocks = [];
@@ -117,6 +115,12 @@ export class BoxLayer {
       this.blocks.push({start, count, visible: count, box: new THREE.Box3()});
     }
     this.sizes = this.rowOfSlot.length ? Float32Array.from(this.rowOfSlot, row => size[row]!) : size;
+  }
+
+  // Whether a box is far larger than its slot says, so that it may not be a point any more.
+  private hasGrown(boxes: Float32Array): boolean {
+    for (let slot = 0; slot < this.rows; ++slot) if (extent(boxes, this.rowOfSlot[slot]!) > 2 * this.sizes[slot]!) return true;
+    return false;
   }
 
   private bound(block: Block, boxes: Float32Array): void {
@@ -146,6 +150,13 @@ export function endless(): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   geometry.setDrawRange(0, 0x7fffffff);
   return geometry;
+}
+
+// The longest edge of a box, 0 if the object does not exist.
+function extent(boxes: Float32Array, row: number): number {
+  const k = 6 * row;
+  const longest = Math.max(boxes[k + 3]! - boxes[k]!, boxes[k + 4]! - boxes[k + 1]!, boxes[k + 5]! - boxes[k + 2]!);
+  return Number.isNaN(longest) ? 0 : longest;
 }
 
 function append(geometry: THREE.BufferGeometry, start: number, count: number): void {

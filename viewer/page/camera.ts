@@ -12,6 +12,8 @@ export class Camera {
   pitch = 0.5;
   up: 'y' | 'z' = 'z';
   fly = false;
+  // The part of the canvas's width, from the left, that a panel covers.
+  covered = 0;
   private readonly sceneMiddle = new THREE.Vector3();
   private sceneRadius = 1;
   private sceneMin: Point = [0, 0, 0];
@@ -50,13 +52,16 @@ export class Camera {
     const axes = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
     this.three.matrixWorld.extractBasis(axes[0], axes[1], axes[2]);
     const slope = 0.9 * Math.tan(THREE.MathUtils.degToRad(this.three.fov / 2));
-    let distance = Math.max(1e-5 * this.sceneRadius, 1e-9);
-    for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]).sub(this.target);
-      const wide = Math.max(Math.abs(corner.dot(axes[0])) / this.three.aspect, Math.abs(corner.dot(axes[1])));
-      distance = Math.max(distance, corner.dot(axes[2]) + wide / slope);
+    const corners = Array.from({length: 8}, (_, k) =>
+      new THREE.Vector3(k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]));
+    // Near corners look larger, so the middle of the picture is not that of the box.
+    for (let round = 0; round < 4; ++round) {
+      const seen = corners.map(corner => corner.clone().sub(this.target)).map(c => axes.map(axis => c.dot(axis)) as Point);
+      this.distance = Math.max(1e-5 * this.sceneRadius, 1e-9, ...seen.map(([x, y, z]) =>
+        z + Math.max(Math.abs(x) / (this.three.aspect * (1 - this.covered)), Math.abs(y)) / slope));
+      const heights = seen.map(([, y, z]) => y / (this.distance - z));
+      this.target.addScaledVector(axes[1], 0.5 * (Math.max(...heights) + Math.min(...heights)) * this.distance);
     }
-    this.distance = distance;
   }
 
   fitScene(): void {
@@ -91,11 +96,14 @@ export class Camera {
     this.distance = THREE.MathUtils.clamp(old * factor, 1e-6 * this.sceneRadius, 100 * this.sceneRadius);
     const kept = 0.5 * (1 - this.distance / old);
     const scale = old / this.distance;
-    return this.move(at[0] * this.three.aspect * kept * scale, at[1] * kept * scale, 0);
+    return this.move((at[0] - this.covered) * this.three.aspect * kept * scale, at[1] * kept * scale, 0);
   }
 
-  resize(width: number, height: number): void {
+  // Takes the size of the canvas. The target is in the middle of what is not covered on the left.
+  resize(width: number, height: number, covered: number): void {
     this.three.aspect = width / Math.max(height, 1);
+    this.covered = covered / width;
+    this.three.setViewOffset(width, height, -0.5 * covered, 0, width, height);
   }
 
   // Gives the matrices of three.js the present place.

@@ -108,9 +108,9 @@ function opacity(state: number, show: string, others: number): number {
   return state === State.free ? others : 255;
 }
 
-export function legend(model: SceneModel, values: Values, palette: Palette): LegendEntry[] {
+export function legend(model: SceneModel, values: Values, palette: Palette, selected: boolean): LegendEntry[] {
   const of = (text: string, state: number): LegendEntry => ({text, colour: palette.states[state]!});
-  const marks = [of('selected', State.selected), of('partner of selected', State.partner)];
+  const marks = selected ? [of('selected', State.selected), of('partner of selected', State.partner)] : [];
   const {levels, partners} = model.frame;
   if (values.colour === 'group' && model.groups) {
     const kinds = [...new Set(model.groups.subarray(0, 20000))].sort((a, b) => a - b).slice(0, 8);

@@ -46,12 +46,13 @@ function addArrow(list: VertexList, contact: Contact, from: THREE.Vector3, colou
   const normal = new THREE.Vector3(...contact.normal).normalize();
   const length = Math.max(Math.abs(contact.depth), least);
   const tip = from.clone().addScaledVector(normal, length);
-  const side = new THREE.Vector3(Math.abs(normal.z) < 0.9 ? 0 : 1, 0, Math.abs(normal.z) < 0.9 ? 1 : 0).cross(normal).normalize();
+  const right = new THREE.Vector3(Math.abs(normal.z) < 0.9 ? 0 : 1, 0, Math.abs(normal.z) < 0.9 ? 1 : 0).cross(normal).normalize();
+  const sides = [right, right.clone().cross(normal)];
   const line = (p: THREE.Vector3, q: THREE.Vector3): void => {
     list.add(p.x, p.y, p.z, colour);
     list.add(q.x, q.y, q.z, colour);
   };
   line(from, tip);
   const base = tip.clone().addScaledVector(normal, -0.25 * length);
-  for (const sign of [-1, 1]) line(tip, base.clone().addScaledVector(side, sign * 0.12 * length));
+  for (const side of sides) for (const sign of [-1, 1]) line(tip, base.clone().addScaledVector(side, sign * 0.12 * length));
 }

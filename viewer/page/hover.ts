@@ -36,7 +36,7 @@ export function placeDepths(stage: Stage): void {
     const text = `depth ${short(label.depth)}`;
     if (element.textContent !== text) element.textContent = text;
     element.hidden = !at.front;
-    element.style.left = `${Math.round(at.x - box.left + 10)}px`;
-    element.style.top = `${Math.round(at.y - box.top - 9)}px`;
+    element.style.left = `${Math.round(at.x - box.left + 8)}px`;
+    element.style.top = `${Math.round(at.y - box.top + 8)}px`;
   });
 }

@@ -23,12 +23,13 @@ export function toggleOpen(drawer: Drawer): void {
   setOpen(drawer, !isOpen(drawer));
 }
 
-export function startLayout(): void {
+// `changed` is called when panels opened or closed.
+export function startLayout(changed: () => void): void {
   for (const drawer of ['options', 'side'] as const) {
     setOpen(drawer, !narrow.matches);
     byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
+    new MutationObserver(changed).observe(document.documentElement, {attributeFilter: [`data-${drawer}`]});
   }
-  byId('bar').classList.add('viewing');
   const tabs = [byId('tab-collisions'), byId('tab-scene')];
   for (const tab of tabs) {
     tab.addEventListener('click', () => showTab(tab.id));

@@ -45,7 +45,11 @@ export class Link {
   constructor(private readonly settings: Settings, private readonly parts: () => LinkParts) {}
 
   write(): void {
-    history.replaceState(null, '', linkText(this.settings, this.parts()));
+    try {
+      history.replaceState(null, '', linkText(this.settings, this.parts()));
+    } catch {
+      // A page within another document may not change its address.
+    }
   }
 
   async copy(): Promise<boolean> {

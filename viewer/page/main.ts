@@ -5,15 +5,17 @@ import {commands, copyLink, openHelp} from './commands.ts';
 import {byId, count, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
+import {readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
+import {startWithin, tellReport} from './within_report.ts';
 import {hideProgress, say, showFailure, showProgress} from './panel.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
-import {findSource, type Source, StillLoading} from './source.ts';
+import {findSource, Missing, type Source, StillLoading} from './source.ts';
 import {Timeline} from './timeline.ts';
-import {completeView, type Point, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
+import {completeView, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
 
 const settings = new Settings();
 
@@ -25,6 +27,7 @@ class Page {
   private live: LiveScene | null = null;
   private wake: () => void = () => undefined;
   private lastTable = 0;
+  private selected: number[] = [];
 
   async start(): Promise<void> {
     startTheme(settings);
@@ -39,7 +42,7 @@ class Page {
 
   private connect(): void {
     this.feed = new LiveFeed({event: event => this.receive(event), frame: frame => this.receiveFrame(frame),
-      lost: () => say('The connection to the program is lost. The page keeps what it has.')});
+      lost: () => this.note('The connection to the program is lost. The page keeps what it has.')});
   }
 
   private async waitForView(): Promise<View> {
@@ -66,23 +69,36 @@ class Page {
   }
 
   private async startScene(view: View): Promise<void> {
-    startLayout();
+    startLayout(() => this.app?.stage.resize());
     const model = new SceneModel(view);
     settings.begin('up', view.up === 'y' ? 'y' : 'z');
     if (view.has.shapes) settings.begin('style', 'shapes');
-    const app = this.app = new App(this.source, model, settings, byId<HTMLCanvasElement>('view'));
+    const link = readLink(settings);
+    const first = Math.min(link.frame ?? 0, Math.max(view.frames - 1, 0));
+    // The data come while the graphics start.
+    const rows = early(model.load(this.source));
+    const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
+    const app = this.app = new App(this.source, model, settings, byId<HTMLCanvasElement>('view'), link.camera);
+    this.selected = link.selected;
+    this.prepare(app, link.camera !== null);
+    await rows;
+    if (!frame) return this.startLive(app);
+    await this.startTimeline(app);
+    // A link may name a frame that is not computed yet.
+    await app.showFrame(first, frame).catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
+    this.firstPicture(app);
+    if (view.has.shapes) await this.readShapes(app);
+    return undefined;
+  }
+
+  private prepare(app: App, keepCamera: boolean): void {
     app.stage.setTheme(app.palette());
     new Keyboard(commands(app));
     byId('zoom-all').addEventListener('click', () => app.zoomAll());
     byId('copy-link').addEventListener('click', () => void copyLink(app));
+    app.stage.resize();
+    if (!keepCamera) app.zoomAll();
     offerHooks(app);
-    await model.load(this.source);
-    if (view.kind === 'live') return this.startLive(app);
-    await this.startTimeline(app);
-    await app.showFrame(app.firstFrame);
-    this.firstPicture(app);
-    if (view.has.shapes) await this.readShapes(app);
-    return undefined;
   }
 
   private startLive(app: App): void {
@@ -101,7 +117,12 @@ class Page {
   }
 
   private async readTimeline(): Promise<void> {
-    const numbers = await this.source.json<Numbers>('timeline.json');
+    const frames = this.app?.model.view.frames ?? 1;
+    // Frames can be shown without their numbers.
+    const numbers = await this.source.json<Numbers>('timeline.json').catch((error: unknown): Numbers => {
+      if (error instanceof Missing) return {frames, done: frames, pairs: [], began: [], ended: []};
+      throw error;
+    });
     this.timeline?.setNumbers(numbers);
   }
 
@@ -114,13 +135,13 @@ class Page {
   // The first picture is drawn: all that waited for it.
   private firstPicture(app: App): void {
     hideProgress();
-    app.stage.invalidate();
-    requestAnimationFrame(() => requestAnimationFrame(() => {
-      app.stage.finish();
+    requestAnimationFrame(() => {
+      app.stage.drawNow();
       document.documentElement.dataset.firstPicture = String(Math.round(performance.now()));
       document.documentElement.dataset.ready = 'true';
-    }));
-    app.selection.select(app.firstSelection).catch(error => app.fail(error));
+    });
+    app.selection.select(this.selected).catch(error => app.fail(error));
+    if (this.source.exported) startWithin(app);
   }
 
   private receive(event: SocketEvent): void {
@@ -131,8 +152,13 @@ class Page {
       this.wake();
     }
     if (event.event === 'timeline') this.readTimeline().catch(error => say(messageOf(error)));
-    if (event.event === 'closed') say('The program has ended. The page keeps its last frame.');
+    if (event.event === 'closed') this.note('The program has ended. The page keeps its last frame.');
     if (event.event === 'jobs') showServer(event.jobs ?? [], event.scenes ?? []);
+  }
+
+  private note(text: string): void {
+    if (this.app) this.app.note(text);
+    else say(text);
   }
 
   private receiveFrame(frame: LiveFrame): void {
@@ -140,7 +166,7 @@ class Page {
     if (!app || !live) return;
     const first = !document.documentElement.dataset.ready;
     const rowsChanged = live.apply(frame);
-    if (first) this.adoptBounds(app);
+    if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
     this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
     const now = performance.now();
@@ -150,7 +176,13 @@ class Page {
     requestAnimationFrame(() => requestAnimationFrame(() => this.feed?.want()));
   }
 
-  // What the server computes on request is not asked for with each live frame.
+  // Other objects may be shown: their names and groups are read again.
+  private readRows(app: App): void {
+    const {has} = app.model.view;
+    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
+  }
+
+  // Answers that the server computes on request are not asked for with each live frame.
   private refreshSlowly(app: App, now: number): void {
     this.lastTable = now;
     void app.table.load();
@@ -158,19 +190,15 @@ class Page {
     if (settings.values.octants) void app.showOctants();
   }
 
-  // A live scene may have had no boxes when the page began.
-  private adoptBounds(app: App): void {
-    const {bounds} = app.model.view;
-    if (bounds.max[0] > bounds.min[0] || location.hash.includes('at=')) return;
-    const box = new THREE.Box3();
-    for (const block of app.stage.boxes.blocks) box.union(block.box);
-    if (!box.isEmpty()) app.stage.camera.setScene(box.min.toArray() as Point, box.max.toArray() as Point);
-    app.zoomAll();
-  }
-
   private reading(address: string, got: number, total: number): void {
     if (!document.documentElement.dataset.ready) showProgress(`Reading ${address}: ${count(got / 1e6)} of ${count(total / 1e6)} MB`, got / total);
   }
+}
+
+// Something that is waited for later: until then its failure is no error.
+function early<T>(promise: Promise<T>): Promise<T> {
+  promise.catch(() => undefined);
+  return promise;
 }
 
 // Functions for tests of the page.
@@ -181,7 +209,12 @@ function offerHooks(app: App): void {
     pixel: (x: number, y: number) => app.stage.pixel(x, y),
     camera: () => app.stage.camera.toText(),
     settings: () => ({...settings.values}),
+    frame: () => ({...app.model.frame.info}),
   }});
 }
 
-new Page().start().catch(error => showFailure(messageOf(error)));
+new Page().start().catch(error => {
+  // A message of the server is more exact.
+  if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
+  tellReport('failed');
+});

@@ -1,14 +1,14 @@
 // The octants of one level, or all leaves, as lines coloured by their number of entries; finds the octant under the pointer.
 import * as THREE from 'three';
 import type {SharedUniforms} from './box_material.ts';
-import {rampColour} from './colours.ts';
+import {type LegendEntry, rampColour} from './colours.ts';
 import {EdgeLayer} from './edge_layer.ts';
 import type {Source} from './source.ts';
 import type {OctantLevel} from './types.ts';
 
 const wordsPerOctant = 11;
 // A picture of more lines shows nothing.
-export const octantLimit = 100_000;
+const octantLimit = 100_000;
 
 export interface Octant {
   bounds: Float32Array;
@@ -28,7 +28,9 @@ interface Row {
 export class OctantLayer {
   readonly edges: EdgeLayer;
   levels: OctantLevel[] = [];
+  // All octants that were asked for; not all may be listed.
   total = 0;
+  private most = 1;
   private rows: Row[] = [];
   private bounds = new Float32Array(0);
 
@@ -44,9 +46,16 @@ export class OctantLayer {
     if (signal.aborted) return;
     this.levels = levels;
     this.rows = [];
-    this.total = 0;
+    this.total = level < 0 ? levels.reduce((sum, one) => sum + one.leaves, 0) : levels[level]?.octants ?? 0;
     answers.forEach((answer, k) => this.append(new Uint32Array(answer), wanted[k]!, level < 0));
     this.upload();
+  }
+
+  legend(): LegendEntry[] {
+    const {most} = this;
+    const steps = [...new Set([1, Math.round(Math.sqrt(most)), most])];
+    const text = (count: number): string => count === 1 ? 'octant, 1 entry' : `octant, ${count.toLocaleString('en-US')} entries`;
+    return this.edges.count ? steps.map(count => ({text: text(count), colour: rampColour(Math.log1p(count) / Math.log1p(most))})) : [];
   }
 
   clear(): void {
@@ -84,19 +93,18 @@ export class OctantLayer {
   private append(words: Uint32Array, level: number, leavesOnly: boolean): void {
     for (let at = 0; at + wordsPerOctant <= words.length; at += wordsPerOctant) {
       if (leavesOnly && !(words[at + 8]! & 1)) continue;
-      this.total += 1;
       if (this.rows.length < octantLimit) this.rows.push({level, at, words});
     }
   }
 
   private upload(): void {
     this.bounds = new Float32Array(6 * this.rows.length);
-    let most = 1;
+    this.most = 1;
     this.rows.forEach(({words, at}, k) => {
       this.bounds.set(new Float32Array(words.buffer, 4 * at, 6), 6 * k);
-      most = Math.max(most, words[at + 6]!);
+      this.most = Math.max(this.most, words[at + 6]!);
     });
-    const part = (k: number): number => Math.log1p(this.rows[k]!.words[this.rows[k]!.at + 6]!) / Math.log1p(most);
+    const part = (k: number): number => Math.log1p(this.rows[k]!.words[this.rows[k]!.at + 6]!) / Math.log1p(this.most);
     this.edges.set(this.bounds, this.rows.length, k => rampColour(part(k)));
   }
 }

@@ -20,7 +20,7 @@ export class Options {
     this.choice('lines', 'Pair lines', choices.lines);
     if (has.contacts) this.choice('contacts', 'Contacts', choices.contacts);
     this.toggle('octants', 'Octants');
-    this.number('level', 'Octant level', -1, 21, 1);
+    this.number('level', 'Level, −1 leaves', -1, 21, 1);
     this.level = this.controllers.get('level')!;
     this.choice('section', 'Section', choices.section);
     this.number('cut', 'Section at', 0, 1, 0.005);

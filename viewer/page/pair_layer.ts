@@ -10,12 +10,17 @@ export const pairLimit = 200_000;
 export class PairLayer {
   readonly lines: LineLayer;
   count = 0;
+  private now: unknown[] = [];
 
   constructor(shared: SharedUniforms) {
     this.lines = new LineLayer(shared);
   }
 
   show(model: SceneModel, which: 'none' | 'selection' | 'all', selected: readonly number[], partners: readonly number[], palette: Palette): void {
+    // Many pairs take a while, so nothing is done if nothing changed.
+    const now = [which, model.frame.info, model.frame.pairs, palette, ...(which === 'selection' ? [...selected, -1, ...partners] : [])];
+    if (now.length === this.now.length && now.every((value, k) => value === this.now[k])) return;
+    this.now = now;
     const list = new VertexList();
     const add = (a: number, b: number, colour: Colour): void => {
       const [p, q] = [model.rowOf(a), model.rowOf(b)];

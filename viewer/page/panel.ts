@@ -33,11 +33,18 @@ export function say(message: string): void {
   messageTimer = window.setTimeout(() => byId('message').textContent = '', 6000);
 }
 
+// A message for screen readers alone, if the page shows the same elsewhere.
+export function speak(message: string): void {
+  byId('spoken').textContent = message;
+}
+
 export function showTitle(model: SceneModel): void {
   const {view, frame} = model;
   byId('title').textContent = view.title || 'scene';
   document.title = view.title ? `${view.title} – octopair` : 'octopair';
-  byId('counts').textContent = `${counted(view.objects, 'object', 'objects')}, ${counted(frame.info.pairs, 'pair', 'pairs')}`;
+  const {pairs, began = 0, ended = 0} = frame.info;
+  const events = view.has.events || view.kind === 'live' ? `, ${count(began)} began, ${count(ended)} ended` : '';
+  byId('counts').textContent = `${counted(view.objects, 'object', 'objects')}, ${counted(pairs, 'pair', 'pairs')}${events}`;
 }
 
 export function showSummary(model: SceneModel): void {

@@ -19,7 +19,7 @@ export class Picker {
     }, ray);
     if (!near.shown) return hit.row < 0 ? -1 : model.objectOf(hit.row);
     const {boxes, objects} = near.shown;
-    const nearHit = pickRow({boxes, layer: stage.near, shapeOf: null, visible: () => true, cut: stage.cut, slack}, ray);
+    const nearHit = pickRow({boxes, layer: stage.near, shapeOf: null, visible: row => this.app.nearVisible(row), cut: stage.cut, slack}, ray);
     if (nearHit.at < hit.at) return objects[nearHit.row]!;
     return hit.row < 0 ? -1 : model.objectOf(hit.row);
   }

@@ -1,6 +1,6 @@
 // The arrays of the shown objects and of one frame, as they came from the source.
 import {Missing, type Source} from './source.ts';
-import type {FrameInfo, ObjectInfo, Point, View} from './types.ts';
+import type {Found, FrameInfo, ObjectInfo, Point, View} from './types.ts';
 
 export const noPairs = new Uint32Array(0);
 
@@ -84,6 +84,18 @@ export class SceneModel {
     return found.sort((a, b) => a - b);
   }
 
+  // Objects whose name has the text, for pages whose source cannot search.
+  search(text: string, limit: number): Found {
+    const lower = text.toLowerCase();
+    const result: Found = {total: 0, found: []};
+    this.names?.forEach((name, row) => {
+      if (!name.toLowerCase().includes(lower)) return;
+      result.total += 1;
+      if (result.found.length < limit) result.found.push({index: this.objectOf(row), name});
+    });
+    return result;
+  }
+
   // All that the arrays say of an object, for pages without the address object/F/I.json.
   describe(object: number): ObjectInfo {
     const row = this.rowOf(object);
@@ -100,19 +112,21 @@ export class SceneModel {
     return info;
   }
 
-  // Reads what does not depend on the frame.
+  // Reads what does not depend on the frame. The first whole frame of a live scene says which objects are shown.
   async load(source: Source): Promise<void> {
-    const {has} = this.view;
-    const words = (address: string, wanted: boolean): Promise<Uint32Array | null> =>
-      wanted ? orNull(source.bytes(address)).then(bytes => bytes && new Uint32Array(bytes)) : Promise.resolve(null);
-    const [shown, groups, geometry, names] = await Promise.all([
-      words('shown.u32', this.view.has.rows),
-      words('groups.u32', has.groups), words('geometry.u32', has.shapes), has.names ? orNull(source.json<string[]>('names.json')) : null,
+    const {view} = this;
+    const [shown] = await Promise.all([
+      words(source, 'shown.u32', view.has.rows), this.loadRows(source),
     ]);
     this.setShown(shown);
-    this.groups = groups;
-    this.geometry = geometry;
-    this.names = names;
+  }
+
+  async loadRows(source: Source): Promise<void> {
+    const {has} = this.view;
+    [this.groups, this.geometry, this.names] = await Promise.all([
+      words(source, 'groups.u32', has.groups), words(source, 'geometry.u32', has.shapes),
+      has.names ? orNull(source.json<string[]>('names.json')) : null,
+    ]);
   }
 
   async readFrame(source: Source, frame: number): Promise<Frame> {
@@ -124,12 +138,17 @@ export class SceneModel {
       orNull(source.bytes(`levels/${frame}.u8`)), orNull(source.bytes(`pairs/${frame}.u32`)),
       has.shapes ? orNull(source.bytes(`poses/${frame}.f32`)) : null, events('began'), events('ended'),
     ]);
-    const words = (bytes: ArrayBuffer | null): Uint32Array => bytes ? new Uint32Array(bytes) : noPairs;
+    const list = (bytes: ArrayBuffer | null): Uint32Array => bytes ? new Uint32Array(bytes) : noPairs;
     return {
       info, boxes: new Float32Array(boxes), poses: poses && new Float32Array(poses), levels: levels && new Uint8Array(levels),
-      partners: partners ? words(partners) : new Uint32Array(this.rows), pairs: words(pairs), began: words(began), ended: words(ended),
+      partners: partners ? list(partners) : new Uint32Array(this.rows), pairs: list(pairs), began: list(began), ended: list(ended),
     };
   }
+}
+
+async function words(source: Source, address: string, wanted: boolean): Promise<Uint32Array | null> {
+  const bytes = wanted ? await orNull(source.bytes(address)) : null;
+  return bytes && new Uint32Array(bytes);
 }
 
 async function orNull<T>(answer: Promise<T>): Promise<T | null> {

@@ -4,6 +4,9 @@ import type {SceneModel} from './scene_model.ts';
 import type {Source} from './source.ts';
 import type {Found} from './types.ts';
 
+// As many as a server answers.
+const listed = 50;
+
 export class Search {
   private readonly text = byId<HTMLInputElement>('search-text');
   private readonly box = byId('found');
@@ -51,8 +54,8 @@ export class Search {
     const {has, objects} = this.model.view;
     const index = /^\d+$/.test(text) ? Number(text) : -1;
     const known = index >= 0 && index < objects ? [{index, name: this.model.nameOf(index)}] : [];
-    if (!has.search && !(this.source.exported && has.names)) return {total: known.length, found: known};
-    const answer = await this.source.search(text, this.model.frame.info.frame, signal);
+    const query = new URLSearchParams({q: text, f: String(this.model.frame.info.frame)});
+    const answer = has.search ? await this.source.json<Found>(`search.json?${query}`, signal) : this.model.search(text, listed);
     const others = answer.found.filter(entry => entry.index !== index);
     return {total: Math.max(answer.total, known.length), found: [...known, ...others]};
   }

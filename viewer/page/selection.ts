@@ -1,7 +1,9 @@
 // The selected objects, one or the two of a pair, and the panel that describes the first.
 import {byId, button, counted, definitions, make, plain, short} from './dom.ts';
+import {isOpen} from './layout.ts';
+import {say, speak} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
-import {Missing, type Source} from './source.ts';
+import {Missing, type Source, Unreachable} from './source.ts';
 import type {ObjectInfo} from './types.ts';
 
 export interface SelectionActions {
@@ -32,7 +34,11 @@ export class Selection {
     }
     this.partners = this.model.partnersOf(this.objects[0]!);
     this.actions.changed();
-    return this.refresh();
+    await this.refresh();
+    if (!this.info) return;
+    const names = this.objects.map(k => this.title(k)).join(' and ');
+    // With a closed panel nothing else names the selection.
+    (isOpen('side') ? speak : say)(`${names} selected, ${counted(this.info.partner_count, 'partner', 'partners')}`);
   }
 
   // Reads the first object again, for another frame or another selection.
@@ -53,7 +59,7 @@ export class Selection {
     try {
       return await this.source.json<ObjectInfo>(`object/${this.model.frame.info.frame}/${object}.json`);
     } catch (error) {
-      if (error instanceof Missing || error instanceof TypeError) return this.model.describe(object);
+      if (error instanceof Missing || error instanceof Unreachable) return this.model.describe(object);
       throw error;
     }
   }

@@ -100,6 +100,15 @@ export class ShapeLayer {
     arrived(1);
   }
 
+  // Draws a share of the instances while the camera moves. Shapes with one instance are drawn or left out as a whole.
+  choose(share: number): void {
+    this.parts.forEach((part, k) => {
+      const count = share === 1 ? part.rows.length : Math.floor(part.rows.length * share + 0.618 * k % 1);
+      part.mesh.visible = count > 0;
+      (part.mesh.geometry as THREE.InstancedBufferGeometry).instanceCount = count;
+    });
+  }
+
   setPoses(poses: Float32Array | null): void {
     this.poses = poses;
     for (const part of this.parts) this.place(part);

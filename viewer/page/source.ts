@@ -1,15 +1,16 @@
 // Reads the addresses of the protocol, from the server or from the elements of an exported page. Callers see no difference.
-import type {Collision, CollisionQuery, Collisions, Found} from './types.ts';
+import {isAbort} from './dom.ts';
+import type {Collision, CollisionQuery, Collisions} from './types.ts';
 
 export class Missing extends Error {}
 export class StillLoading extends Error {}
+export class Unreachable extends Error {}
 
 export interface Source {
   readonly exported: boolean;
   bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer>;
   json<T>(address: string, signal?: AbortSignal): Promise<T>;
   collisions(frame: number, query: CollisionQuery, signal?: AbortSignal): Promise<Collisions>;
-  search(text: string, frame: number, signal?: AbortSignal): Promise<Found>;
 }
 
 export type ByteCounter = (address: string, got: number, total: number) => void;
@@ -20,7 +21,9 @@ export class ServerSource implements Source {
   constructor(private readonly count: ByteCounter = () => undefined) {}
 
   async bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer> {
-    const answer = await fetch(address, {signal, credentials: 'same-origin'});
+    const answer = await fetch(address, {signal, credentials: 'same-origin'}).catch((error: unknown) => {
+      throw isAbort(error) ? error : new Unreachable('The program does not answer.');
+    });
     if (answer.status === 503) throw new StillLoading('the scene is still loading');
     if (answer.status === 404) throw new Missing(`${address}: not found`);
     if (!answer.ok) throw new Error(`${address}: the server answered ${answer.status}`);
@@ -36,10 +39,6 @@ export class ServerSource implements Source {
     if (query.object !== undefined) parameters.set('object', String(query.object));
     if (query.q) parameters.set('q', query.q);
     return this.json(`collisions/${frame}.json?${parameters}`, signal);
-  }
-
-  search(text: string, frame: number, signal?: AbortSignal): Promise<Found> {
-    return this.json(`search.json?${new URLSearchParams({q: text, f: String(frame)})}`, signal);
   }
 
   // Reads the body piece by piece only if it is large, so that progress can be shown.
@@ -66,7 +65,6 @@ export class ServerSource implements Source {
 
 export class ExportSource implements Source {
   readonly exported = true;
-  private names: Promise<string[]> | null = null;
   private readonly tables = new Map<number, Promise<Collisions>>();
 
   constructor(private readonly elements: Map<string, Element>) {}
@@ -90,21 +88,6 @@ export class ExportSource implements Source {
     const selected = selectCollisions(rows, query);
     const all = query.object === undefined && !query.q;
     return {total: all ? Math.max(total, rows.length) : selected.length, rows: selected.slice(query.from, query.from + query.count)};
-  }
-
-  async search(text: string): Promise<Found> {
-    this.names ??= this.json<string[]>('names.json').catch(() => []);
-    const names = await this.names;
-    const objects = await this.bytes('shown.u32').then(bytes => new Uint32Array(bytes)).catch(() => null);
-    const lower = text.toLowerCase();
-    const found: Found = {total: 0, found: []};
-    names.forEach((name, row) => {
-      const index = objects ? objects[row]! : row;
-      if (!name.toLowerCase().includes(lower) && String(index) !== text) return;
-      found.total += 1;
-      if (found.found.length < 50) found.found.push({index, name});
-    });
-    return found;
   }
 }
 

@@ -127,8 +127,9 @@ export class Stage {
     return this.canvas.height / (2 * Math.tan(THREE.MathUtils.degToRad(this.camera.three.fov / 2)));
   }
 
-  // Waits until all that was asked of the graphics is done.
-  finish(): void {
+  // Draws at once, and waits until the picture is done.
+  drawNow(): void {
+    this.draw();
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
@@ -145,6 +146,7 @@ export class Stage {
   }
 
   private draw(): void {
+    this.again = false;
     this.camera.place();
     const camera = this.camera.three;
     const pixels = this.pixelsPerUnit();
@@ -156,6 +158,7 @@ export class Stage {
     const share = performance.now() - this.lastMove < restMilliseconds ? this.pace.share : 1;
     this.partial = share < 1;
     this.drawn = 0;
+    this.shapes.choose(share);
     for (const layer of [this.boxes, this.near]) {
       layer.choose(frustum, camera.position, pixels, share);
       this.drawn += layer.drawn;
@@ -185,12 +188,19 @@ export class Stage {
     this.shared.cutHigh.value.copy(this.cut.max);
   }
 
-  private resize(): void {
+  // The width of a panel that lies on the left of a wide canvas.
+  private covered(): number {
+    const panel = document.getElementById('options');
+    const {clientWidth} = this.canvas.parentElement!;
+    return panel && panel.offsetParent && clientWidth > 700 ? panel.offsetLeft + panel.offsetWidth : 0;
+  }
+
+  resize(): void {
     const {clientWidth, clientHeight} = this.canvas.parentElement!;
     if (!clientWidth || !clientHeight) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.resize(clientWidth, clientHeight);
+    this.camera.resize(clientWidth, clientHeight, this.covered());
     this.invalidate();
   }
 }

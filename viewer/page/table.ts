@@ -84,6 +84,8 @@ export class Table {
     byId<HTMLButtonElement>('previous-page').disabled = this.from === 0;
     byId<HTMLButtonElement>('next-page').disabled = last >= this.total;
     byId('depth-column').hidden = !this.rows.some(row => row.depth !== undefined);
+    // A text that all rows have says nothing.
+    byId('state-column').hidden = new Set(this.rows.map(stateText)).size < 2;
     this.body.replaceChildren(...this.rows.map(row => this.makeRow(row)));
     this.mark();
   }
@@ -92,17 +94,19 @@ export class Table {
     const line = make('tr');
     line.tabIndex = 0;
     line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
-    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(row.depth), 'number'));
-    line.append(make('td', row.change ?? row.class ?? ''));
+    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : short(Number(row.depth.toPrecision(4))), 'number'));
+    if (!byId('state-column').hidden) line.append(make('td', stateText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
-    line.addEventListener('keydown', event => {
-      if (event.key === 'Enter' || event.key === ' ') {
-        event.preventDefault();
-        event.stopPropagation();
-        this.actions.open(row);
-      }
-    });
+    line.addEventListener('keydown', event => this.press(event, line, row));
     return line;
+  }
+
+  private press(event: KeyboardEvent, line: HTMLElement, row: Collision): void {
+    const other = event.key === 'ArrowDown' ? line.nextElementSibling : event.key === 'ArrowUp' ? line.previousElementSibling : null;
+    if (event.key === 'Enter' || event.key === ' ') this.actions.open(row);
+    else if (event.key === 'ArrowDown' || event.key === 'ArrowUp') (other as HTMLElement | null)?.focus();
+    else return;
+    event.preventDefault();
   }
 
   private mark(): void {
@@ -116,6 +120,10 @@ export class Table {
       if (selected) line.scrollIntoView({block: 'nearest'});
     });
   }
+}
+
+function stateText(row: Collision): string {
+  return row.change || row.class || '';
 }
 
 function cell(object: number, name = ''): HTMLElement {

@@ -9,6 +9,8 @@ export interface TimelineActions {
 }
 
 const livePoints = 5000;
+// The steps between the numbers of the axis, since frames are whole numbers.
+const frameSteps = [1, 10, 100, 1e3, 1e4, 1e5, 1e6].flatMap(k => [k, 2 * k, 5 * k]);
 
 export class Timeline {
   playing = false;
@@ -127,7 +129,7 @@ export class Timeline {
     const series = (label: string, name: string): uPlot.Series => ({label, stroke: of(name), width: 1.5, points: {show: false}});
     const plot = new uPlot({
       width, height, legend: {show: false}, scales: {x: {time: false}, y: {range: (_, low, high) => [Math.min(0, low), Math.max(1, high)]}},
-      axes: [{...axis, size: 22, space: 60, incrs: [1, 2, 5].flatMap(k => [k, 10 * k, 100 * k, 1000 * k, 1e4 * k, 1e5 * k, 1e6 * k]).sort((a, b) => a - b)}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
+      axes: [{...axis, size: 22, space: 60, incrs: frameSteps}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
       series: [{label: 'frame'}, series('pairs', '--pairs'), series('began', '--began'), series('ended', '--ended')],
       cursor: {points: {show: false}, drag: {x: false, y: false}, y: false},
       hooks: {draw: [u => this.drawMark(u, of('--accent'))]},

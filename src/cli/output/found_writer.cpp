@@ -12,6 +12,10 @@
 #include "io/results/html_report.hpp"
 #include "io/results/pair_writer.hpp"
 
+#ifdef OCTOPAIR_WITH_VIEWER
+#include "cli/view/report_view.hpp"
+#endif
+
 namespace octopair::cli {
 
 namespace {
@@ -104,6 +108,28 @@ io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
     return space;
 }
 
+#ifdef OCTOPAIR_WITH_VIEWER
+/// Passes the rows of a report to its viewer, too.
+class ReportWithView final : public io::CollisionWriter {
+public:
+    ReportWithView(std::unique_ptr<io::HtmlReport> report, ReportView view)
+        : view_(std::move(view)), report_(std::move(report)) {
+        report_->set_viewer([this] { return view_.page(); });
+    }
+
+    void write(const io::CollisionRows& rows) override {
+        view_.add(rows.pairs, rows.findings);
+        report_->write(rows);
+    }
+    void write_gone(std::span<const std::string_view> lines) override { report_->write_gone(lines); }
+    void finish() override { report_->finish(); }
+
+private:
+    ReportView view_;
+    std::unique_ptr<io::HtmlReport> report_;
+};
+#endif
+
 /// No times: the same result has the same page.
 std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
                                                  const io::CollisionForm& form) {
@@ -124,7 +150,11 @@ std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, c
     if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
     if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
     if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);
+#ifdef OCTOPAIR_WITH_VIEWER
+    return std::make_unique<ReportWithView>(std::move(report), ReportView(request, sets.first, pair.second));
+#else
     return report;
+#endif
 }
 
 std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const FoundIn& sets,

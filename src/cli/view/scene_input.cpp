@@ -2,21 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "base/timed.hpp"
 #include "cli/detect/pipeline_options.hpp"
-#include "cli/detect/precision.hpp"
 #include "cli/view/loaded_view.hpp"
 #include "cli/view/result_file.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "io/files/failure.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pair_list.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/detect/filter_chain.hpp"
 #include "cli/input/shaped_set.hpp"
-#include "cli/view/shown_shape.hpp"
 #endif
 
 namespace octopair::cli {
@@ -130,51 +128,6 @@ private:
     ResultFile result_;
 };
 
-std::string axis_word(io::UpAxis up) {
-    if (up == io::UpAxis::unknown) return {};
-    return up == io::UpAxis::y ? "y" : "z";
-}
-
-std::vector<std::pair<std::string, std::string>> details_of(const InputSet& set, std::uint32_t object) {
-    std::vector<std::pair<std::string, std::string>> details;
-    const bool triangle = set.scene.triangles.has_value();
-    const io::ObjectDetails& table = triangle ? set.scene.triangles->owner_details : set.scene.details;
-    const std::uint32_t row = triangle ? set.scene.triangles->owners[object] : object;
-    for (const io::Detail detail : io::all_details) {
-        const std::string_view text = table.of(row, detail);
-        if (!text.empty()) details.emplace_back(io::word_of(detail), text);
-    }
-    return details;
-}
-
-std::vector<std::string> names_of(const InputSet& set) {
-    if (!set.scene.triangles) return set.scene.names;
-    std::vector<std::string> names;
-    for (const std::uint32_t owner : set.scene.triangles->owners) {
-        names.push_back(set.scene.triangles->owner_names[owner]);
-    }
-    return names;
-}
-
-#ifdef OCTOPAIR_WITH_PIPELINE
-void add_shapes(viewer::SceneContents& contents, InputSet& set) {
-    if (set.shaped == nullptr) return;
-    const ShapedObjects objects = set.shaped->objects();
-    const Box3d bounds = set.bounds();
-    const double extent =
-        std::hypot(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1], bounds.max[2] - bounds.min[2]);
-    for (const Geometry& geometry : objects.geometries) {
-        contents.shapes.push_back(shown_shape(geometry.shape(), std::isfinite(extent) ? extent : 1));
-    }
-    contents.geometry.assign(objects.geometry.begin(), objects.geometry.end());
-    contents.poses.assign(objects.poses.begin(), objects.poses.end());
-    if (set.shaped->has_groups()) {
-        const GroupMasks masks = set.shaped->group_masks();
-        contents.groups.assign(masks.groups.begin(), masks.groups.end());
-    }
-}
-#endif
-
 std::string title_of(const std::vector<std::string>& paths) {
     std::string title;
     for (const std::string& path : paths) {
@@ -182,25 +135,6 @@ std::string title_of(const std::vector<std::string>& paths) {
         title += path.substr(path.rfind('/') + 1);
     }
     return title;
-}
-
-viewer::SceneContents contents_of(const std::shared_ptr<Inputs>& inputs) {
-    InputSet& set = inputs->set;
-    viewer::SceneContents contents;
-    contents.title = title_of(inputs->request.inputs);
-    contents.objects = set.scene.objects;
-    contents.moving = set.scene.moving;
-    const io::SceneSpace& chosen = inputs->request.pipeline.space;
-    contents.up = axis_word(chosen.up != io::UpAxis::unknown ? chosen.up : set.scene.space.up);
-    contents.unit = chosen.unit.empty() ? set.scene.space.unit : chosen.unit;
-    contents.margin = inputs->request.margin;
-    contents.names = names_of(set);
-    contents.details = [inputs](std::uint32_t object) { return details_of(inputs->set, object); };
-    contents.notices = coordinate_warnings(inputs->request, {set, nullptr});
-#ifdef OCTOPAIR_WITH_PIPELINE
-    add_shapes(contents, set);
-#endif
-    return contents;
 }
 
 /// Throws: Error{bad_input} if a result has objects or frames that a scene does not have.
@@ -233,7 +167,9 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
 #endif
     }
     LoadedView view;
-    view.contents = contents_of(inputs);
+    view.contents = shown_scene(inputs->request, inputs->set);
+    view.contents.title = title_of(request.detect.inputs);
+    view.contents.details = [inputs](std::uint32_t object) { return shown_details(inputs->set, object); };
     view.contents.facts.push_back({"seconds.read", read_seconds});
     if (request.result.empty()) {
         view.finder = std::make_unique<SearchFinder>(inputs);

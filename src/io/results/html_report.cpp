@@ -267,10 +267,22 @@ void HtmlReport::write_summary() {
         notes.push_back(
             fmt::format("The picture shows {} of the {} objects that are not in the table.", others_drawn_, others_));
     }
-    const nlohmann::json summary = {
-        {"title", clean_text(scene_.title)},          {"join", scene_.join},      {"facts", facts}, {"notes", notes},
-        {"up", scene_.space.up == UpAxis::y ? 1 : 2}, {"unit", scene_.space.unit}};
+    const nlohmann::json summary = {{"title", clean_text(scene_.title)},
+                                    {"join", scene_.join},
+                                    {"facts", facts},
+                                    {"notes", notes},
+                                    {"up", scene_.space.up == UpAxis::y ? 1 : 2},
+                                    {"unit", scene_.space.unit},
+                                    {"first", named_[0].size()}};
     out_->write("<script type=\"application/json\" id=\"summary\">" + script_json(dump_json(summary)) + "</script>\n");
+}
+
+void HtmlReport::write_viewer() {
+    const std::string page = viewer_ ? viewer_() : std::string();
+    if (page.empty()) return;
+    out_->write("<script type=\"application/octet-stream\" id=\"viewer\">");
+    out_->write(page);
+    out_->write("</script>\n");
 }
 
 void HtmlReport::finish() {
@@ -279,6 +291,7 @@ void HtmlReport::finish() {
     write_objects();
     write_others();
     write_summary();
+    write_viewer();
     out_->write(report_page.substr(report_page.find(data_mark) + data_mark.size()));
     out_->commit();
 }

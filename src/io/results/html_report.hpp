@@ -1,6 +1,7 @@
 // HtmlReport: a self-contained HTML page about the collisions of a result.
 //
-// - The page has a summary, a table that groups, sorts and filters, and drawings of the boxes from three sides.
+// - The page has a summary, a table that groups, sorts and filters, and drawings of the boxes from three sides. On the screen, the
+//   viewer is in place of the drawings, if the build has the viewer.
 // - The page is in the folder report_page. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
 // - The page has at most `max_rows` rows: the worst ones, and of equal ones the first. Others are counted. The page says so.
 //   A duplicate is worst, then depth counts, then distance.
@@ -9,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -43,6 +45,9 @@ public:
     void write_gone(std::span<const std::string_view> lines) override;
     /// Adds an entry to the summary, after the number of collisions. Example: "time", "3.2 s".
     void add_fact(std::string label, std::string value) { facts_.emplace_back(std::move(label), std::move(value)); }
+    /// Sets a function that returns the page of the viewer with the scene, compressed by gzip and in base64; or an empty text. The report
+    /// then shows it in place of the drawings. finish() calls the function.
+    void set_viewer(std::function<std::string()> viewer) { viewer_ = std::move(viewer); }
     /// Adds a sentence to the notes at the head of the page.
     void add_note(std::string note) { notes_.push_back(std::move(note)); }
     void finish() override;
@@ -67,11 +72,13 @@ private:
     void write_object_list(std::size_t set, TextNumbers& words);
     void write_others();
     void write_summary();
+    void write_viewer();
 
     std::unique_ptr<OutputStream> out_;
     ReportScene scene_;
     std::vector<std::pair<std::string, std::string>> facts_;
     std::vector<std::string> notes_;
+    std::function<std::string()> viewer_;
     std::vector<Row> kept_;
     std::vector<std::string> gone_;
     std::array<std::vector<bool>, 2> named_;  // for each set and object: true if a row names the object

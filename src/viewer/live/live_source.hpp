@@ -4,6 +4,7 @@
 #include <atomic>
 #include <string>
 
+#include "octopair/octants.hpp"
 #include "viewer/live/live_feed.hpp"
 #include "viewer/scene/frame_answers.hpp"
 #include "viewer/scene/scene_contents.hpp"

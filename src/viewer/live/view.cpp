@@ -1,3 +1,4 @@
+// View: copies a running scene for its pages, seldom enough not to delay the scene.
 #include "octopair/view.hpp"
 
 #include <sys/resource.h>

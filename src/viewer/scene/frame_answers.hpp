@@ -1,12 +1,11 @@
-// Answers about one frame, for scenes of files and for live scenes alike.
+// Answers about the boxes and pairs of one frame, for scenes of files and for live scenes alike.
 #pragma once
 
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "octopair/octants.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/scene/shown_objects.hpp"
 #include "viewer/server/answer.hpp"
@@ -45,28 +44,13 @@ std::vector<std::uint32_t> pair_counts(const FrameData& data, std::uint64_t obje
 /// Returns the first pairs, at most `most`.
 Answer pair_rows(std::span<const Pair> pairs, std::size_t most = max_listed_pairs);
 
-Answer octant_summary(const Octants& octants);
-Answer octant_level(const Octants& octants, unsigned level, const Point3d& origin);
-/// Returns the octants of an octree of the boxes that exist in the frame, on `threads` threads; 0: one per core.
-Octants octants_of(const ShownFrame& frame, unsigned threads = 0);
-/// Returns for each object the level of the octant in which its box begins; 0 for objects that do not exist.
-std::vector<std::uint8_t> levels_of(const FrameData& data, const Octants& octants);
+/// Returns the name of an object; empty if it has none.
+std::string_view name_of(const SceneContents& contents, std::uint32_t object);
+/// Returns a text in lower case, as far as it is ASCII.
+std::string lower_case(std::string_view text);
+/// Returns whether the name of an object has `text` (in lower case), or its index is `text`.
+bool matches(const SceneContents& contents, std::uint32_t object, std::string_view text);
 
-/// Selects rows of the table of collisions.
-struct RowRequest {
-    std::uint64_t from = 0, count = 100;
-    enum class Sort : std::uint8_t { pair, depth, began } sort = Sort::pair;
-    std::optional<std::uint32_t> object;
-    std::string text;
-};
-/// Throws: Error{bad_input} for an invalid parameter.
-RowRequest row_request(const Address& address);
-Answer collision_rows(const ShownFrame& frame, const RowRequest& request);
-
-/// Returns what is known about an object; nothing if there is no such object. `octants` may be null.
-std::optional<Answer> object_answer(const ShownFrame& frame, std::uint32_t object, const Octants* octants);
-/// Returns the objects whose name or index has `text`, the best first.
-Answer search_answer(const ShownFrame& frame, std::string_view text);
 /// Returns the objects that are not shown and overlap `region`, the largest first.
 Answer near_answer(const ShownFrame& frame, const Box3d& region);
 /// Returns the region that the parameters `min` and `max` give. Throws: Error{bad_input}.

@@ -9,22 +9,6 @@ namespace octopair::viewer {
 
 namespace {
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    out.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            out += i + k > bytes.size() ? '=' : digits[word >> (18 - 6 * k) & 63];
-        }
-    }
-    return out;
-}
-
 /// Returns the element with the data of an address; an empty text for an address without data.
 std::string element(SceneSource& source, const std::string& address) {
     const auto parsed = Address::parse('/' + address);

@@ -1,5 +1,8 @@
 #include "viewer/scene/scene_source.hpp"
 
+#include "viewer/scene/collision_table.hpp"
+#include "viewer/scene/object_answers.hpp"
+#include "viewer/scene/octant_answers.hpp"
 #include "viewer/server/messages.hpp"
 
 #include <algorithm>
@@ -48,8 +51,6 @@ bool has_contacts(const std::vector<Finding>& findings) {
 
 SceneSource::SceneSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown)
     : contents_(std::move(contents)), finder_(finder), most_shown_(most_shown) {}
-
-// ---- Frames --------------------------------------------------------------------------------------------------------
 
 void SceneSource::load(const ProgressSink& progress) {
     const std::lock_guard lock(frames_mutex_);
@@ -141,8 +142,6 @@ ShownFrame SceneSource::shown_frame(const Frame& frame) const {
     return {contents_, contents_.objects, shown_, origin_, frame.data, frame.began, frame.ended};
 }
 
-// ---- Addresses -----------------------------------------------------------------------------------------------------
-
 std::optional<Answer> SceneSource::get(const Address& address) {
     const std::vector<std::string_view> parts = address.parts();
     if (parts.size() == 1) return get_scene(parts[0], address);
@@ -203,8 +202,6 @@ std::optional<Answer> SceneSource::octant_answer(Frame& frame, std::string_view 
     if (!number || *number > OctalCode::max_level) return std::nullopt;
     return octant_level(octants(frame), unsigned(*number), origin_);
 }
-
-// ---- Answers about the scene ---------------------------------------------------------------------------------------
 
 Answer SceneSource::view_answer() const {
     const std::lock_guard lock(counts_mutex_);
@@ -316,8 +313,6 @@ Answer SceneSource::level_column(Frame& frame) {
     const std::vector<std::uint8_t> levels = levels_of(frame.data, octants(frame));
     return shown_column(levels);
 }
-
-// ---- Messages, and the exported page -------------------------------------------------------------------------------
 
 std::vector<std::string> SceneSource::greeting(const std::string& path) {
     if (!path.empty()) return {};

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <stop_token>
 
+#include "octopair/octants.hpp"
 #include "viewer/scene/frame_answers.hpp"
 #include "viewer/server/source.hpp"
 

@@ -60,4 +60,7 @@ std::string gzip(std::string_view bytes, int level);
 /// Returns the `size` bytes that gzip compressed. Requires: the bytes are those of gzip(), or of a file that the build made.
 std::string gunzip(std::string_view compressed, std::size_t size);
 
+/// Returns the bytes as text in base64.
+std::string base64(std::string_view bytes);
+
 }  // namespace octopair::viewer

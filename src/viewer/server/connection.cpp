@@ -138,6 +138,7 @@ public:
     void start(const Request& request) {
         socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
         socket_.read_message_max(max_message);
+        socket_.auto_fragment(false);  // a frame goes out in one piece
         socket_.async_accept(request, [self = shared_from_this()](BeastError error) {
             if (error) return;
             self->joined_ = true;

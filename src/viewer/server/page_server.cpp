@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <future>
@@ -41,6 +42,7 @@ public:
         accept();
         thread_ = std::thread([this] {
             if (options_.low_priority) lower_priority();
+            const auto more_work = asio::make_work_guard(io_);  // until stop()
             io_.run();
         });
         if (options_.low_priority) asio::post(pool_, lower_priority);

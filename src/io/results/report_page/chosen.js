@@ -8,6 +8,7 @@ function choose(row) {
   writeFragment();
   showDetails();
   drawSoon();
+  showInViewer(row);
   say(row ? `Chosen: ${row.first.label} and ${row.second.label}` : 'No collision is chosen');
 }
 // Chooses a row and brings the table to it. Filters that hide the row are cleared.

@@ -62,6 +62,7 @@ function start() {
   fillFilters();
   fillGroupings();
   makeViews();
+  startViewer();
   sortRows();
   listHead();
   showDetails();

@@ -1,0 +1,488 @@
+// Tests the page in Chromium: node page_test.mjs --page FILE [--only TEXT] against the mock server, or --server 'COMMAND' against a program.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {existsSync, mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {pathToFileURL} from 'node:url';
+import {parseArgs} from 'node:util';
+import {accessibility, data, launch, open, pixel, project, ready, settings, viewerFolder, waitForData} from './browser.mjs';
+import {exportPage} from './export.mjs';
+
+const {values: options} = parseArgs({options: {
+  page: {type: 'string', default: join(viewerFolder, 'page.html')}, only: {type: 'string', default: ''}, server: {type: 'string'},
+}});
+const {startMock} = await import(pathToFileURL(join(viewerFolder, 'mock_server.mjs')));
+
+const tests = [];
+const test = (name, scene, objects, run, context = {}) => tests.push({name, scene, objects, run, context});
+const text = (page, selector) => page.locator(selector).innerText();
+
+// The middle of the box of an object that is drawn in front, from the mock's first frame.
+function middleOf(scene, k) {
+  const {boxes} = scene.frame(0);
+  return [0, 1, 2].map(axis => 1000 * (axis + 1) + 0.5 * (boxes[6 * k + axis] + boxes[6 * k + axis + 3]));
+}
+
+async function clickObject(page, point) {
+  const at = await project(page, point);
+  await page.mouse.click(at.x, at.y);
+}
+
+test('loads and counts', 'static', 10, async ({page, scene}) => {
+  assert.equal(await data(page, 'drawn'), '10');
+  assert.equal(await data(page, 'pairs'), String(scene.frame(0).pairs.length));
+  assert.match(await text(page, '#counts'), /^10 objects, \d+ pairs?$/);
+  assert.match(await page.title(), /mock static/);
+});
+
+test('colours are those of the legend', 'static', 1, async ({page, scene}) => {
+  // The top of a box that does not collide has the colour of the legend itself.
+  const {boxes} = scene.frame(0);
+  const top = [1000 + 0.5 * (boxes[0] + boxes[3]), 2000 + 0.5 * (boxes[1] + boxes[4]), 3000 + boxes[5]];
+  assert.deepEqual(await pixel(page, await project(page, top)), [176, 188, 200]);
+  assert.deepEqual(await pixel(page, {x: 500, y: 60}), [243, 245, 247]);
+  await page.evaluate(() => window.octopairView.select(0));
+  assert.deepEqual(await pixel(page, await project(page, top)), [28, 110, 235]);
+});
+
+test('a click selects', 'static', 1, async ({page, scene}) => {
+  await clickObject(page, middleOf(scene, 0));
+  await waitForData(page, 'selected', '0');
+  await page.locator('#selection dl').waitFor();
+  assert.match(await text(page, '#selection'), /octal code\s+\{1,4\}/);
+  await page.mouse.click(700, 660);
+  await waitForData(page, 'selected', '');
+});
+
+test('a click selects what is in front', 'static', 300, async ({page, scene}) => {
+  // Every object whose middle is visible must be found at its middle: a click never selects an object behind another.
+  let found = 0;
+  for (let k = 0; k < 300; k += 30) {
+    const at = await project(page, middleOf(scene, k));
+    await page.mouse.click(at.x, at.y);
+    await page.waitForFunction(() => document.documentElement.dataset.selected !== '');
+    if (await data(page, 'selected') === String(k)) found += 1;
+  }
+  assert.ok(found > 0);
+});
+
+test('partners lead to other objects', 'static', 200, async ({page, scene}) => {
+  const [a, b] = scene.frame(0).pairs[0];
+  await page.evaluate(k => window.octopairView.select(k), a);
+  await page.locator('.chips button').first().click();
+  await waitForData(page, 'selected', b);
+  assert.ok(Number(await data(page, 'lines')) >= 1);
+  await waitForData(page, 'contacts', scene.object(0, b).partner_count);
+});
+
+test('drag, wheel and double click move the camera', 'static', 50, async ({page, scene}) => {
+  const camera = async () => (await page.evaluate(() => window.octopairView.camera())).split('_').map(Number);
+  const [start] = [await camera()];
+  await page.mouse.move(600, 400);
+  await page.mouse.down();
+  await page.mouse.move(700, 440, {steps: 4});
+  await page.mouse.up();
+  const turned = await camera();
+  assert.ok(turned[4] < start[4] && turned[5] > start[5]);
+  assert.equal(await data(page, 'selected'), '');
+  await page.mouse.wheel(0, -300);
+  await page.waitForTimeout(100);
+  const zoomed = await camera();
+  assert.ok(zoomed[3] < turned[3]);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(650, 400, {steps: 4});
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  assert.notDeepEqual((await camera()).slice(0, 3), zoomed.slice(0, 3));
+  await page.keyboard.press('h');
+  const at = await project(page, middleOf(scene, 3));
+  await page.mouse.dblclick(at.x, at.y);
+  await page.waitForFunction(() => document.documentElement.dataset.selected);
+  assert.ok((await camera())[3] < start[3]);
+});
+
+test('two fingers zoom', 'static', 50, async ({page}) => {
+  const distance = () => page.evaluate(() => Number(window.octopairView.camera().split('_')[3]));
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => client.send('Input.dispatchTouchEvent', {type, touchPoints: points.map(([x, y], id) => ({x, y, id}))});
+  const before = await distance();
+  await touch('touchStart', [180, 400], [220, 400]);
+  for (let k = 1; k <= 5; ++k) await touch('touchMove', [180 - 12 * k, 400], [220 + 12 * k, 400]);
+  await touch('touchEnd');
+  assert.ok(await distance() < 0.6 * before);
+}, {viewport: {width: 390, height: 844}, hasTouch: true});
+
+test('search by name and index', 'static', 100, async ({page}) => {
+  await page.keyboard.press('/');
+  await page.keyboard.type('plate 42');
+  await page.locator('#found-list button').first().click();
+  await waitForData(page, 'selected', '42');
+  await page.fill('#search-text', '17');
+  await page.keyboard.press('Enter');
+  await waitForData(page, 'selected', '17');
+  // Keys do nothing while a text is typed.
+  await page.fill('#search-text', '');
+  await page.focus('#search-text');
+  await page.keyboard.type('oct?');
+  assert.equal((await settings(page)).octants, false);
+  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), false);
+});
+
+test('names are texts', 'static', 20, async ({page}) => {
+  await page.evaluate(() => window.octopairView.select(1));
+  await page.locator('#selection h2').waitFor();
+  assert.equal(await text(page, '#selection h2'), '<img src=x onerror=alert(1)>');
+  assert.equal(await page.locator('img').count(), 0);
+});
+
+test('the table sorts, filters and selects', 'static', 1000, async ({page, scene}) => {
+  const total = scene.frame(0).pairs.length;
+  await page.locator('#rows tr').first().waitFor();
+  assert.equal(await page.locator('#rows tr').count(), 100);
+  assert.match(await text(page, '#table-totals'), new RegExp(`^1 to 100 of ${total} collisions$`));
+  await page.click('#next-page');
+  await page.waitForFunction(() => document.getElementById('table-totals').textContent.startsWith('101 to'));
+  await page.selectOption('#sort', 'depth');
+  await page.waitForFunction(() => document.getElementById('table-totals').textContent.startsWith('1 to'));
+  const depths = await page.locator('#rows td.number').allInnerTexts();
+  assert.ok(Number(depths[0]) >= Number(depths[1]));
+  const before = await page.evaluate(() => window.octopairView.camera());
+  await page.locator('#rows tr').nth(2).click();
+  await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
+  assert.notEqual(await page.evaluate(() => window.octopairView.camera()), before);
+  await page.check('#only-selected');
+  const selected = (await data(page, 'selected')).split(',')[0];
+  const own = scene.object(0, Number(selected)).partner_count;
+  await page.waitForFunction(count => document.querySelectorAll('#rows tr').length === count, own);
+  await page.uncheck('#only-selected');
+  await page.fill('#filter', 'plate 1');
+  await page.waitForFunction(() => [...document.querySelectorAll('#rows tr')].length > 0 &&
+    [...document.querySelectorAll('#rows tr')].every(row => row.textContent.includes('plate 1')));
+});
+
+test('every key has its effect', 'moving', 60, async ({page}) => {
+  const key = async (name, check) => {
+    const before = await settings(page);
+    const camera = await page.evaluate(() => window.octopairView.camera());
+    await page.keyboard.press(name);
+    await page.waitForTimeout(30);
+    assert.ok(check(await settings(page), before, await page.evaluate(() => window.octopairView.camera()) !== camera), `key ${name}`);
+  };
+  for (const name of ['w', 's', 'a', 'd', 'e', 'q', 'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-', '1', '2', '3', '4', 'h']) {
+    await key(name, (_, __, moved) => moved || name === 'h');
+  }
+  const names = {c: 'colour', v: 'show', g: 'edges', l: 'lines', k: 'contacts', o: 'octants', x: 'section', PageUp: 'cut', PageDown: 'cut', r: 'flip', u: 'up',
+    i: 'camera', t: 'theme'};
+  for (const [name, setting] of Object.entries(names)) await key(name, (now, before) => now[setting] !== before[setting]);
+  await page.waitForTimeout(300);
+  await key(']', (now, before) => now.level === before.level + 1);
+  await key('[', (now, before) => now.level === before.level - 1);
+  await page.keyboard.press('n');
+  await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
+  const first = await data(page, 'selected');
+  await page.keyboard.press('n');
+  await page.waitForFunction(old => document.documentElement.dataset.selected !== old, first);
+  await page.keyboard.press('p');
+  await waitForData(page, 'selected', first);
+  await key('f', () => true);
+  await page.keyboard.press('Escape');
+  await waitForData(page, 'selected', '');
+  await page.keyboard.press('.');
+  await waitForData(page, 'frame', '1');
+  await page.keyboard.press(',');
+  await waitForData(page, 'frame', '0');
+  for (const [name, drawer] of [['z', 'side'], ['m', 'options']]) {
+    await page.keyboard.press(name);
+    await waitForData(page, drawer, 'closed');
+    await page.keyboard.press(name);
+    await waitForData(page, drawer, 'open');
+  }
+  await page.keyboard.press('y');
+  await page.waitForFunction(() => /link/i.test(document.getElementById('message').textContent));
+  await page.keyboard.press('/');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'search-text');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('?');
+  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), true);
+  assert.ok(await page.locator('#help-rows tr').count() > 25);
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), false);
+});
+
+test('frames step and play', 'moving', 100, async ({page, scene}) => {
+  await page.click('#step-forward');
+  await waitForData(page, 'frame', '1');
+  await waitForData(page, 'pairs', scene.frame(1).pairs.length);
+  assert.match(await text(page, '#frame-text'), /^frame 1 of 40$/);
+  await page.locator('#frame-slider').fill('20');
+  await waitForData(page, 'frame', '20');
+  await page.selectOption('#speed', '30');
+  await page.click('#play');
+  await page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 22);
+  await page.click('#play');
+  assert.equal(await text(page, '#play'), 'Play');
+  assert.ok(await page.locator('#plot canvas').count() === 1);
+});
+
+test('octants by level', 'static', 200, async ({page}) => {
+  await page.keyboard.press('o');
+  await waitForData(page, 'octants', '512');
+  for (const count of ['1', '8', '64']) {
+    await page.keyboard.press(']');
+    await waitForData(page, 'octants', count);
+  }
+  const at = await project(page, [1050, 2050, 3050]);
+  await page.mouse.move(at.x, at.y);
+  await page.locator('#label').waitFor();
+  assert.match(await text(page, '#label'), /octant \{\d,\d\}, level 2\n\d+ entr(y|ies)/);
+  await page.keyboard.press('o');
+  await waitForData(page, 'octants', '0');
+});
+
+test('lines of all pairs', 'static', 500, async ({page, scene}) => {
+  await page.keyboard.press('l');
+  await waitForData(page, 'lines', scene.frame(0).pairs.length);
+  await page.keyboard.press('l');
+  await waitForData(page, 'lines', '0');
+});
+
+test('a section hides boxes, and colours have a legend', 'static', 500, async ({page}) => {
+  await page.keyboard.press('c');
+  await page.waitForFunction(() => document.getElementById('legend').textContent.includes('groups'));
+  await page.keyboard.press('c');
+  await page.waitForFunction(() => document.getElementById('legend').textContent.includes('level'));
+  await page.keyboard.press('v');
+  await page.waitForFunction(() => Number(document.documentElement.dataset.drawn) < 500);
+});
+
+test('a section cuts boxes', 'static', 1, async ({page, scene, address, browser}) => {
+  const at = await project(page, middleOf(scene, 0));
+  const [background, seen] = [[243, 245, 247], await pixel(page, at)];
+  assert.notDeepEqual(seen, background);
+  for (const [hash, hidden] of [['section=x&cut=0', true], ['section=x&cut=1', false], ['section=z&cut=1&flip=1', true], ['section=z&cut=0&flip=1', false]]) {
+    const other = await open(browser, `${address}#${hash}`);
+    await ready(other.page);
+    assert.deepEqual(await pixel(other.page, at), hidden ? background : seen, hash);
+    await other.close();
+  }
+});
+
+test('began and ended have their colours', 'moving', 40, async ({page, scene, address, browser}) => {
+  const frame = [...Array(40).keys()].find(f => scene.changes(f).began.length > 0);
+  const [a, b] = scene.changes(frame).began[0];
+  const other = await open(browser, `${address}#frame=${frame}&show=colliding&lines=all`);
+  await ready(other.page);
+  await waitForData(other.page, 'frame', frame);
+  const {boxes} = scene.frame(frame);
+  const hue = async k => {
+    const top = [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * k + 5] : 0.5 * (boxes[6 * k + axis] + boxes[6 * k + axis + 3])));
+    return pixel(other.page, await project(other.page, top));
+  };
+  // One of the two may be behind another box.
+  const found = [await hue(a), await hue(b)].map(String);
+  assert.ok(found.includes('240,176,40'), found.join(' '));
+  await other.close();
+  assert.match(await text(page, '#legend'), /began/);
+});
+
+test('shapes are drawn', 'shapes', 30, async ({page, scene}) => {
+  await waitForData(page, 'shapes', '3');
+  assert.equal((await settings(page)).style, 'shapes');
+  await waitForData(page, 'drawn', '30');
+  const {boxes} = scene.frame(0);
+  // The top of a cube that nothing hides.
+  const cube = [...Array(30).keys()].filter(k => k % 3 === 1).sort((p, q) => boxes[6 * q + 5] - boxes[6 * p + 5])[0];
+  const top = [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * cube + 5] : 0.5 * (boxes[6 * cube + axis] + boxes[6 * cube + axis + 3])));
+  const wanted = scene.partnerCounts(0)[cube] ? [222, 88, 50] : [176, 188, 200];
+  const seen = await pixel(page, await project(page, top));
+  assert.ok(seen.every((value, k) => Math.abs(value - wanted[k]) <= 2), `${seen} instead of ${wanted}`);
+  await page.keyboard.press('b');
+  assert.equal((await settings(page)).style, 'both');
+  await waitForData(page, 'drawn', '30');
+  const at = await project(page, middleOf(scene, 0));
+  await page.mouse.click(at.x, at.y);
+  await page.waitForFunction(() => document.documentElement.dataset.selected);
+});
+
+test('boxes near the target', 'near', 4000, async ({page}) => {
+  assert.equal(await data(page, 'drawn'), '1000');
+  assert.match(await text(page, '#notices'), /3,000 of 4,000 boxes are not drawn/);
+  for (let k = 0; k < 8; ++k) await page.keyboard.press('+');
+  await page.waitForFunction(() => /more boxes near the target/.test(document.getElementById('notices').textContent));
+  await page.keyboard.press('/');
+  await page.keyboard.type('4001');
+  await page.keyboard.press('Enter');
+});
+
+test('a link holds the view', 'moving', 100, async ({page, address, browser}) => {
+  await page.keyboard.press('c');
+  await page.keyboard.press('.');
+  await waitForData(page, 'frame', '1');
+  await page.evaluate(() => window.octopairView.select(5));
+  await page.keyboard.press('f');
+  await page.waitForFunction(() => location.hash.includes('selected=5') && location.hash.includes('frame=1'));
+  await page.waitForTimeout(400);
+  const camera = await page.evaluate(() => window.octopairView.camera());
+  const other = await open(browser, address + new URL(page.url()).hash);
+  await ready(other.page);
+  await waitForData(other.page, 'selected', '5');
+  await waitForData(other.page, 'frame', '1');
+  assert.equal(await other.page.evaluate(() => window.octopairView.camera()), camera);
+  assert.equal((await settings(other.page)).colour, 'group');
+  await other.close();
+});
+
+test('live frames', 'live', 300, async ({page}) => {
+  const first = Number(await data(page, 'frame'));
+  await page.waitForFunction(frame => Number(document.documentElement.dataset.frame) > frame + 3, first);
+  await page.click('#play');
+  await page.waitForTimeout(300);
+  const paused = await data(page, 'frame');
+  await page.waitForTimeout(400);
+  assert.equal(await data(page, 'frame'), paused);
+  await page.click('#play');
+  await page.waitForFunction(frame => Number(document.documentElement.dataset.frame) > frame, Number(paused));
+  assert.match(await text(page, '#frame-text'), /^frame \d+, step 1\.23 ms$/);
+});
+
+test('live partners are those of a whole frame', 'live', 300, async ({page, scene}) => {
+  await page.waitForTimeout(800);
+  await page.click('#play');
+  await page.waitForTimeout(300);
+  const frame = Number(await data(page, 'frame'));
+  assert.equal(await data(page, 'pairs'), String(scene.history[frame].pairs.length));
+  await page.keyboard.press('l');
+  await waitForData(page, 'lines', scene.history[frame].pairs.length + await page.evaluate(() => window.octopairView.frame().ended));
+});
+
+test('a lost connection is told, and the page keeps its frame', 'live', 50, async ({page, stop}) => {
+  stop();
+  await page.waitForFunction(() => /connection to the program is lost/.test(document.getElementById('notices').textContent), null, {timeout: 20_000});
+  assert.equal(await data(page, 'drawn'), '50');
+}, {expected: /WebSocket|Failed to load|Failed to fetch/});
+
+test('jobs and scenes of a server', 'server', 0, async ({page}) => {
+  await waitForData(page, 'jobs', '3');
+  assert.equal(await page.locator('#scene-rows a').getAttribute('href'), 'scene/crane%207/');
+  assert.match(await text(page, '#job-rows'), /the input has no boxes/);
+  assert.deepEqual(await accessibility(page), []);
+});
+
+test('the error of an input', 'failed', 10, async ({page}) => {
+  await page.locator('#failure').waitFor();
+  assert.match(await text(page, '#failure'), /the minimum of x is above the maximum/);
+}, {expected: /503/});
+
+test('progress while loading', 'loading', 10, async ({page}) => {
+  await ready(page);
+  assert.equal(await data(page, 'drawn'), '10');
+}, {expected: /503/});
+
+for (const colorScheme of ['light', 'dark']) {
+  for (const viewport of [{width: 1280, height: 720}, {width: 390, height: 844}]) {
+    test(`accessible in ${colorScheme} at ${viewport.width}`, 'moving', 60, async ({page}) => {
+      assert.equal(await data(page, 'theme'), colorScheme);
+      assert.deepEqual(await accessibility(page), []);
+      await page.evaluate(() => window.octopairView.select(3));
+      if (viewport.width < 760) await page.keyboard.press('z');
+      await page.locator('#selection dl').waitFor();
+      assert.deepEqual(await accessibility(page), []);
+      await page.click('#tab-scene');
+      if (viewport.width < 760) await page.keyboard.press('m');
+      assert.deepEqual(await accessibility(page), []);
+      await page.keyboard.press('?');
+      assert.deepEqual(await accessibility(page), []);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    }, {colorScheme, viewport});
+  }
+}
+
+async function testExport(browser) {
+  const mock = await startMock({scene: 'moving', objects: 80, page: options.page});
+  mock.scene.frames = 3;
+  const folder = mkdtempSync(join(tmpdir(), 'octopair-page-'));
+  const file = join(folder, 'export.html');
+  exportPage(mock.scene, options.page, file);
+  const {page, errors, close} = await open(browser, pathToFileURL(file).href);
+  try {
+    await ready(page);
+    assert.equal(await data(page, 'drawn'), '80');
+    await page.locator('#rows tr').first().waitFor();
+    await page.locator('#rows tr').first().click();
+    await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
+    await page.fill('#search-text', 'plate 42');
+    await page.keyboard.press('Enter');
+    await waitForData(page, 'selected', '42');
+    await page.click('#step-forward');
+    await waitForData(page, 'frame', '1');
+    await page.click('#view', {position: {x: 600, y: 500}});
+    await page.keyboard.press('o');
+    await waitForData(page, 'octants', '512');
+    assert.deepEqual(errors, []);
+  } finally {
+    await close();
+    mock.stop();
+    rmSync(folder, {recursive: true});
+  }
+}
+
+async function testMock(browser, {scene, objects, run, context}) {
+  const mock = await startMock({scene, objects, page: options.page});
+  const {expected, ...view} = context;
+  const {page, errors, close} = await open(browser, mock.address, view);
+  try {
+    if (scene !== 'failed') await ready(page);
+    await run({page, scene: mock.scene, address: mock.address, browser, stop: mock.stop});
+    assert.deepEqual(errors.filter(error => !expected?.test(error)), []);
+  } finally {
+    await close();
+    mock.stop();
+  }
+}
+
+// Starts a program that prints its address, and checks what any scene must have.
+async function testProgram(browser, command) {
+  const program = spawn(command, {shell: true, detached: true, stdio: ['ignore', 'pipe', 'inherit']});
+  try {
+    const address = await new Promise((found, failed) => {
+      program.stdout.on('data', bytes => {
+        const match = /http:\/\/\S+/.exec(String(bytes));
+        if (match) found(match[0]);
+      });
+      program.on('exit', code => failed(new Error(`the program ended with ${code}`)));
+    });
+    const {page, errors} = await open(browser, address);
+    await ready(page, 60_000);
+    assert.ok(Number(await data(page, 'drawn')) > 0);
+    await page.evaluate(() => window.octopairView.select(0));
+    await page.locator('#selection dl').waitFor();
+    assert.deepEqual(await accessibility(page), []);
+    assert.deepEqual(errors.filter(error => !error.includes('503')), []);
+  } finally {
+    process.kill(-program.pid);
+  }
+}
+
+async function runAll() {
+  const browser = await launch();
+  const all = options.server ? [{name: 'program', go: () => testProgram(browser, options.server)}] :
+    [...tests.map(entry => ({name: entry.name, go: () => testMock(browser, entry)})), {name: 'exported page', go: () => testExport(browser)}];
+  let failed = 0;
+  for (const {name, go} of all.filter(entry => entry.name.includes(options.only))) {
+    const began = performance.now();
+    try {
+      await go();
+      console.log(`ok   ${name} (${Math.round(performance.now() - began)} ms)`);
+    } catch (error) {
+      failed += 1;
+      console.log(`FAIL ${name}: ${error.message}`);
+    }
+  }
+  await browser.close();
+  return failed;
+}
+
+if (!options.server && !existsSync(options.page)) throw new Error(`${options.page} is missing: node viewer/build.mjs ${options.page}`);
+process.exit(await runAll() ? 1 : 0);
