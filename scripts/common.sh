@@ -8,13 +8,24 @@ fail() {
     exit 1
 }
 
-# Prints the packages of a component, one per line. A line "+NAME" in its list stands for the component NAME.
+# Folder with the libraries of the viewer's page (viewer/install.mjs). Builds in other folders use it, too, as those of Debian
+# packages do.
+export OCTOPAIR_NPM_FOLDER=${OCTOPAIR_NPM_FOLDER:-$root/build/npm}
+
+# Prints the packages of a component that this machine needs, one per line. Lines of its list:
+#     PACKAGE             always needed
+#     ?COMMAND PACKAGE    needed if the command is missing: it may be from another package than Debian's
+#     +NAME               the packages of the component NAME
 packages_of() {
-    local list="$root/scripts/packages/$1.txt" line
+    local list="$root/scripts/packages/$1.txt" first second
     [ -f "$list" ] || fail "no component '$1'; there are: $(cd "$root/scripts/packages" && ls ./*.txt | sed 's|./||; s|.txt||' | xargs)"
-    for line in $(sed 's/#.*//' "$list" | awk 'NF { print $1 }'); do
-        if [[ $line == +* ]]; then packages_of "${line#+}"; else echo "$line"; fi
-    done
+    while read -r first second; do
+        case $first in
+            +*) packages_of "${first#+}" ;;
+            \?*) command -v "${first#\?}" > /dev/null || echo "$second" ;;
+            *) echo "$first" ;;
+        esac
+    done < <(sed 's/#.*//' "$list" | awk 'NF { print $1, $2 }')
 }
 
 # Runs a command as root: directly, or through sudo.
@@ -64,7 +75,7 @@ source_archive() {
     if git -C "$root" rev-parse --verify -q HEAD > /dev/null 2>&1; then
         git -C "$root" archive --format=tar --prefix="$name/" HEAD
     else
-        tar -C "$root" --exclude=./build --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$(source_epoch)" \
+        tar -C "$root" --exclude=./build --exclude=./viewer/node_modules --exclude=./viewer/page.html --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$(source_epoch)" \
             --transform="s|^\.|$name|" -c .
     fi | gzip -n -9 > "$1"
 }

@@ -20,6 +20,8 @@ COMPONENTS = [
      "[engines](../docs/engines.md#ranks).", ["mpi"]),
     ("client", "client: a server finds the pairs", "CMake target `octopair::client`. How to run a server: "
      "[server](../docs/server.md).", ["client", "job_client", "remote_scene", "scene_watcher"]),
+    ("viewer", "viewer: a scene in a browser", "CMake target `octopair::viewer`. A program shows its "
+     "running scene.", ["view"]),
     ("adapters", "adapters: FCL, CGAL, Bullet", "CMake targets `octopair::fcl`, `octopair::cgal` and `octopair::bullet`. The "
      "guides say what changes: [FCL](../docs/adapters/fcl.md), [CGAL](../docs/adapters/cgal.md), "
      "[Bullet](../docs/adapters/bullet.md).",

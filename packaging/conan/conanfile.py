@@ -26,6 +26,7 @@ CMAKE_OPTIONS = {
     "mpi": "OCTOPAIR_WITH_MPI",
     "service": "OCTOPAIR_WITH_SERVICE",
     "systemd": "OCTOPAIR_WITH_SYSTEMD",
+    "viewer": "OCTOPAIR_WITH_VIEWER",
     "adapters": "OCTOPAIR_WITH_ADAPTERS",
 }
 # Options of CMake that a package does not use, because nothing of these parts is installed for users of C++.
@@ -41,11 +42,12 @@ REQUIREMENTS = {
     "meshes": ["assimp/[>=5.2 <6]"],
     "mpi": ["openmpi/[>=4.1 <6]"],
     "systemd": ["libsystemd/[>=252]"],
+    "viewer": ["boost/[>=1.74 <2]", "zlib/[>=1.2.13 <2]", "nlohmann_json/[>=3.11 <4]"],
 }
 # Package or component -> name that the project's CMakeLists.txt uses, wherever the recipe of the package says something else.
 CMAKE_FILES = {"onetbb": "TBB", "highway": "hwy", "eigen": "Eigen3", "boost": "Boost", "grpc": "gRPC", "protobuf": "Protobuf",
                "openssl": "OpenSSL", "spdlog": "spdlog", "nlohmann_json": "nlohmann_json", "prometheus-cpp": "prometheus-cpp",
-               "cli11": "CLI11", "fmt": "fmt", "assimp": "assimp", "openmpi": "MPI"}
+               "cli11": "CLI11", "fmt": "fmt", "assimp": "assimp", "openmpi": "MPI", "zlib": "ZLIB"}
 CMAKE_TARGETS = {"onetbb::libtbb": "TBB::tbb", "highway::hwy": "hwy::hwy", "openmpi": "MPI::MPI_CXX"}
 
 # Component -> option, or None, and what the component requires. The library of a component is octopair or octopair_COMPONENT.
@@ -55,6 +57,7 @@ LIBRARIES = {
     "processes": ("processes", ["octopair"]),
     "mpi": ("mpi", ["octopair", "highway::hwy", "openmpi::openmpi"]),
     "client": ("service", ["octopair", "grpc::grpc++", "protobuf::libprotobuf", "openssl::crypto"]),
+    "viewer": ("viewer", ["octopair", "zlib::zlib", "boost::headers", "nlohmann_json::nlohmann_json"]),
 }
 ADAPTERS = ["cgal", "fcl", "bullet"]
 # What only the program uses, by option. Conan refuses a requirement that no component has.
@@ -75,7 +78,7 @@ class OctopairConan(ConanFile):
     package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
     options = {"shared": [True, False], "fPIC": [True, False], **{name: [True, False] for name in CMAKE_OPTIONS}}
-    default_options = {"shared": False, "fPIC": True, **{name: name not in ("mpi", "systemd") for name in CMAKE_OPTIONS}}
+    default_options = {"shared": False, "fPIC": True, **{name: name not in ("mpi", "systemd", "viewer") for name in CMAKE_OPTIONS}}
 
     def set_version(self):
         text = load(self, os.path.join(self.recipe_folder, "..", "..", "CMakeLists.txt"))
@@ -85,6 +88,8 @@ class OctopairConan(ConanFile):
         root = os.path.join(self.recipe_folder, "..", "..")
         for pattern in ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "adapters/*", "packaging/*", "docs/octopair.1"):
             copy(self, pattern, src=root, dst=self.export_sources_folder)
+        # The libraries of the page are installed during the build.
+        copy(self, "viewer/*", src=root, dst=self.export_sources_folder, excludes="viewer/node_modules/*")
 
     def config_options(self):
         if self.settings.os != "Linux":
@@ -114,6 +119,9 @@ class OctopairConan(ConanFile):
         if self.options.service:
             self.tool_requires("grpc/<host_version>")
             self.tool_requires("protobuf/<host_version>")
+        # Makes the page, with npm, which fetches libraries from its registry.
+        if self.options.viewer:
+            self.tool_requires("nodejs/[>=18]")
 
     def validate(self):
         check_min_cppstd(self, 20)

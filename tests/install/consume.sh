@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs consumers of octopair outside the tree.
 #
-#     consume.sh shared|static|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE [HOST...]
+#     consume.sh shared|static|subdirectory ROOT BUILD COMPILER PROGRAM PROCESSES SERVICE MPI PIPELINE VIEWER [HOST...]
 #
 # shared, static: installs BUILD to a fresh prefix and moves the prefix. find_package must find octopair's libraries of this
 #     kind there. `shared` also tests the installed programs, the files for pkg-config and the interface for C.
@@ -9,14 +9,15 @@
 #
 # HOST is a host of an adapter: installed adapters for these hosts are tested.
 #
-# The five arguments before are ON or OFF. ON also tests:
+# The six arguments before are ON or OFF. ON also tests:
 #   PROGRAM    the installed program
 #   PROCESSES  octopair::processes; if installed, it must run the installed worker program without OCTOPAIR_WORKER
 #   SERVICE    octopair::client, if installed; with PROGRAM, on a server of the installed program
 #   MPI        octopair::mpi, on two ranks
 #   PIPELINE   octopair::pipeline, if installed
+#   VIEWER     octopair::viewer, if installed
 set -euo pipefail
-how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8 with_pipeline=$9
+how=$1 root=$2 build=$3 compiler=$4 with_program=$5 with_processes=$6 with_service=$7 with_mpi=$8 with_pipeline=$9 with_viewer=${10}
 work=$(mktemp -d)
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
@@ -92,7 +93,7 @@ try_pkgconfig() {
     "$compiler" -std=c++20 "${flags[@]}" "$main" "${libraries[@]}" -o "$work/static_by_pkgconfig"
     "$work/static_by_pkgconfig"
     ! objdump -p "$work/static_by_pkgconfig" | grep 'NEEDED *liboctopair' || exit 1
-    for component in pipeline processes client mpi; do
+    for component in pipeline processes client mpi viewer; do
         [ ! -f "$PKG_CONFIG_PATH/octopair-$component.pc" ] || pkg-config --exists --print-errors "octopair-$component"
     done
     [ -f "$PKG_CONFIG_PATH/octopair-c.pc" ] || return 0
@@ -155,8 +156,14 @@ if [ "$with_pipeline" = ON ] && [ "$how" != subdirectory ]; then
     "$work/pipeline/pipeline_consumer"
     check_kind "$work/pipeline/pipeline_consumer"
 fi
+if [ "$with_viewer" = ON ] && [ "$how" != subdirectory ]; then
+    build_consumer viewer viewer_consumer "${options[@]}" -DCONSUMER_WITH_VIEWER=ON
+    address=$("$work/viewer/viewer_consumer")
+    [[ $address == http://127.0.0.1:* ]] || { echo "viewer_consumer prints: $address" && exit 1; }
+    check_kind "$work/viewer/viewer_consumer"
+fi
 if [ "$how" = shared ]; then
-    for host in "${@:10}"; do
+    for host in "${@:11}"; do
         build_consumer "$host" adapter_consumer "${options[@]}" -DCONSUMER_ADAPTER="$host"
         "$work/$host/adapter_consumer"
     done

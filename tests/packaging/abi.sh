@@ -28,7 +28,7 @@ describe() {
 fits() { abidiff --suppressions "$here/abi/suppressions" --no-added-syms "$1" "$2" > "$work/report" 2>&1; }
 
 bad=0
-for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline octopair_processes; do
+for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline octopair_processes octopair_viewer; do
     library=$(find "$work" -path "*/debug/*" -prune -o -name "lib$name.so.*.*" -print)
     [ -n "$library" ] || { echo "lib$name is in no package" && exit 1; }
     soname=$(objdump -p "$library" | awk '$1 == "SONAME" { print $2 }')
@@ -37,6 +37,8 @@ for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline o
     grep -q "<function-decl" "$work/$name.abi" || { echo "lib$name: no debug information" && exit 1; }
     if [ -n "$update" ]; then
         cp "$work/$name.abi" "$here/abi/$name.abi"
+    elif [ ! -f "$here/abi/$name.abi" ]; then
+        echo "lib$name: new since the last release"
     elif ! fits "$here/abi/$name.abi" "$work/$name.abi"; then
         echo "lib$name: programs of an earlier release may fail with this library"
         cat "$work/report"

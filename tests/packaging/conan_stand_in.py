@@ -3,6 +3,7 @@
 Call `install()` before a recipe is imported. CMake runs with the packages of this machine in place of those of Conan. What Conan would
 refuse raises an error, too: unknown options, unknown properties, requirements that no component has.
 """
+import fnmatch
 import os
 import pathlib
 import re
@@ -145,9 +146,10 @@ def run_cmake(*arguments):
         sys.exit(f"cmake {' '.join(arguments)}\n{done.stdout[-5000:]}")
 
 
-def copy(_, pattern, src, dst):
-    """Copies the files whose path below src matches a pattern, where * also matches slashes."""
-    found = [path for path in pathlib.Path(src).glob(pattern.replace("*", "**/*")) if path.is_file()]
+def copy(_, pattern, src, dst, excludes=""):
+    """Copies the files whose path below src matches a pattern, and not `excludes`. A * also matches slashes."""
+    found = [path for path in pathlib.Path(src).glob(pattern.replace("*", "**/*"))
+             if path.is_file() and not fnmatch.fnmatch(str(path.relative_to(src)), excludes)]
     assert found, f"no file {pattern} in {src}"
     for path in found:
         target = pathlib.Path(dst, path.relative_to(src))

@@ -23,11 +23,12 @@ TARGETS = {
     "onetbb::libtbb": ("TBB::tbb", "TBB"), "highway::hwy": ("hwy::hwy", "hwy"), "eigen::eigen": ("Eigen3::Eigen", "Eigen3 CONFIG"),
     "boost::headers": ("Boost::headers", "Boost CONFIG COMPONENTS headers"), "grpc::grpc++": ("gRPC::grpc++", "gRPC CONFIG"),
     "protobuf::libprotobuf": ("protobuf::libprotobuf", "Protobuf"), "openssl::crypto": ("OpenSSL::Crypto", "OpenSSL"),
-    "openmpi::openmpi": ("MPI::MPI_CXX", "MPI COMPONENTS CXX"),
+    "openmpi::openmpi": ("MPI::MPI_CXX", "MPI COMPONENTS CXX"), "zlib::zlib": ("ZLIB::ZLIB", "ZLIB"),
+    "nlohmann_json::nlohmann_json": ("nlohmann_json::nlohmann_json", "nlohmann_json"),
 }
 # Packages of ConanCenter.
 CENTER = {"onetbb", "highway", "eigen", "boost", "grpc", "protobuf", "openssl", "xxhash", "spdlog", "cli11", "fmt", "nlohmann_json",
-          "assimp", "prometheus-cpp", "openmpi", "libsystemd"}
+          "assimp", "prometheus-cpp", "openmpi", "libsystemd", "zlib"}
 
 
 def load_recipe(path):
@@ -125,7 +126,7 @@ def check_package(recipe, package):
     for name, links in exported.items():
         declared = {TARGETS[other][0] if "::" in other else f"octopair::{other}" for other in components[name].requires}
         # Headers that only the library's sources include are a requirement, but not a link.
-        assert declared - {"Eigen3::Eigen", "Boost::headers"} == links, f"{name} requires {declared}, in CMake {links}"
+        assert declared - {"Eigen3::Eigen", "Boost::headers", "nlohmann_json::nlohmann_json"} == links, f"{name} requires {declared}, in CMake {links}"
     for define in components["processes"].defines:
         assert pathlib.Path(define.split('"')[1]).is_file(), f"{define}: no such file"
     for path in ("licenses/LICENSE", "bin/octopair", "include/octopair/octopair.hpp", "include/octopair/version.hpp"):
@@ -175,8 +176,8 @@ def run_test_package(recipe, root, package, work):
 
 def check_exported(root, sources):
     """Configures the exported sources, and compares their folders with those of the project."""
-    for folder in ("include", "src", "adapters", "cmake", "packaging"):
-        wanted = {path.relative_to(root) for path in (root / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts}
+    for folder in ("include", "src", "adapters", "cmake", "packaging", "viewer"):
+        wanted = {path.relative_to(root) for path in (root / folder).rglob("*") if path.is_file() and not {"__pycache__", "node_modules"} & set(path.parts)}
         missing = [str(path) for path in wanted if not (sources / path).is_file()]
         assert not missing, f"not exported: {missing}"
     conan_stand_in.run_cmake("-S", str(sources), "-B", str(sources.parent / "configured"), "-G", "Ninja",
@@ -197,7 +198,7 @@ def main():
         exporter.export_sources_folder = str(work / "sources")
         exporter.export_sources()
         package = work / "package"
-        recipe = prepare(recipe_type, root, build, package)
+        recipe = prepare(recipe_type, root, build, package, viewer=True)
         assert recipe.version == version, f"the recipe has version {recipe.version}, the project {version}"
         check_exported(root, work / "sources")
         # CMake leaves exports of an earlier build that no longer exist.

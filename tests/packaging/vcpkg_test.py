@@ -22,7 +22,7 @@ FEATURE = {"description", "dependencies", "supports", "license"}
 DEPENDENCY = {"name", "features", "host", "default-features", "platform", "version>="}
 # Ports that vcpkg has.
 PORTS = {"highway", "tbb", "vcpkg-cmake", "vcpkg-cmake-config", "grpc", "protobuf", "openssl", "xxhash", "spdlog", "cli11", "fmt",
-         "nlohmann-json", "assimp", "prometheus-cpp", "mpi", "boost-headers", "boost-multiprecision", "eigen3", "libsystemd", "octopair"}
+         "nlohmann-json", "assimp", "prometheus-cpp", "mpi", "boost-asio", "boost-beast", "boost-headers", "boost-multiprecision", "zlib", "eigen3", "libsystemd", "octopair"}
 IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 PLATFORM = re.compile(r"!?\(?(windows|linux|osx|static|x64|arm64)\)?([&|] *!?\(?(windows|linux|osx|static|x64|arm64)\)?)*")
 
@@ -96,7 +96,8 @@ def use_package(root, package, work):
     moved = package.rename(work / "installed")
     for number, (target, option) in enumerate({"consumer": None, "process_consumer": "CONSUMER_WITH_PROCESSES",
                                                "pipeline_consumer": "CONSUMER_WITH_PIPELINE",
-                                               "client_consumer": "CONSUMER_WITH_CLIENT"}.items()):
+                                               "client_consumer": "CONSUMER_WITH_CLIENT",
+                                               "viewer_consumer": "CONSUMER_WITH_VIEWER"}.items()):
         build = work / f"user{number}"
         run_cmake("-S", str(root / "tests/install/consumer"), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
                   f"-DCMAKE_PREFIX_PATH={moved}", *([f"-D{option}=ON"] if option else []))

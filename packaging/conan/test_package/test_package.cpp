@@ -13,6 +13,9 @@
 #ifdef WITH_CLIENT
 #include <octopair/client.hpp>
 #endif
+#ifdef WITH_VIEWER
+#include <octopair/view.hpp>
+#endif
 
 namespace {
 
@@ -48,6 +51,15 @@ bool client_works() {
 }
 #endif
 
+#ifdef WITH_VIEWER
+bool viewer_works() {
+    octopair::Scene scene;
+    octopair::View view(scene);
+    view.show(scene.step());
+    return view.address().starts_with("http://");
+}
+#endif
+
 bool all_work() {
     bool good = works(*octopair::make_local_engine());
 #ifdef WITH_PIPELINE
@@ -58,6 +70,9 @@ bool all_work() {
 #endif
 #ifdef WITH_CLIENT
     good = client_works() && good;
+#endif
+#ifdef WITH_VIEWER
+    good = viewer_works() && good;
 #endif
     return good;
 }
