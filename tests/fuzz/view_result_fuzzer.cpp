@@ -1,0 +1,53 @@
+// Fuzzes the reader of results that `octopair view` shows. The first byte chooses the format.
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "cli/view/result_file.hpp"
+#include "octopair/error.hpp"
+
+namespace {
+
+using namespace octopair;
+
+void require(bool holds) {
+    if (!holds) std::abort();
+}
+
+void check(const cli::ResultFile& result) {
+    require(!result.frames.empty());
+    for (const cli::ResultFrame& frame : result.frames) {
+        require(frame.findings.empty() || frame.findings.size() == frame.pairs.size());
+        require(std::is_sorted(frame.pairs.begin(), frame.pairs.end()));
+        require(std::adjacent_find(frame.pairs.begin(), frame.pairs.end()) == frame.pairs.end());
+        for (const Pair pair : frame.pairs) require(pair.a < pair.b && pair.b < result.objects);
+        for (const Finding& finding : frame.findings) {
+            require(std::isfinite(finding.depth) && std::isfinite(finding.distance));
+            for (const Contact& contact : finding.contacts) require(std::isfinite(contact.point[0]));
+        }
+    }
+    for (const auto& [object, name] : result.names) require(object < result.objects);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    if (size == 0) return 0;
+    constexpr std::array endings = {".jsonl", ".csv", ".npy"};
+    const std::string path = "/tmp/octopair-fuzz-" + std::to_string(::getpid()) + endings[bytes[0] % 3];
+    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes + 1), std::streamsize(size - 1));
+    try {
+        if (cli::is_result(path)) check(cli::read_result(path, {}));
+    } catch (const Error& error) {
+        require(error.code() == ErrorCode::bad_input || error.code() == ErrorCode::resource_limit);
+        require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    }
+    ::unlink(path.c_str());
+    return 0;
+}
