@@ -122,7 +122,7 @@ std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& ser
         try {
             source.count_frames([&](std::uint64_t done) { server.broadcast("", viewer::timeline_message(done)); },
                                 stop);
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             server.broadcast("", viewer::failed_message(error.what()));
         }
     });

@@ -38,7 +38,7 @@ std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_sho
 
 void LiveFeed::put(LiveState&& next) {
     const std::lock_guard lock(mutex_);
-    const bool whole = frame_ < 0 || size_of(next) != size_of(*state_);
+    bool whole = frame_ < 0 || size_of(next) != size_of(*state_);
     if (frame_ < 0) {
         FrameData data;
         data.boxes = boxes_of(next);
@@ -46,7 +46,10 @@ void LiveFeed::put(LiveState&& next) {
         origin_ = centre_of(bounds_of(data));
     }
     ++frame_;
+    const bool listed_before = pairs_.size() <= max_listed_pairs;
     Difference difference = update_pairs(next);
+    // Pages do not have all pairs if there were too many. When there are fewer, they get all.
+    whole |= !listed_before && pairs_.size() <= max_listed_pairs;
     state_ = std::make_shared<const LiveState>(std::move(next));
     update_rows(whole);
     made_.clear();
@@ -184,6 +187,7 @@ Message LiveFeed::frame_after(std::int64_t last) {
     const std::lock_guard lock(mutex_);
     if (frame_ < 0 || last == frame_) return nullptr;
     const std::int64_t base = last >= oldest_base_ && last < frame_ ? last : -1;
+    if (made_.size() > max_messages) made_.clear();
     Message& made = made_[base];
     if (made == nullptr) {
         std::string frame = base < 0 ? std::string() : difference_since(std::uint32_t(base));

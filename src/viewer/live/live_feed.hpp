@@ -70,6 +70,7 @@ private:
     std::string difference_since(std::uint32_t last) const;
     Head head() const;
 
+    static constexpr std::size_t max_messages = 16;
     // Pages with an older frame get a whole one.
     static constexpr std::size_t max_differences = 256, max_events = 1'000'000;
 

@@ -80,6 +80,7 @@ private:
     /// Keeps the events of a step for the next copy. If there are very many, the copy takes all pairs instead.
     void keep_events(const StepResult& step) {
         const std::size_t more = step.began.size() + step.ended.size();
+        all_pairs_needed_ |= incomplete_.exchange(false);
         if (all_pairs_needed_ || source_.pages() == 0 || events_.size() + more > max_events) {
             all_pairs_needed_ = true;
             events_.clear();
@@ -131,8 +132,12 @@ private:
         while (ready_.wait(lock, stop, [this] { return bool(busy_); })) {
             LiveState state = std::move(waiting_);
             lock.unlock();
-            source_.feed().put(std::move(state));
-            server_.notify();
+            try {
+                source_.feed().put(std::move(state));
+                server_.notify();
+            } catch (const std::bad_alloc&) {
+                incomplete_ = true;  // pages keep their frame; the next copy has all pairs
+            }
             lock.lock();
             busy_ = false;
         }
@@ -148,8 +153,9 @@ private:
 
     std::mutex mutex_;
     std::condition_variable_any ready_;
-    LiveState waiting_;               // guarded by mutex_
-    std::atomic<bool> busy_ = false;  // true from the copy until the state is passed on
+    LiveState waiting_;                     // guarded by mutex_
+    std::atomic<bool> incomplete_ = false;  // a state was lost
+    std::atomic<bool> busy_ = false;        // true from the copy until the state is passed on
     viewer::LiveSource source_;
     viewer::PageServer server_;
     std::jthread worker_;

@@ -112,6 +112,8 @@ Response respond_data(const Request& request, const Address& address, Source& so
         return respond_text(request, status_of(error.code()), error.what());
     } catch (const std::bad_alloc&) {
         return respond_text(request, http::status::insufficient_storage, "out of memory");
+    } catch (const std::exception& error) {
+        return respond_text(request, http::status::internal_server_error, error.what());
     }
 }
 

@@ -43,7 +43,7 @@ public:
         accept();
         thread_ = std::thread([this] {
             if (options_.low_priority) lower_priority();
-            io_.run();
+            run_connections();
         });
         if (options_.low_priority) asio::post(pool_, lower_priority);
     }
@@ -103,6 +103,17 @@ public:
     }
 
 private:
+    /// Serves connections until stop(). A connection for which the memory does not suffice ends.
+    void run_connections() {
+        for (;;) {
+            try {
+                io_.run();
+                return;
+            } catch (const std::bad_alloc&) {
+            }
+        }
+    }
+
     std::uint16_t open(const PageServerOptions& options) {
         const Tcp::endpoint endpoint = endpoint_of(options);
         boost::system::error_code error;
