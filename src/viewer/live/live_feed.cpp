@@ -191,7 +191,8 @@ Message LiveFeed::frame_after(std::int64_t last) {
     Message& made = made_[base];
     if (made == nullptr) {
         std::string frame = base < 0 ? std::string() : difference_since(std::uint32_t(base));
-        const std::size_t whole = sizeof(Head) + rows_.size() * sizeof(RelativeBox);
+        const std::size_t listed = std::min(pairs_.size(), max_listed_pairs);
+        const std::size_t whole = sizeof(Head) + rows_.size() * sizeof(RelativeBox) + listed * sizeof(Pair);
         if (base < 0 || frame.size() > whole) frame = whole_frame();  // the shorter one
         made = std::make_shared<const std::string>(std::move(frame));
     }
