@@ -27,6 +27,7 @@ class Page {
   private live: LiveScene | null = null;
   private wake: () => void = () => undefined;
   private lastTable = 0;
+  private tableTimer = 0;
   private firstFrame: (() => void) | null = null;
 
   async start(): Promise<void> {
@@ -176,8 +177,7 @@ class Page {
     if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
     this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
-    const now = performance.now();
-    if (!first && now - this.lastTable > 1000) this.refreshSlowly(app, now);
+    if (!first) this.refreshSlowly(app);
     this.firstFrame = null;
     first?.();
     // The next frame is asked for when this one is drawn.
@@ -190,9 +190,15 @@ class Page {
     if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
   }
 
-  // Answers that the server computes on request are not asked for with each live frame.
-  private refreshSlowly(app: App, now: number): void {
-    this.lastTable = now;
+  // Answers that the server computes on request are asked for once a second, and after the last frame.
+  private refreshSlowly(app: App): void {
+    const wait = this.lastTable + 1000 - performance.now();
+    clearTimeout(this.tableTimer);
+    if (wait > 0) {
+      this.tableTimer = window.setTimeout(() => this.refreshSlowly(app), wait);
+      return;
+    }
+    this.lastTable = performance.now();
     void app.table.load();
     app.selection.refresh().catch(error => app.fail(error));
     if (settings.values.octants) void app.showOctants();

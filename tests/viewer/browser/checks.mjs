@@ -55,7 +55,8 @@ export async function complete(page, timeout = 60_000) {
 
 export async function waitForText(page, selector, pattern, timeout = 20_000) {
   try {
-    await page.waitForFunction(([where, source]) => new RegExp(source).test(document.querySelector(where)?.innerText ?? ''), [selector, pattern.source], {timeout});
+    await page.waitForFunction(([where, source, flags]) => new RegExp(source, flags).test(document.querySelector(where)?.innerText ?? ''),
+      [selector, pattern.source, pattern.flags], {timeout});
   } catch {
     throw new Error(`${selector} is "${await text(page, selector)}" and does not match ${pattern}`);
   }

@@ -3,6 +3,7 @@
 import json
 import select
 import sys
+import time
 
 import numpy as np
 
@@ -56,6 +57,9 @@ def run(dust, show):
     while (word := command(0.02 if running else 60)) != "stop":
         if word == "pairs":
             running = False
+            # A view copies boxes for at most a hundredth of the time, so the page may lack the last steps.
+            time.sleep(1)
+            show(dust.step())
             tell(steps=dust.steps, pairs=np.asarray(dust.scene.pairs()).tolist())
         elif word == "go":
             running = True
