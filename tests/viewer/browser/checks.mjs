@@ -1,4 +1,4 @@
-// What tests of pages of the program check more than once.
+// Checks that several tests of the pages share.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {accessibility, data, pixel, project, settings} from '../page/browser.mjs';
