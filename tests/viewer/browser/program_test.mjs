@@ -508,6 +508,23 @@ test('every key', () => withView([inputs.get('moving.npy')], async page => {
   await waitForText(page, '#play', /Play/);
 }));
 
+test('the width of the side panel', () => withView([inputs.get('three.npy')], async page => {
+  const width = () => page.locator('#side').evaluate(side => side.offsetWidth);
+  const before = await width();
+  await page.focus('#side-edge');
+  await page.keyboard.press('ArrowLeft');
+  assert.equal(await width(), before + 20);
+  const edge = await page.locator('#side-edge').boundingBox();
+  await page.mouse.move(edge.x + 4, 400);
+  await page.mouse.down();
+  await page.mouse.move(780, 400, {steps: 4});
+  await page.mouse.up();
+  assert.ok(Math.abs(await width() - 500) < 8);
+  // The whole scene is still in view, in the middle of what is free.
+  const seen = await Promise.all(threeBoxes.map(box => project(page, topOf(box))));
+  assert.ok(seen.every(({x, y}) => x > 248 && x < 780 && y > 45 && y < 720));
+}));
+
 test('keys of shapes', () => withView([inputs.get('shapes.json')], async page => {
   for (const [key, name] of [['b', 'style'], ['k', 'contacts']]) {
     const before = (await settings(page))[name];
