@@ -180,13 +180,20 @@ export class App {
   }
 
   async openObject(object: number): Promise<void> {
-    await this.selection.select([object]).catch((error: unknown) => this.fail(error));
-    this.zoomToSelection();
+    return this.openAll([object]);
   }
 
   async openCollision(row: Collision): Promise<void> {
-    await this.selection.select([row.a, row.b]).catch((error: unknown) => this.fail(error));
-    this.zoomToSelection();
+    return this.openAll([row.a, row.b]);
+  }
+
+  // Selects objects and zooms to them. The places of objects that are not drawn must be read first.
+  private async openAll(objects: number[]): Promise<void> {
+    const reading = this.selection.select(objects).catch((error: unknown) => this.fail(error));
+    const known = objects.every(object => this.model.rowOf(object) >= 0);
+    if (known) this.zoomToSelection();
+    await reading;
+    if (!known) this.zoomToSelection();
   }
 
   async showOctants(): Promise<void> {

@@ -12,6 +12,8 @@ export class Camera {
   pitch = 0.5;
   up: 'y' | 'z' = 'z';
   fly = false;
+  // The place from which the whole scene was seen last.
+  private whole = '';
   // The part of the canvas's width, from the left, that a panel covers.
   covered = 0;
   // The part of its height, from below.
@@ -69,6 +71,7 @@ export class Camera {
 
   fitScene(): void {
     this.fit(this.sceneMin, this.sceneMax);
+    this.whole = this.toText();
   }
 
   rotate(yaw: number, pitch: number): void {
@@ -103,11 +106,14 @@ export class Camera {
   }
 
   // Takes the size of the canvas. The target is in the middle of what is not covered on the left and below.
+  // A camera that sees the whole scene, and was not moved, still does.
   resize(width: number, height: number, covered: number, below: number): void {
+    const unmoved = this.whole !== '' && this.toText() === this.whole;
     this.three.aspect = width / Math.max(height, 1);
     this.covered = covered / width;
     this.below = below / height;
     this.three.setViewOffset(width, height, -0.5 * covered, 0.5 * below, width, height);
+    if (unmoved) this.fitScene();
   }
 
   // Gives the matrices of three.js the present place.

@@ -39,7 +39,7 @@ export function placeDepths(stage: Stage): void {
     if (element.textContent !== text) element.textContent = text;
     element.hidden = !at.front || !free;
     if (!element.hidden) taken.push(at);
-    element.style.left = `${Math.round(at.x - box.left + 8)}px`;
+    element.style.left = `${Math.round(Math.min(at.x - box.left + 8, box.width - 6.5 * text.length - 14))}px`;
     element.style.top = `${Math.round(at.y - box.top + 8)}px`;
   });
 }

@@ -5,24 +5,41 @@ import type {SceneModel} from './scene_model.ts';
 export class LiveScene {
   private pairs = new Map<string | number, readonly [number, number]>();
   private partial = false;
+  // A whole frame has come.
+  private whole = false;
 
   constructor(private readonly model: SceneModel) {}
 
   // Returns whether the rows changed, and not only their boxes.
   apply(live: LiveFrame): boolean {
-    const rowsChanged = live.whole;
-    if (live.whole) this.replace(live);
-    else this.change(live);
+    const rowsChanged = live.whole && !(this.whole && live.shown === this.model.rows && same(live.shownObjects, this.model.objects));
     const {frame} = this.model;
-    frame.info = {
-      frame: live.frame, pairs: live.pairs, pairs_listed: this.pairs.size, began: live.began, ended: live.ended,
-      seconds: {step: live.stepSeconds},
-    };
-    frame.pairs = this.list();
     frame.began = live.beganList;
     frame.ended = live.endedList;
+    let [began, ended] = [live.began, live.ended];
+    if (!live.whole) this.change(live);
+    else if (this.whole && !this.partial && live.listed === live.pairs) [began, ended] = this.compare(live);
+    else this.replace(live);
+    this.whole = true;
+    frame.info = {
+      frame: live.frame, pairs: live.pairs, pairs_listed: this.pairs.size, began, ended, seconds: {step: live.stepSeconds},
+    };
+    frame.pairs = this.list();
     this.countPartners();
     return rowsChanged;
+  }
+
+  // Finds the pairs that began or ended before a whole frame, which comes if it is shorter than the difference. Returns both numbers.
+  private compare(live: LiveFrame): [number, number] {
+    const {frame} = this.model;
+    const old = this.pairs;
+    this.pairs = new Map();
+    this.replace(live);
+    const missing = (from: Map<string | number, readonly [number, number]>, other: Map<string | number, unknown>): Uint32Array =>
+      Uint32Array.from([...from].filter(([name]) => !other.has(name)).flatMap(([, pair]) => pair));
+    frame.began = missing(this.pairs, old);
+    frame.ended = missing(old, this.pairs);
+    return [frame.began.length / 2, frame.ended.length / 2];
   }
 
   private replace(live: LiveFrame): void {
@@ -69,6 +86,10 @@ export class LiveScene {
     }
     model.frame.partners = partners;
   }
+}
+
+function same(a: Uint32Array | null, b: Uint32Array | null): boolean {
+  return a === b || (a !== null && b !== null && a.length === b.length && a.every((value, k) => value === b[k]));
 }
 
 // Numbers are faster than texts, and exact for all but very large indices.

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {App} from './app.ts';
 import {commands, copyLink, openHelp} from './commands.ts';
-import {byId, count, messageOf} from './dom.ts';
+import {byId, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
 import {readLink} from './link.ts';
@@ -28,6 +28,7 @@ class Page {
   private live: LiveScene | null = null;
   private wake: () => void = () => undefined;
   private lastTable = 0;
+  private tableTimer = 0;
   private firstFrame: (() => void) | null = null;
 
   async start(): Promise<void> {
@@ -155,7 +156,7 @@ class Page {
   }
 
   private receive(event: SocketEvent): void {
-    if (event.event === 'progress' && !this.app) showProgress(event.what || 'Loading', event.done ?? null);
+    if (event.event === 'progress' && !this.app) showProgress(sentence(event.what || 'loading'), event.done ?? null);
     if (event.event === 'ready') this.wake();
     if (event.event === 'failed') {
       showFailure(event.message ?? 'unknown error');
@@ -178,9 +179,9 @@ class Page {
     const rowsChanged = live.apply(frame);
     if (rowsChanged && !first) this.readRows(app);
     app.frameChanged(rowsChanged);
-    this.timeline?.append(frame.frame, frame.pairs, frame.began, frame.ended, frame.stepSeconds);
-    const now = performance.now();
-    if (!first && now - this.lastTable > 1000) this.refreshSlowly(app, now);
+    const {began = 0, ended = 0} = app.model.frame.info;
+    this.timeline?.append(frame.frame, frame.pairs, began, ended, frame.stepSeconds);
+    if (!first) this.refreshSlowly(app);
     this.firstFrame = null;
     first?.();
     // The next frame is asked for when this one is drawn.
@@ -193,16 +194,22 @@ class Page {
     if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
   }
 
-  // Answers that the server computes on request are not asked for with each live frame.
-  private refreshSlowly(app: App, now: number): void {
-    this.lastTable = now;
+  // Answers that the server computes on request are asked for once a second, and after the last frame.
+  private refreshSlowly(app: App): void {
+    const wait = this.lastTable + 1000 - performance.now();
+    clearTimeout(this.tableTimer);
+    if (wait > 0) {
+      this.tableTimer = window.setTimeout(() => this.refreshSlowly(app), wait);
+      return;
+    }
+    this.lastTable = performance.now();
     void app.table.load();
     app.selection.refresh().catch(error => app.fail(error));
     if (settings.values.octants) void app.showOctants();
   }
 
   private reading(address: string, got: number, total: number): void {
-    if (!document.documentElement.dataset.ready) showProgress(`Reading ${address}: ${count(got / 1e6)} of ${count(total / 1e6)} MB`, got / total);
+    if (!document.documentElement.dataset.ready) showProgress(`Reading ${contentOf(address)}: ${megabytes(got)} of ${megabytes(total)} MB`, got / total);
   }
 }
 
@@ -227,6 +234,20 @@ function firstPicture(app: App): Promise<void> {
   document.documentElement.dataset.ready = 'true';
   // The browser shows the picture before the rest begins.
   return new Promise(done => setTimeout(done, 20));
+}
+
+function sentence(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function megabytes(bytes: number): string {
+  return (bytes / 1e6).toFixed(1);
+}
+
+// Returns the content of an address in words.
+function contentOf(address: string): string {
+  const names: Record<string, string> = {frame: 'boxes', poses: 'poses', partners: 'numbers of pairs', shown: 'objects', geometry: 'shapes', shape: 'shapes'};
+  return names[/^[a-z]+/.exec(address)?.[0] ?? ''] ?? 'data';
 }
 
 // Something that is waited for later: until then its failure is no error.

@@ -137,9 +137,10 @@ export class Stage {
     return this.canvas.height / (2 * Math.tan(THREE.MathUtils.degToRad(this.camera.three.fov / 2)));
   }
 
-  // Draws at once, and waits until the picture is done.
+  // Draws all at once, and waits until the picture is done.
   drawNow(): void {
     this.pending = false;
+    this.lastMove = 0;
     this.draw();
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -228,7 +229,8 @@ export class Stage {
   }
 }
 
-// Only a graphics card draws smooth edges. What draws is known with the first context, which takes up to 0.2 s without a card.
+// Creates the renderer. Only a graphics card smooths edges, because the processor is too slow for that. Without a card, a context
+// takes up to 0.2 s, so only a card gets a second one.
 function createRenderer(canvas: HTMLCanvasElement): {renderer: THREE.WebGLRenderer; software: boolean} {
   const attributes = {alpha: true, depth: true, stencil: false, antialias: false, powerPreference: 'high-performance'} as const;
   const context = canvas.getContext('webgl2', attributes) as WebGL2RenderingContext | null;
