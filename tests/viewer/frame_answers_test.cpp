@@ -102,8 +102,6 @@ TEST(FrameAnswers, PairsAreCapped) {
     EXPECT_EQ(viewer::pair_rows(many).body.size(), 8 * viewer::max_listed_pairs);
 }
 
-// ---- Table of collisions -------------------------------------------------------------------------------------------
-
 Address address_of(const std::string& query) { return *Address::parse("/collisions/0.json" + query); }
 
 /// Adds names and findings to a frame.
@@ -213,8 +211,6 @@ TEST(CollisionTable, NamesThatAreNotUtf8) {
     EXPECT_GT(found["rows"].size(), 0u);
 }
 
-// ---- Objects -------------------------------------------------------------------------------------------------------
-
 TEST(ObjectAnswer, HasBoxCodeAndPartners) {
     Random random(6);
     for (const bool absent : {false, true}) {
@@ -321,8 +317,6 @@ TEST(NearAnswer, ReadsTheRegion) {
         }
     }
 }
-
-// ---- Octants -------------------------------------------------------------------------------------------------------
 
 struct OctantRow {
     float bounds[6];

@@ -152,6 +152,7 @@ public:
 
     const std::string& path() const override { return path_; }
     bool is_sending() const override { return sending_; }
+    std::uint64_t last_turn() const override { return turn_; }
 
     void send(std::string message) override {
         if (waiting_.size() < max_waiting) waiting_.push_back(std::move(message));
@@ -159,10 +160,11 @@ public:
     }
 
     void offer_frame() override {
-        if (!last_ || sending_) return;
+        if (!last_ || sending_ || !host_.may_send_frame()) return;
         frame_ = host_.source().live_frame(path_, *last_);
         if (frame_ == nullptr) return;
         last_.reset();
+        turn_ = host_.take_turn(frame_->size());
         write();
     }
 
@@ -222,6 +224,7 @@ private:
     Message frame_;                     // live frame that is not yet sent
     Message outgoing_;                  // being sent
     std::optional<std::int64_t> last_;  // set while the page waits for a frame: the last frame that it has
+    std::uint64_t turn_ = 0;            // of the last frame
     bool sending_ = false, joined_ = false;
 };
 

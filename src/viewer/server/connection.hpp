@@ -25,6 +25,8 @@ public:
     /// Sends a live frame if the page waits for one and there is a newer one.
     virtual void offer_frame() = 0;
     virtual bool is_sending() const = 0;
+    /// Returns ConnectionHost::take_turn() of the last frame that was sent; 0 if none was.
+    virtual std::uint64_t last_turn() const = 0;
 };
 
 /// Services of the server for its connections. Outlives them.
@@ -39,6 +41,10 @@ public:
     virtual void closed() = 0;
     virtual void joined(WebSocket& socket) = 0;
     virtual void left(WebSocket& socket) = 0;
+    /// Returns whether a live frame may be sent now. If not, the host calls WebSocket::offer_frame() later.
+    virtual bool may_send_frame() = 0;
+    /// Counts a live frame of `bytes` that is sent now. Returns a number that increases from frame to frame.
+    virtual std::uint64_t take_turn(std::size_t bytes) = 0;
 };
 
 /// Serves a connection until it ends.

@@ -357,7 +357,7 @@ test('frames: counts, steps, speed and a link', () => withView([inputs.get('movi
   await page.click('#step-back');
   await page.waitForTimeout(600);
   const frame = await data(page, 'frame');
-  assert.match(page.url(), new RegExp(`frame=${frame}(&|$)`));
+  await page.waitForFunction(wanted => new RegExp(`frame=${wanted}(&|$)`).test(location.hash), frame);
   await withPage(page.url(), async other => {
     assert.equal(await data(other, 'frame'), frame);
     assert.equal(await text(other, '#counts'), countsText(frames[frame]));
@@ -438,7 +438,7 @@ test('a live scene of Python', async () => {
   const session = await killed.page.context().newCDPSession(killed.page);
   session.send('Page.crash').catch(() => undefined);
   await new Promise(done => setTimeout(done, 300));
-  await killed.close();
+  await Promise.race([killed.close(), new Promise(done => setTimeout(done, 1000))]);  // a dead page does not answer
   const steps = async () => {
     simulation.write('steps\n');
     return JSON.parse(await simulation.line()).steps;

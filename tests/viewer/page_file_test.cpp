@@ -1,0 +1,223 @@
+// Exported pages of a scene in memory.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <array>
+#include <map>
+
+#include "octopair/error.hpp"
+#include "viewer/fake_finder.hpp"
+#include "viewer/scene/page_file.hpp"
+#include "viewer/server/page.hpp"
+
+namespace octopair::test {
+
+namespace {
+
+int base64_value(char c) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::size_t at = digits.find(c);
+    return at == std::string_view::npos ? -1 : int(at);
+}
+
+std::string from_base64(std::string_view text) {
+    EXPECT_EQ(text.size() % 4, 0u);
+    std::string bytes;
+    std::uint32_t word = 0, bits = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        EXPECT_GE(base64_value(c), 0);
+        word = word << 6 | std::uint32_t(base64_value(c));
+        bits += 6;
+        if (bits < 8) continue;
+        bits -= 8;
+        bytes += char(word >> bits & 255);
+    }
+    return bytes;
+}
+
+/// Unpacks gzip of any length, without code of the viewer.
+std::string unpacked(const std::string& compressed) {
+    z_stream stream{};
+    EXPECT_EQ(inflateInit2(&stream, 15 + 16), Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
+    stream.avail_in = uInt(compressed.size());
+    std::string out;
+    int result = Z_OK;
+    while (result == Z_OK) {
+        std::array<char, 65536> part;
+        stream.next_out = reinterpret_cast<Bytef*>(part.data());
+        stream.avail_out = uInt(part.size());
+        result = inflate(&stream, Z_NO_FLUSH);
+        out.append(part.data(), part.size() - stream.avail_out);
+    }
+    EXPECT_EQ(result, Z_STREAM_END);
+    inflateEnd(&stream);
+    return out;
+}
+
+/// Reads the elements of a page as a browser does.
+std::map<std::string, std::string> data_of(const std::string& page) {
+    std::map<std::string, std::string> data;
+    constexpr std::string_view before = "<script type=\"application/octet-stream\" data-address=\"", end = "</script>";
+    for (std::size_t at = 0; (at = page.find(before, at)) != std::string::npos;) {
+        const std::size_t name = at + before.size(), quote = page.find("\">", name), last = page.find(end, quote);
+        const std::string address = page.substr(name, quote - name);
+        EXPECT_FALSE(data.contains(address)) << address;
+        data[address] = unpacked(from_base64(std::string_view(page).substr(quote + 2, last - quote - 2)));
+        at = last;
+    }
+    return data;
+}
+
+std::string page_of(SceneSource& source, std::uint64_t most = viewer::max_page_bytes) {
+    std::string page;
+    write_page(
+        source, [&](std::string_view text) { page += text; }, most);
+    return page;
+}
+
+/// Takes the element scripts out of a page, so that what is left is the page itself.
+std::string without_data(std::string page) {
+    constexpr std::string_view before = "<script type=\"application/octet-stream\"", end = "</script>\n";
+    for (std::size_t at; (at = page.find(before)) != std::string::npos;)
+        page.erase(at, page.find(end, at) + end.size() - at);
+    return page;
+}
+
+TEST(PageFile, HasTheAnswersOfTheServer) {
+    for (const bool moving : {false, true}) {
+        FakeFinder finder(20, moving ? 6 : 1, 70);
+        SceneSource source(contents_of(70, moving), finder, 50), exported(contents_of(70, moving), finder, 50);
+        source.load({});
+        exported.load({});
+        if (moving) {
+            source.count_frames({}, {});
+            exported.count_frames({}, {});
+        }
+        const auto data = data_of(page_of(exported));
+        for (const auto& [address, bytes] : data) {
+            if (address == "view.json") continue;
+            const bool table = address.starts_with("collisions/");
+            EXPECT_EQ(bytes, body_of(source, address + (table ? "?count=1000" : ""))) << address;
+        }
+        for (std::uint64_t f = 0; f < finder.frames(); ++f) {
+            const std::string number = std::to_string(f);
+            for (const std::string& address :
+                 {"frame/" + number + ".json", "frame/" + number + ".f32", "pairs/" + number + ".u32",
+                  "partners/" + number + ".u32", "levels/" + number + ".u8", "collisions/" + number + ".json",
+                  "octants/" + number + ".json", "octants/" + number + "/0.bin"}) {
+                EXPECT_TRUE(data.contains(address)) << address;
+            }
+            EXPECT_EQ(data.contains("began/" + number + ".u32"), moving);
+            const std::size_t levels = Json::parse(data.at("octants/" + number + ".json"))["levels"].size();
+            for (std::size_t level = 0; level < levels; ++level) {
+                EXPECT_TRUE(data.contains("octants/" + number + "/" + std::to_string(level) + ".bin"));
+            }
+        }
+        const Json view = Json::parse(data.at("view.json"));
+        EXPECT_EQ(view["has"]["search"], false);
+        EXPECT_EQ(view["has"]["near"], false);
+        EXPECT_EQ(view["frames"], finder.frames());
+    }
+}
+
+TEST(PageFile, LeavesOutFramesBeyondTheLimit) {
+    FakeFinder finder(21, 20, 60);
+    SceneSource whole(contents_of(60, true), finder), part(contents_of(60, true), finder);
+    for (SceneSource* source : {&whole, &part}) {
+        source->load({});
+        source->count_frames({}, {});
+    }
+    const std::uint64_t html = octopair::viewer::page().size(), most = html + (page_of(whole).size() - html) / 2;
+    const std::string page = page_of(part, most);
+    EXPECT_LE(page.size(), most);
+    const auto data = data_of(page);
+    const Json view = Json::parse(data.at("view.json"));
+    const std::uint64_t frames = view["frames"];
+    EXPECT_GT(frames, 5u);
+    EXPECT_LT(frames, 15u);
+    EXPECT_EQ(view["notices"][0], "Only the first " + std::to_string(frames) + " of 20 frames are in this file.");
+    for (std::uint64_t f = 0; f < 20; ++f) {
+        EXPECT_EQ(data.contains("frame/" + std::to_string(f) + ".f32"), f < frames) << f;
+    }
+    const Json timeline = Json::parse(data.at("timeline.json"));
+    EXPECT_EQ(timeline["frames"], frames);
+    EXPECT_EQ(timeline["done"], frames);
+    EXPECT_EQ(timeline["pairs"].size(), frames);
+}
+
+TEST(PageFile, RefusesAFirstFrameBeyondTheLimit) {
+    FakeFinder finder(22, 3, 60);
+    SceneSource source(contents_of(60, true), finder);
+    source.load({});
+    bool wrote = false;
+    EXPECT_THROW(write_page(
+                     source, [&](std::string_view) { wrote = true; }, 1000),
+                 Error);
+    EXPECT_FALSE(wrote);
+}
+
+TEST(PageFile, TextsOfTheInputCannotBecomePage) {
+    FakeFinder finder(23, 1, 40);
+    const auto page_with = [&](const std::string& text) {
+        SceneContents contents = contents_of(40, false);
+        contents.title = text;
+        contents.names.assign(40, text);
+        contents.notices = {text};
+        contents.unit = text;
+        SceneSource source(std::move(contents), finder);
+        source.load({});
+        return page_of(source);
+    };
+    const std::string hostile = "</script><script>alert(1)</script><!-- data --><!--\"'\xff\xfe\xc3";
+    const std::string page = page_with(hostile);
+    EXPECT_EQ(without_data(page), without_data(page_with("plain")));
+    const Json view = Json::parse(data_of(page).at("view.json"));
+    EXPECT_TRUE(view["title"].get<std::string>().starts_with("</script><script>alert(1)"));
+}
+
+TEST(PageFile, SceneWithShapes) {
+    FakeFinder finder(24, 1, 4);
+    SceneContents contents = contents_of(4, false);
+    contents.shapes.push_back({"mesh", {100, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    contents.geometry = {0, SceneContents::no_shape, 0, 0};
+    contents.poses.resize(4);
+    contents.poses[2].rows = {{{0, -1, 0, 5}, {1, 0, 0, 6}, {0, 0, 1, 7}}};
+    contents.groups = {1, 2, 4, 8};
+    SceneSource source(contents, finder);
+    source.load({});
+    const Json view = json_of(source, "view.json");
+    std::vector<std::uint32_t> shown = {0, 1, 2, 3};
+    if (const std::string body = body_of(source, "shown.u32"); body != "none") shown = array_of<std::uint32_t>(body);
+    const auto geometry = array_of<std::uint32_t>(body_of(source, "geometry.u32"));
+    const auto groups = array_of<std::uint32_t>(body_of(source, "groups.u32"));
+    const auto poses = array_of<float>(body_of(source, "poses/0.f32"));
+    ASSERT_EQ(poses.size(), 48u);
+    for (std::size_t row = 0; row < 4; ++row) {
+        EXPECT_EQ(geometry[row], contents.geometry[shown[row]]);
+        EXPECT_EQ(groups[row], contents.groups[shown[row]]);
+        // A vertex of the shape (relative to its centre) is where the pose places the vertex of the whole shape.
+        const auto& pose = contents.poses[shown[row]].rows;
+        const std::array<double, 3> vertex = {1, 2, 3};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double centre = geometry[row] == SceneContents::no_shape ? 0 : 100;
+            const double expected = pose[axis][0] * (vertex[0] + centre) + pose[axis][1] * vertex[1] +
+                                    pose[axis][2] * vertex[2] + pose[axis][3] - view["origin"][axis].get<double>();
+            const float* numbers = &poses[12 * row];
+            const double found = double(numbers[axis]) * vertex[0] + double(numbers[3 + axis]) * vertex[1] +
+                                 double(numbers[6 + axis]) * vertex[2] + double(numbers[9 + axis]);
+            EXPECT_NEAR(found, expected, 1e-4);
+        }
+    }
+    EXPECT_EQ(body_of(source, "shape/0").size(), 36u + 12u);
+    EXPECT_EQ(body_of(source, "shape/1"), "none");
+    const auto data = data_of(page_of(source));
+    for (const char* address : {"geometry.u32", "groups.u32", "shapes.json", "shape/0", "poses/0.f32"}) {
+        EXPECT_TRUE(data.contains(address)) << address;
+    }
+}
+
+}  // namespace
+
+}  // namespace octopair::test
