@@ -19,12 +19,7 @@
 
 namespace octopair::cli {
 
-void add_scene_options(Command& command, DetectRequest& request) {
-    command
-        .add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or mesh files; several files form one set")
-        .required();
-    command.add_option("--against", request.against, "find only pairs of an object a of INPUT and an object b of FILE")
-        .type_name("FILE");
+void add_box_options(Command& command, DetectRequest& request) {
     command
         .add_option(
             "--objects",
@@ -39,6 +34,15 @@ void add_scene_options(Command& command, DetectRequest& request) {
             "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
             "largest gap per axis at which two boxes still form a pair (default 0)")
         .type_name("M");
+}
+
+void add_scene_options(Command& command, DetectRequest& request) {
+    command
+        .add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or mesh files; several files form one set")
+        .required();
+    command.add_option("--against", request.against, "find only pairs of an object a of INPUT and an object b of FILE")
+        .type_name("FILE");
+    add_box_options(command, request);
     command.add_option("--padding", request.padding, "clearance of each object: an array of shape (n,)")
         .type_name("FILE.npy");
 }

@@ -8,6 +8,9 @@ namespace octopair::cli {
 
 class Command;
 
+/// Adds --objects and --margin.
+void add_box_options(Command& command, DetectRequest& request);
+
 /// Adds INPUT, --against, --objects, --margin and --padding.
 void add_scene_options(Command& command, DetectRequest& request);
 

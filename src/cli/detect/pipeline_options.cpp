@@ -45,15 +45,8 @@ std::uint32_t parse_max_contacts(const std::string& text) {
 
 void add_report_options(Command& command, PipelineRequest& request) {
     command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
-    command
-        .add_option(
-            "--up",
-            [&request](const std::string& word) {
-                check_value("--up", {"y", "z"}, word);
-                request.space.up = word == "y" ? io::UpAxis::y : io::UpAxis::z;
-            },
-            "axis that points up in the report: y or z (default: that of the file format, or else z)")
-        .type_name("AXIS");
+    add_up_option(command, request,
+                  "axis that points up in the report: y or z (default: that of the file format, or else z)");
     command
         .add_option(
             "--unit",
@@ -87,13 +80,30 @@ std::vector<std::string_view> stage_names() {
                          : std::vector<std::string_view>{"pairs"};
 }
 
-void add_pipeline_options(Command& command, PipelineRequest& request) {
+void add_stage_option(Command& command, PipelineRequest& request, const std::string& description) {
     command
         .add_option(
-            "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); },
-            "last stage of the pipeline: pairs of boxes, objects that meet (default for mesh and JSON files), or "
-            "features, which adds contacts")
+            "--stage", [&request](const std::string& word) { request.stage = parse_stage(word); }, description)
         .type_name("STAGE");
+}
+
+void add_up_option(Command& command, PipelineRequest& request, const std::string& description) {
+    command
+        .add_option(
+            "--up",
+            [&request](const std::string& word) {
+                check_value("--up", {"y", "z"}, word);
+                request.space.up = word == "y" ? io::UpAxis::y : io::UpAxis::z;
+            },
+            description)
+        .type_name("AXIS");
+}
+
+void add_pipeline_options(Command& command, PipelineRequest& request) {
+    add_stage_option(
+        command, request,
+        "last stage of the pipeline: pairs of boxes, objects that meet (default for mesh and JSON files), or "
+        "features, which adds contacts");
     command
         .add_option(
             "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },

@@ -34,6 +34,10 @@ struct PipelineRequest {
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
+/// Add --stage and --up. `description` is the help text.
+void add_stage_option(Command& command, PipelineRequest& request, const std::string& description);
+void add_up_option(Command& command, PipelineRequest& request, const std::string& description);
+
 /// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent,
 /// --baseline, --report, --up and --unit.
 void add_pipeline_options(Command& command, PipelineRequest& request);

@@ -5,6 +5,7 @@
 
 #include "cli/command/file_options.hpp"
 #include "cli/command/option_values.hpp"
+#include "cli/detect/detect_options.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/view/result_file.hpp"
 #include "io/formats.hpp"
@@ -17,40 +18,12 @@ namespace {
 [[noreturn]] void refuse_view(const std::string& what) { throw Error(ErrorCode::usage, what); }
 
 void add_search_options(Command& command, DetectRequest& request) {
-    command
-        .add_option(
-            "--objects",
-            [&request](const std::string& word) {
-                check_value("--objects", {"node", "triangle"}, word);
-                request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
-            },
-            "objects of a mesh file: node (default) or triangle")
-        .type_name("WHAT");
-    command
-        .add_option(
-            "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
-            "largest gap per axis at which two boxes still form a pair (default 0)")
-        .type_name("M");
-    command
-        .add_option(
-            "--stage",
-            [&request](const std::string& word) {
-                check_value("--stage", stage_names(), word);
-                request.pipeline.stage = word == "pairs"     ? Stage::pairs
-                                         : word == "objects" ? Stage::objects
-                                                             : Stage::features;
-            },
-            "last stage of the pipeline: pairs, objects or features (default: features for mesh and JSON files)")
-        .type_name("STAGE");
-    command
-        .add_option(
-            "--up",
-            [&request](const std::string& word) {
-                check_value("--up", {"y", "z"}, word);
-                request.pipeline.space.up = word == "y" ? io::UpAxis::y : io::UpAxis::z;
-            },
-            "axis that points up: y or z (default: that of the file format, or else z)")
-        .type_name("AXIS");
+    add_box_options(command, request);
+    add_stage_option(
+        command, request.pipeline,
+        "last stage of the pipeline: pairs, objects or features (default: features for mesh and JSON files)");
+    add_up_option(command, request.pipeline,
+                  "axis that points up: y or z (default: that of the file format, or else z)");
     command
         .add_option(
             "--threads",
