@@ -62,7 +62,7 @@ class View:
             raise UsageError(f"this octopair was built without the viewer: {error}") from error
         if not isinstance(scene, Scene):
             raise InputTypeError(f"scene: it must be an octopair.Scene, not {type(scene).__name__}")
-        settings = {"title": _arrays.text(title, "title"), "names": [_arrays.text(name, "names") for name in names or ()],
+        settings = {"title": _arrays.text(title, "title"), "names": [] if names is None else _arrays.texts(names, "names"),
                     "up": _arrays.text(up, "up"), "unit": _arrays.text(unit, "unit"), "margin": scene.margin,
                     "host": _arrays.text(host, "host"), "port": _arrays.whole(port, "port", 65535), "token": _arrays.text(token, "token"),
                     "frames_per_second": _arrays.real(frames_per_second, "frames_per_second")}

@@ -1,6 +1,8 @@
 // Address, Access and gzip: what a page server reads from requests of any sender.
 #include <gtest/gtest.h>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <random>
 
 #include "viewer/server/access.hpp"
@@ -227,6 +229,24 @@ TEST(ViewAccess, WithoutTokenNoneIntroduces) {
 TEST(ViewAccess, CookieIsClosedToScriptsAndOtherSites) {
     const std::string cookie = Access("127.0.0.1", 8080, "abcdef0123456789").cookie();
     EXPECT_EQ(cookie, "octopair_8080=abcdef0123456789; Path=/; HttpOnly; SameSite=Strict");
+}
+
+TEST(ViewAccess, ConnectionsOfThisUser) {
+    namespace asio = boost::asio;
+    using Tcp = asio::ip::tcp;
+    asio::io_context io;
+    for (const char* host : {"127.0.0.1", "::1"}) {
+        Tcp::acceptor acceptor(io, {asio::ip::make_address(host), 0});
+        Tcp::socket peer(io);
+        peer.connect(acceptor.local_endpoint());
+        Tcp::socket served = acceptor.accept();
+        const viewer::Endpoint from{host, peer.local_endpoint().port()}, to{host, acceptor.local_endpoint().port()};
+        EXPECT_TRUE(is_own_user(from, to)) << host;
+        // The same ports at other addresses are another connection.
+        EXPECT_FALSE(is_own_user({"127.0.0.2", from.port}, to));
+        EXPECT_FALSE(is_own_user(from, {"127.0.0.2", to.port}));
+        EXPECT_FALSE(is_own_user(to, {host, 1}));
+    }
 }
 
 TEST(ViewGzip, GivesTheBytesBack) {

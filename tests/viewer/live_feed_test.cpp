@@ -245,6 +245,22 @@ TEST(LiveFeed, ALongTimeApartComesAWholeFrame) {
     scene.expect_shown_by(far, feed.origin(), 1000);
 }
 
+TEST(LiveFeed, TheOriginIsThatOfTheFirstObjects) {
+    LiveFeed feed;
+    feed.put(state_of({}, {}, 0));
+    LivePage page;
+    refresh(page, feed);
+    const std::vector<Box3d> boxes = {{{4e6, 4e6, 4e6}, {4e6 + 0.125, 4e6 + 0.25, 4e6 + 0.5}}};
+    feed.put(state_of(boxes, {}, 1));
+    refresh(page, feed);
+    EXPECT_TRUE(page.is_whole);
+    EXPECT_NEAR(feed.origin()[0], 4e6, 1);
+    const viewer::RelativeBox expected = viewer::relative(boxes[0], feed.origin());
+    EXPECT_EQ(page.rows.at(0).ends[0], expected.ends[0]);
+    EXPECT_EQ(page.rows.at(0).ends[5], expected.ends[5]);
+    EXPECT_EQ(expected.ends[3] - expected.ends[0], 0.125F);
+}
+
 TEST(LiveFeed, MorePairsThanListed) {
     constexpr std::uint32_t objects = 1000;  // 499,500 pairs
     const std::vector<Box3d> boxes(objects, Box3d{{0, 0, 0}, {1, 1, 1}});

@@ -481,14 +481,14 @@ class Endurance(InFolder):
                 connection.settimeout(60)
                 connection.sendall(b'GET / HT')
             self.assertEqual(view.get('view.json')['objects'], 200)
-            while time.monotonic() < begin + 20:
-                time.sleep(5)
+            for _ in range(3):
+                time.sleep(1)
                 for connection in connections:
                     connection.sendall(b'T')
-            for connection in connections:
+            for connection in connections:  # bytes that come slowly do not keep a connection open
                 self.assertEqual(read_all(connection), b'')
                 connection.close()
-            self.assertLess(time.monotonic() - begin, 45)
+            self.assertLess(time.monotonic() - begin, 20)
 
     def test_clients_that_do_not_read(self):
         scene_files.save_boxes(self.path('large.npy'), scene_files.random_boxes(2, 20_000, 200.0))
@@ -584,6 +584,18 @@ class BadInput(InFolder):
         self.refused(3, self.write('bad.json', '{'))
         self.refused(3, self.write('bad.csv', 'a,b,c\n1,2'))
         self.assertEqual(self.run_program('view', '--no-browser').returncode, 2)
+
+    def test_options(self):
+        scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))
+        good, pairs = self.path('good.npy'), self.write('pairs.csv', 'a,b\n0,1\n')
+        for stage in ('objects', 'features'):
+            self.assertIn('only boxes', self.refused(2, good, '--stage', stage))
+        for options in (('--margin', '1'), ('--stage', 'pairs'), ('--objects', 'triangle')):
+            self.assertIn(options[0], self.refused(2, good, pairs, *options))
+        self.assertIn('alone', self.refused(2, good, 'unix:none.socket'))
+        self.assertIn('--port', self.refused(2, good, '--export', self.path('x.html'), '--port', '7'))
+        for address in ('foo:1', ':8080', '8080'):
+            self.refused(2, good, '--listen', address)
 
     def test_results(self):
         scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))

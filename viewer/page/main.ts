@@ -178,6 +178,7 @@ class Page {
     const first = this.firstFrame;
     const rowsChanged = live.apply(frame);
     if (rowsChanged && !first) this.readRows(app);
+    if (rowsChanged || first) this.readPlace(app);
     app.frameChanged(rowsChanged);
     const {began = 0, ended = 0} = app.model.frame.info;
     this.timeline?.append(frame.frame, frame.pairs, began, ended, frame.stepSeconds);
@@ -186,6 +187,11 @@ class Page {
     first?.();
     // The next frame is asked for when this one is drawn.
     requestAnimationFrame(() => requestAnimationFrame(() => this.feed?.want()));
+  }
+
+  // The origin is known when the first objects are there, which may be after the page was opened.
+  private readPlace(app: App): void {
+    this.source.json<View>('view.json').then(({origin, bounds}) => Object.assign(app.model.view, {origin, bounds})).catch(error => app.fail(error));
   }
 
   // Other objects may be shown: their names and groups are read again.

@@ -44,6 +44,8 @@ Command Command::add_subcommand(const std::string& name, const std::string& desc
 
 void Command::require_subcommand() { app_->require_subcommand(1); }
 
+void Command::ignore_other_arguments() { app_->allow_extras(); }
+
 void Command::footer(const std::string& text) { app_->footer(text); }
 
 void Command::callback(std::function<void()> done) { app_->callback(std::move(done)); }

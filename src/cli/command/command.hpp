@@ -58,6 +58,8 @@ public:
     Command add_subcommand(const std::string& name, const std::string& description);
     /// Requires exactly one of the subcommands on the command line.
     void require_subcommand();
+    /// Accepts any further arguments, and ignores them.
+    void ignore_other_arguments();
     /// Sets the last part of the help.
     void footer(const std::string& text);
     /// Sets a function that runs after all options are parsed.

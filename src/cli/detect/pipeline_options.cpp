@@ -64,15 +64,6 @@ std::vector<std::string> all_inputs(const DetectRequest& request) {
     return inputs;
 }
 
-/// Returns the first input without shapes, or nothing if all inputs have shapes.
-std::optional<std::string> input_of_boxes(const DetectRequest& request) {
-    for (const std::string& input : all_inputs(request)) {
-        const io::SceneFormat format = io::scene_format(input);
-        if (format == io::SceneFormat::npy || format == io::SceneFormat::csv) return input;
-    }
-    return std::nullopt;
-}
-
 }  // namespace
 
 std::vector<std::string_view> stage_names() {
@@ -147,6 +138,14 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
                     "compare with an older result: mark collisions as new, same or gone")
         .type_name("OLD.jsonl");
     add_report_options(command, request);
+}
+
+std::optional<std::string> input_of_boxes(const DetectRequest& request) {
+    for (const std::string& input : all_inputs(request)) {
+        const io::SceneFormat format = io::scene_format(input);
+        if (format == io::SceneFormat::npy || format == io::SceneFormat::csv) return input;
+    }
+    return std::nullopt;
 }
 
 Stage stage_of(const DetectRequest& request) {

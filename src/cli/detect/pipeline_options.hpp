@@ -46,6 +46,9 @@ void add_pipeline_options(Command& command, PipelineRequest& request);
 /// request has no --events; otherwise `pairs`.
 Stage stage_of(const DetectRequest& request);
 
+/// Returns the first input without shapes, or nothing if all inputs have shapes.
+std::optional<std::string> input_of_boxes(const DetectRequest& request);
+
 /// Returns whether the request needs filters.
 bool has_filters(const DetectRequest& request);
 

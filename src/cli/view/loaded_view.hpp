@@ -20,7 +20,7 @@ struct LoadedView {
 struct ViewRequest {
     DetectRequest detect;
     std::string result;  ///< a result file, or empty
-    std::string export_page, screenshot, listen, token_file;
+    std::string export_page, screenshot, listen;
     bool no_browser = false;
     unsigned port = 0;
 };

@@ -1,8 +1,4 @@
 // octopair view in a build without the viewer: says how to get it.
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "cli/subcommands.hpp"
 #include "octopair/error.hpp"
 
@@ -10,9 +6,8 @@ namespace octopair::cli {
 
 void add_view(Command& program, Action&) {
     Command command = program.add_subcommand("view", "show a scene in a browser (not in this build)");
-    const auto words = std::make_shared<std::vector<std::string>>();
-    command.add_option("INPUT", *words, "ignored");
-    command.callback([words] {
+    command.ignore_other_arguments();
+    command.callback([] {
         throw Error(
             ErrorCode::usage,
             "view: this octopair was built without the viewer; `scripts/run view INPUT` builds it, and so does CMake "

@@ -37,21 +37,25 @@ RecordedStep step_of(Scene& scene, const StepResult& result) {
 
 class RecordingFinder final : public viewer::FrameFinder {
 public:
-    /// All steps have `objects` objects. Those that a step does not have yet do not exist in it.
-    RecordingFinder(std::vector<RecordedStep> steps, std::uint64_t objects) : steps_(std::move(steps)) {
-        for (RecordedStep& step : steps_) {
-            std::visit([&](auto& boxes) { boxes.resize(std::size_t(objects)); }, step.boxes);
-            step.exists.resize(std::size_t(objects), 0);
-        }
-    }
+    /// All frames have `objects` objects. Those that a step does not have yet do not exist in it.
+    RecordingFinder(std::vector<RecordedStep> steps, std::uint64_t objects)
+        : steps_(std::move(steps)), objects_(objects) {}
 
     std::uint64_t frames() const override { return steps_.size(); }
 
     viewer::FrameData find(std::uint64_t frame, const ProgressSink&) override {
         const RecordedStep& step = steps_[std::size_t(frame)];
         viewer::FrameData data;
-        std::visit([&](const auto& boxes) { data.boxes = std::span(boxes); }, step.boxes);
+        const auto boxes = std::make_shared<decltype(step.boxes)>(step.boxes);
+        std::visit(
+            [&](auto& all) {
+                all.resize(std::size_t(objects_));
+                data.boxes = std::span<const typename std::decay_t<decltype(all)>::value_type>(all);
+            },
+            *boxes);
+        data.keep = boxes;
         data.exists = step.exists;
+        data.exists.resize(std::size_t(objects_), 0);
         data.pairs = step.pairs;
         data.pair_count = step.pairs.size();
         data.facts.push_back({"seconds.step", step.seconds});
@@ -60,6 +64,7 @@ public:
 
 private:
     std::vector<RecordedStep> steps_;
+    std::uint64_t objects_;
 };
 
 }  // namespace
@@ -90,7 +95,7 @@ LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, co
         bytes += steps.back().bytes();
         objects = std::max(objects, scene.indices());
     };
-    replay(reader, options, stop);
+    const ReplayReport report = replay(reader, options, stop);
     LoadedView view;
     view.contents.title = path.substr(path.rfind('/') + 1);
     view.contents.objects = objects;
@@ -100,6 +105,8 @@ LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, co
         view.contents.notices.push_back(fmt::format("Only the first {} of {} steps are shown, because of their size.",
                                                     grouped(steps.size()), grouped(steps.size() + left_out)));
     }
+    if (report.cut) view.contents.notices.push_back("The recording ends within a call, which is left out.");
+    if (report.unfinished) view.contents.notices.push_back("The recording ends within a step, which was run again.");
     if (steps.empty()) steps.emplace_back();
     view.finder = std::make_unique<RecordingFinder>(std::move(steps), objects);
     return view;

@@ -46,7 +46,9 @@ void append(viewer::SceneContents& contents, viewer::SceneContents&& other) {
         from.resize(std::size_t(other.objects), unknown);
         to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
     };
-    for (std::uint32_t& shape : other.geometry) shape += std::uint32_t(contents.shapes.size());
+    for (std::uint32_t& shape : other.geometry) {
+        if (shape != viewer::SceneContents::no_shape) shape += std::uint32_t(contents.shapes.size());
+    }
     join(contents.names, other.names, std::string());
     join(contents.groups, other.groups, 1u);
     join(contents.geometry, other.geometry, viewer::SceneContents::no_shape);

@@ -322,6 +322,13 @@ void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder&
 
 }  // namespace
 
+bool ResultFile::has_contacts() const {
+    return std::any_of(frames.begin(), frames.end(), [](const ResultFrame& frame) {
+        return std::any_of(frame.findings.begin(), frame.findings.end(),
+                           [](const Finding& finding) { return !finding.contacts.empty(); });
+    });
+}
+
 bool is_result(const std::string& path) {
     const std::string ending = io::ending_of(path);
     if (ending == ".jsonl") return true;

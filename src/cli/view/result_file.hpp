@@ -23,6 +23,9 @@ struct ResultFile {
     bool moving = false;              ///< true if rows have frames
     std::map<std::uint32_t, std::string> names;
     std::uint64_t objects = 0;  ///< 1 more than the largest index
+
+    /// Returns whether a collision of any frame has contacts.
+    bool has_contacts() const;
 };
 
 /// Returns whether the content of a file is a result, not a scene.

@@ -46,10 +46,9 @@ public:
         }
         viewer::FrameData data;
         data.exists.resize(boxes->size());
-        const double size =
-            is_empty(all)
-                ? 0
-                : 0.002 * std::max({all.max[0] - all.min[0], all.max[1] - all.min[1], all.max[2] - all.min[2]});
+        const double extent =
+            is_empty(all) ? 0 : std::max({all.max[0] - all.min[0], all.max[1] - all.min[1], all.max[2] - all.min[2]});
+        const double size = extent > 0 ? 0.002 * extent : 1;
         for (std::size_t i = 0; i < boxes->size(); ++i) {
             Box3d& box = (*boxes)[i];
             data.exists[i] = is_empty(box) ? 0 : 1;
@@ -89,6 +88,7 @@ LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) 
         view.contents.names.resize(std::size_t(result.objects));
         for (const auto& [object, name] : result.names) view.contents.names[object] = name;
     }
+    view.contents.contacts = result.has_contacts();
     view.contents.notices.push_back(
         "A result has no boxes: objects are drawn around their contacts. Name the scene, too, to see its objects.");
     view.finder = std::make_unique<PlacesFinder>(std::move(result));

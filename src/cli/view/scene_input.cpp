@@ -140,10 +140,12 @@ std::string title_of(const std::vector<std::string>& paths) {
 /// Throws: Error{bad_input} if a result has objects or frames that a scene does not have.
 void check_result(const ResultFile& result, const InputSet& set, const std::string& path) {
     if (result.objects > set.scene.objects) {
-        io::refuse(path, fmt::format("object {}: the scene has {} objects", result.objects - 1, set.scene.objects));
+        io::refuse(path, fmt::format("object {}: the scene has only {} objects; is it the scene of this result?",
+                                     result.objects - 1, set.scene.objects));
     }
     if (result.frames.size() > set.scene.frames) {
-        io::refuse(path, fmt::format("frame {}: the scene has {} frames", result.frames.size() - 1, set.scene.frames));
+        io::refuse(path, fmt::format("frame {}: the last frame of the scene is {}", result.frames.size() - 1,
+                                     set.scene.frames - 1));
     }
 }
 
@@ -166,6 +168,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
                     stop);
 #endif
     }
+    if (inputs->set.scene.frames == 0) io::refuse(request.detect.inputs.front(), "the scene has no frames");
     LoadedView view;
     view.contents = shown_scene(inputs->request, inputs->set);
     view.contents.title = title_of(request.detect.inputs);
@@ -177,6 +180,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
     }
     ResultFile result = read_result(request.result, stop);
     check_result(result, inputs->set, request.result);
+    view.contents.contacts = result.has_contacts();
     view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));
     return view;
 }

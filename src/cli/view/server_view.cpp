@@ -7,6 +7,8 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cli/server/server_choice.hpp"
 #include "cli/view/browser.hpp"
@@ -63,37 +65,47 @@ public:
 
     viewer::LiveSource& source() { return source_; }
 
-    /// Watches the scene on a thread, unless a thread does. `server` is borrowed.
+    /// Watches the scene on a thread, unless a thread does. `watcher` and `server` are borrowed.
     void watch(SceneWatcher& watcher, viewer::PageServer& server) {
-        if (thread_.joinable() && !ended_) return;
-        ended_ = false;
-        thread_ = std::jthread([this, &watcher, &server](const std::stop_token& stop) {
-            try {
-                run(watcher, server, stop);
-            } catch (const Error& error) {
-                if (!stop.stop_requested()) server.broadcast(path(), viewer::failed_message(error.what()));
-            }
-            ended_ = true;
-        });
+        {
+            const std::lock_guard lock(mutex_);
+            if (std::exchange(watched_, true)) return;
+        }
+        thread_ = std::jthread([this, &watcher, &server](const std::stop_token& stop) { run(watcher, server, stop); });
     }
 
 private:
     std::string path() const { return "scene/" + id_; }
 
     void run(SceneWatcher& watcher, viewer::PageServer& server, const std::stop_token& stop) {
-        std::uint64_t step = 0;
-        while (!stop.stop_requested() && source_.pages() > 0) {
-            auto snapshot = watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop);
-            if (!snapshot) continue;
-            step = snapshot->step;
-            source_.feed().put(state_of(std::move(*snapshot)));
-            server.notify();
+        try {
+            std::uint64_t step = 0;
+            while (!ends(stop)) {
+                auto snapshot = watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop);
+                if (!snapshot) continue;
+                step = snapshot->step;
+                source_.feed().put(state_of(std::move(*snapshot)));
+                server.notify();
+            }
+        } catch (const std::exception& error) {
+            if (!stop.stop_requested()) server.broadcast(path(), viewer::failed_message(error.what()));
+            const std::lock_guard lock(mutex_);
+            watched_ = false;
         }
+    }
+
+    /// Returns whether no page shows the scene. A page that connects later starts another thread.
+    bool ends(const std::stop_token& stop) {
+        const std::lock_guard lock(mutex_);
+        if (!stop.stop_requested() && source_.pages() > 0) return false;
+        watched_ = false;
+        return true;
     }
 
     std::string id_;
     viewer::LiveSource source_;
-    std::atomic<bool> ended_ = false;
+    std::mutex mutex_;
+    bool watched_ = false;  // guarded by mutex_: a thread watches, and has not decided to end
     std::jthread thread_;
 };
 
@@ -110,50 +122,71 @@ public:
         server_ = &server;
         std::mutex mutex;
         std::condition_variable_any pause;
+        unsigned rounds = 0;
         while (!stop.stop_requested()) {
             std::unique_lock lock(mutex);
             pause.wait_for(lock, stop, 500ms, [] { return false; });
             if (pages_ > 0 && !stop.stop_requested()) update(server, stop);
+            if (++rounds % 20 == 0) free_scenes();
         }
         server_ = nullptr;
-        const std::lock_guard lock(mutex_);
-        watched_.clear();
+        decltype(watched_) scenes;
+        {
+            const std::lock_guard lock(mutex_);
+            ended_ = true;
+            scenes.swap(watched_);
+        }
+        scenes.clear();  // waits for the threads, without the lock
     }
 
     std::optional<viewer::Answer> get(const viewer::Address& address) override {
         if (address.path() == "view.json") return view_answer();
         const std::vector<std::string_view> parts = address.parts();
         if (parts.size() < 3 || parts[0] != "scene") return std::nullopt;
-        WatchedScene* const scene = find(std::string(parts[1]));
+        const ScenePointer scene = find(std::string(parts[1]));
         return scene == nullptr ? std::nullopt : scene->source().get(address.below(parts[0]).below(parts[1]));
     }
 
     std::vector<std::string> greeting(const std::string& path) override {
-        if (!path.empty())
-            return {find(id_in(path)) == nullptr ? viewer::failed_message("The scene has ended.")
+        if (!path.empty()) {
+            return {find(id_in(path)) == nullptr ? viewer::failed_message("There is no such scene.")
                                                  : viewer::ready_message()};
+        }
         const std::lock_guard lock(mutex_);
         return {viewer::ready_message(), message_};
     }
 
     viewer::Message live_frame(const std::string& path, std::int64_t last) override {
-        WatchedScene* const scene = find(id_in(path));
+        const ScenePointer scene = find(id_in(path));
         return scene == nullptr ? nullptr : scene->source().live_frame("", last);
     }
 
     void connected(const std::string& path, bool here) override {
-        if (path.empty()) {
-            here ? ++pages_ : --pages_;
-            return;
-        }
-        WatchedScene* const scene = find(id_in(path));
-        if (scene == nullptr) return;
+        here ? ++pages_ : --pages_;
+        if (path.empty()) return;
+        const ScenePointer scene = find(id_in(path));
+        if (scene == nullptr || !counts(path, here)) return;
         scene->source().connected("", here);
         viewer::PageServer* const server = server_;
         if (here && server != nullptr) scene->watch(scenes_, *server);
     }
 
 private:
+    using ScenePointer = std::shared_ptr<WatchedScene>;
+
+    /// Returns whether a page that leaves was counted when it came. Pages of one path are interchangeable.
+    bool counts(const std::string& path, bool here) {
+        const std::lock_guard lock(mutex_);
+        unsigned& counted = counted_[path];
+        if (here) {
+            ++counted;
+            return true;
+        }
+        if (counted == 0) return false;
+        if (--counted == 0) counted_.erase(path);
+        return true;
+    }
+
     static std::string id_in(const std::string& path) {
         constexpr std::string_view prefix = "scene/";
         return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string();
@@ -187,26 +220,42 @@ private:
                 message_ = message;
             }
             server.broadcast("", std::move(message));
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             if (!stop.stop_requested()) server.broadcast("", viewer::failed_message(error.what()));
         }
     }
 
-    /// Returns a scene that the server has; null if it has none of this id.
-    WatchedScene* find(const std::string& id) {
+    /// Returns a scene by its id; null if the text is no id. The server may have no such scene: then its watcher says so.
+    ScenePointer find(const std::string& id) {
+        constexpr std::size_t id_length = 36;
+        if (id.size() != id_length || id.find_first_not_of("0123456789abcdef-") != std::string::npos) return nullptr;
         const std::lock_guard lock(mutex_);
-        auto& scene = watched_[id];
-        if (scene != nullptr) return scene.get();
+        if (ended_) return nullptr;
+        ScenePointer& scene = watched_[id];
+        if (scene != nullptr) return scene;
+        viewer::SceneContents contents;
+        contents.title = "scene " + id.substr(0, 8) + " of " + address_;
         for (const SceneStatus& status : known_) {
-            if (status.id != id) continue;
-            viewer::SceneContents contents;
-            contents.title = "scene " + id.substr(0, 8) + " of " + address_;
-            contents.margin = status.margin;
-            scene = std::make_unique<WatchedScene>(id, std::move(contents));
-            return scene.get();
+            if (status.id == id) contents.margin = status.margin;
         }
-        watched_.erase(id);
-        return nullptr;
+        scene = std::make_shared<WatchedScene>(id, std::move(contents));
+        return scene;
+    }
+
+    /// Frees the scenes that no page shows.
+    void free_scenes() {
+        std::vector<ScenePointer> freed;
+        std::unique_lock lock(mutex_);
+        for (auto scene = watched_.begin(); scene != watched_.end();) {
+            if (scene->second->source().pages() > 0) {
+                ++scene;
+                continue;
+            }
+            freed.push_back(std::move(scene->second));
+            scene = watched_.erase(scene);
+        }
+        lock.unlock();
+        freed.clear();  // waits for their threads, without the lock
     }
 
     viewer::Answer view_answer() const {
@@ -224,7 +273,9 @@ private:
     std::mutex mutex_;
     std::string message_;             // the latest state, guarded by mutex_ like the members below
     std::vector<SceneStatus> known_;  // the latest list
-    std::map<std::string, std::unique_ptr<WatchedScene>> watched_;
+    std::map<std::string, ScenePointer> watched_;
+    std::map<std::string, unsigned> counted_;  // pages of each path that their scene counts
+    bool ended_ = false;
 };
 
 }  // namespace

@@ -107,8 +107,7 @@ private:
 /// Waits until the source is loaded, and tells the pages.
 void finish_loading(Loading& loading, viewer::PageServer& server, const std::stop_token& stop) {
     try {
-        while (!loading.wait(1h, stop)) {
-        }
+        while (!loading.wait(1h, stop)) throw_if_stopped(stop);
         server.broadcast("", viewer::ready_message());
     } catch (const Error& error) {
         server.broadcast("", viewer::failed_message(error.what()));
@@ -132,10 +131,10 @@ std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& ser
 void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
     viewer::SceneSource source(std::move(view.contents), *view.finder);
     std::optional<viewer::PageServer> server;
+    server.emplace(source, server_options(request));
     Loading loading(source, progress);
     const bool loaded = loading.wait(300ms, stop);  // a wrong input is an error of the command, not of a page
     throw_if_stopped(stop);
-    server.emplace(source, server_options(request));
     loading.report_to(*server);
     present(request, *server);
     if (!loaded) finish_loading(loading, *server, stop);
@@ -200,7 +199,8 @@ void present(const ViewRequest& request, const viewer::PageServer& server) {
     fmt::print("{}\n", server.address());
     std::fflush(stdout);
     if (!request.detect.quiet) fmt::print(stderr, "Open this address in a browser. Ctrl-C ends the viewer.\n");
-    if (!request.no_browser) open_browser(server.address());
+    // The command line of a browser is visible to all users of the machine, so it must not have a token.
+    if (!request.no_browser && request.listen.empty()) open_browser(server.address());
 }
 
 void add_view(Command& program, Action& action) {

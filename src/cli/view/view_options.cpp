@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 
+#include <algorithm>
+#include <array>
+
 #include "cli/command/file_options.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detect_options.hpp"
@@ -60,9 +63,19 @@ bool is_address(const std::string& input) {
            input.find_first_not_of("0123456789", colon + 1) == std::string::npos;
 }
 
+/// Throws: Error{usage} for options of a search. `input` is what is shown without a search.
+void check_no_search(const DetectRequest& request, const std::string& input) {
+    const char* given = nullptr;
+    if (request.margin > 0) given = "--margin";
+    if (request.pipeline.stage) given = "--stage";
+    if (request.mesh_objects == io::MeshObjects::triangle) given = "--objects";
+    if (given != nullptr) refuse_view(fmt::format("{}: not with {}, whose pairs are known", given, input));
+}
+
 void check_server_view(ViewRequest& request) {
     DetectRequest& detect = request.detect;
-    if (detect.inputs.size() > 1) refuse_view("a server is shown alone, not with other inputs");
+    if (detect.inputs.size() > 1) refuse_view("a server is shown alone, without other inputs");
+    check_no_search(detect, "a server");
     if (!request.export_page.empty() || !request.screenshot.empty())
         refuse_view("--export and --screenshot: not with a server");
 #ifdef OCTOPAIR_WITH_SERVICE
@@ -94,6 +107,27 @@ void find_result(ViewRequest& request) {
     request.detect.inputs = std::move(scenes);
 }
 
+/// Checks what is shown besides servers, and sets the last stage of the search.
+void check_scenes(ViewRequest& request) {
+    DetectRequest& detect = request.detect;
+    if (!request.result.empty()) {
+        check_no_search(detect, "a result");
+        detect.pipeline.stage = Stage::pairs;
+        return;
+    }
+    const auto recording = std::find_if(detect.inputs.begin(), detect.inputs.end(), is_recording);
+    if (recording != detect.inputs.end()) {
+        if (detect.inputs.size() > 1) refuse_view(*recording + ": a recording is shown alone, without other inputs");
+        check_no_search(detect, "a recording");
+        return;
+    }
+    set_stage(detect);
+    const auto boxes = input_of_boxes(detect);
+    if (boxes && stage_of(detect) != Stage::pairs) {
+        refuse_view(fmt::format("--stage: {} has only boxes, no shapes; use --stage pairs", *boxes));
+    }
+}
+
 std::string random_token() {
     std::array<unsigned char, 16> bytes;
     if (::getrandom(bytes.data(), bytes.size(), 0) != ssize_t(bytes.size())) {
@@ -120,7 +154,7 @@ void add_view_options(Command& command, ViewRequest& request) {
 
 void check_view_options(ViewRequest& request) {
     DetectRequest& detect = request.detect;
-    if (is_address(detect.inputs.front())) return check_server_view(request);
+    if (std::any_of(detect.inputs.begin(), detect.inputs.end(), is_address)) return check_server_view(request);
 #ifdef OCTOPAIR_WITH_SERVICE
     check_server_choice(detect.engine.server);
 #endif
@@ -136,9 +170,12 @@ void check_view_options(ViewRequest& request) {
     for (const std::string& input : detect.inputs) inputs.push_back({"", input});
     check_outputs(inputs, {{"--export", request.export_page}, {"--screenshot", request.screenshot}});
     find_result(request);
-    if (!detect.inputs.empty() && !is_recording(detect.inputs.front())) set_stage(detect);
-    if (!detect.inputs.empty() && !request.result.empty()) detect.pipeline.stage = Stage::pairs;
-    if (!request.listen.empty()) (void)server_options(request);
+    check_scenes(request);
+    if (request.export_page.empty() && request.screenshot.empty()) {
+        (void)server_options(request);
+    } else if (request.port != 0 || !request.listen.empty()) {
+        refuse_view("--port and --listen: not with --export and --screenshot, which serve no page");
+    }
 }
 
 viewer::PageServerOptions server_options(const ViewRequest& request) {
@@ -147,7 +184,9 @@ viewer::PageServerOptions server_options(const ViewRequest& request) {
     if (request.listen.empty()) return options;
     if (request.port != 0) refuse_view("--port: not with --listen, which has a port");
     const std::size_t colon = request.listen.rfind(':');
-    if (colon == std::string::npos) refuse_view(fmt::format("--listen: {} is not HOST:PORT", request.listen));
+    if (colon == std::string::npos || colon == 0) {
+        refuse_view(fmt::format("--listen: {} is not HOST:PORT, for example 0.0.0.0:8080", request.listen));
+    }
     options.port = std::uint16_t(parse_count("--listen", request.listen.substr(colon + 1), 65535));
     options.host = request.listen.substr(0, colon);
     if (options.host.starts_with('[') && options.host.ends_with(']')) {

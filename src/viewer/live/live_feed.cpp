@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "viewer/scene/frame_answers.hpp"
 
@@ -38,12 +39,17 @@ std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_sho
 
 void LiveFeed::put(LiveState&& next) {
     const std::lock_guard lock(mutex_);
-    bool whole = frame_ < 0 || size_of(next) != size_of(*state_);
-    if (frame_ < 0) {
+    // If memory was lacking before, differences are not complete.
+    const bool incomplete = std::exchange(incomplete_, true);
+    bool whole = incomplete || frame_ < 0 || size_of(next) != size_of(*state_);
+    if (!has_origin_) {
         FrameData data;
         data.boxes = boxes_of(next);
         data.exists = next.exists;
-        origin_ = centre_of(bounds_of(data));
+        const std::optional<Box3d> bounds = bounds_of(data);
+        origin_ = centre_of(bounds.value_or(no_bounds()));
+        has_origin_ = bounds.has_value();
+        whole = true;
     }
     ++frame_;
     const bool listed_before = pairs_.size() <= max_listed_pairs;
@@ -57,6 +63,7 @@ void LiveFeed::put(LiveState&& next) {
         differences_.clear();
         kept_events_ = 0;
         oldest_base_ = frame_;
+        incomplete_ = false;
         return;
     }
     kept_events_ += difference.began.size() + difference.ended.size();
@@ -66,6 +73,7 @@ void LiveFeed::put(LiveState&& next) {
         oldest_base_ = differences_.front().frame;
         differences_.pop_front();
     }
+    incomplete_ = false;
 }
 
 void LiveFeed::update_rows(bool whole) {

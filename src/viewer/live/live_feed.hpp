@@ -51,7 +51,7 @@ public:
 
     /// Returns the latest frame; one without objects before the first.
     FrameData latest() const;
-    /// Returns the origin of all frames. It is the centre of the first one.
+    /// Returns the origin of all frames: the centre of the first one with objects.
     Point3d origin() const;
     std::size_t most_shown() const { return most_shown_; }
 
@@ -81,6 +81,8 @@ private:
     std::shared_ptr<const LiveState> state_ = std::make_shared<LiveState>();
     std::vector<Pair> pairs_;
     Point3d origin_ = {};
+    bool has_origin_ = false;  // some frame had objects
+    bool incomplete_ = false;  // true while put() runs, and after it has failed
     std::vector<RelativeBox> rows_;
     std::vector<std::uint32_t> changed_;  // by row
     std::deque<Difference> differences_;

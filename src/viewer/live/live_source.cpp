@@ -34,7 +34,7 @@ Answer LiveSource::view_answer(const FrameData& data) const {
                         {"shown", std::min(objects, feed_.most_shown())},
                         {"frames", 0},
                         {"origin", json_of(feed_.origin())},
-                        {"bounds", json_of(bounds_of(data))},
+                        {"bounds", json_of(bounds_of(data).value_or(no_bounds()))},
                         {"up", contents_.up},
                         {"unit", contents_.unit},
                         {"margin", contents_.margin},

@@ -28,7 +28,9 @@ void check(const ViewOptions& options) {
     if (!(options.margin >= 0 && std::isfinite(options.margin))) refuse("margin is not a finite number >= 0");
     const bool loopback = options.host == "127.0.0.1" || options.host == "::1";
     if (options.token.empty() ? !loopback : options.token.size() < 16) {
-        refuse("token must have at least 16 letters and digits, because other machines reach the host " + options.host);
+        refuse(
+            "token: it must have at least 16 letters and digits, and is required for hosts other than 127.0.0.1 and "
+            "::1");
     }
     for (const char c : options.token) {
         if (!std::isalnum(static_cast<unsigned char>(c))) refuse("token has characters other than letters and digits");

@@ -35,6 +35,7 @@ struct Fact {
 struct SceneContents {
     std::string title;
     std::uint64_t objects = 0;
+    bool contacts = false;  ///< true if collisions of some frame have contacts
     bool moving = false;    ///< true if pairs begin and end
     bool has_boxes = true;  ///< false if boxes only surround the contacts of their objects
     std::string up, unit;   ///< "y", "z" or empty; for example "m"

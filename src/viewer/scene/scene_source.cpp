@@ -23,6 +23,9 @@ Json number_or_text(const Fact& fact) {
     return whole ? Json(std::int64_t(fact.number)) : Json(fact.number);
 }
 
+/// Frames that are searched for the first objects.
+constexpr std::uint64_t max_empty_frames = 100;
+
 /// Adds facts to an object. "seconds.read" becomes the member "read" of "seconds".
 void add_facts(Json& json, const std::vector<Fact>& facts) {
     for (const Fact& fact : facts) {
@@ -58,11 +61,17 @@ void SceneSource::load(const ProgressSink& progress) {
     first->data = finder_.find(0, progress);
     first->began = first->data.pairs;
     shown_ = ShownObjects(first->data, contents_.objects, most_shown_);
-    bounds_ = bounds_of(first->data);
+    // A first frame may be empty, so the origin is that of the first frame with objects.
+    std::optional<Box3d> bounds = bounds_of(first->data);
+    for (std::uint64_t number = 1; !bounds && number < std::min(frames(), max_empty_frames); ++number) {
+        bounds = bounds_of(finder_.find(number, {}));
+    }
+    bounds_ = bounds.value_or(no_bounds());
+    has_bounds_ = bounds.has_value();
     origin_ = centre_of(bounds_);
     first_pairs_ = first->data.pair_count;
     first_facts_ = first->data.facts;
-    has_contacts_ = has_contacts(first->data.findings);
+    contents_.contacts |= has_contacts(first->data.findings);
     if (shown_.size() < contents_.objects) {
         contents_.notices.push_back(grouped_number(contents_.objects - shown_.size()) + " of " +
                                     grouped_number(contents_.objects) + " boxes are drawn only where you zoom in.");
@@ -119,7 +128,10 @@ void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, c
             const std::lock_guard lock(frames_mutex_);
             FramePointer now = find(number, before);
             const std::lock_guard counts_lock(counts_mutex_);
-            bounds_ = joined(bounds_, bounds_of(now->data));
+            if (const auto bounds = bounds_of(now->data)) {
+                bounds_ = has_bounds_ ? joined(bounds_, *bounds) : *bounds;
+                has_bounds_ = true;
+            }
             counts_.pairs.push_back(now->data.pair_count);
             counts_.began.push_back(now->began.size());
             counts_.ended.push_back(now->ended.size());
@@ -210,7 +222,7 @@ Answer SceneSource::view_answer() const {
                 {"names", !contents_.names.empty()},
                 {"groups", !contents_.groups.empty()},
                 {"shapes", !contents_.shapes.empty()},
-                {"contacts", has_contacts_},
+                {"contacts", contents_.contacts},
                 {"events", contents_.moving},
                 {"search", !export_},
                 {"near", !export_ && shown_.size() < contents_.objects}};

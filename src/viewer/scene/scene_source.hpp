@@ -88,9 +88,9 @@ private:
     ShownObjects shown_;
     Point3d origin_ = {};
     Box3d bounds_ = {};
+    bool has_bounds_ = false;  // some frame had objects
     std::uint64_t first_pairs_ = 0;
     std::vector<Fact> first_facts_;
-    bool has_contacts_ = false;  // of the first frame
     std::optional<Export> export_;
     std::atomic<bool> loading_ = true;
     std::atomic<double> progress_ = 0;

@@ -37,7 +37,7 @@ Point3d centre_of(const Box3d& box) {
     return centre;
 }
 
-Box3d bounds_of(const FrameData& frame) {
+std::optional<Box3d> bounds_of(const FrameData& frame) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Box3d empty{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     Box3d bounds = empty;
@@ -45,7 +45,8 @@ Box3d bounds_of(const FrameData& frame) {
     for (std::size_t i = 0; i < objects; ++i) {
         if (frame.has(i)) bounds = joined(bounds, box_of(frame, i));
     }
-    return bounds.min[0] <= bounds.max[0] ? bounds : Box3d{{0, 0, 0}, {0, 0, 0}};
+    if (!(bounds.min[0] <= bounds.max[0])) return std::nullopt;
+    return bounds;
 }
 
 RelativeBox relative(const Box3d& box, const Point3d& origin) {
@@ -85,7 +86,7 @@ double size_of(const Box3d& box) {
 }  // namespace
 
 ShownObjects::ShownObjects(const FrameData& frame, std::uint64_t objects, std::size_t most) {
-    const Box3d bounds = bounds_of(frame);
+    const Box3d bounds = bounds_of(frame).value_or(no_bounds());
     std::vector<std::uint64_t> keys(std::size_t(objects), ~std::uint64_t(0));
     for (std::size_t i = 0; i < keys.size(); ++i) {
         if (frame.has(i)) keys[i] = octal_key(box_of(frame, i), bounds);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "octopair/objects.hpp"
@@ -21,8 +22,10 @@ struct RelativeBox {
     std::array<float, 6> ends;
 };
 
-/// Returns the smallest box that contains all objects of a frame; a box of extent 0 at 0 if there are none.
-Box3d bounds_of(const FrameData& frame);
+/// Returns the smallest box that contains all objects of a frame; nothing if there are none.
+std::optional<Box3d> bounds_of(const FrameData& frame);
+/// Returns a box of extent 0 at 0, for scenes without objects.
+inline Box3d no_bounds() { return {{0, 0, 0}, {0, 0, 0}}; }
 /// Returns the smallest box that contains two boxes.
 Box3d joined(const Box3d& a, const Box3d& b);
 Point3d centre_of(const Box3d& box);

@@ -1,9 +1,12 @@
 #include "viewer/server/access.hpp"
 
+#include <arpa/inet.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -38,30 +41,54 @@ std::string_view cookie_of(std::string_view header, std::string_view name) {
     return {};
 }
 
-unsigned port_of(const std::string& hex_endpoint) {
-    const std::size_t colon = hex_endpoint.rfind(':');
-    unsigned port = 0;
-    if (colon != std::string::npos) std::sscanf(hex_endpoint.c_str() + colon + 1, "%x", &port);
-    return port;
+/// Returns an endpoint as the tables of the system write it: the 32-bit words of the address and the port, in hexadecimal. With
+/// `ipv6`, an IPv4 address is written as IPv6. Empty if the table cannot have the endpoint.
+std::string table_text(const Endpoint& endpoint, bool ipv6) {
+    std::array<unsigned char, 16> bytes = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0, 0, 0, 0};
+    std::size_t begin = ipv6 ? 0 : 12;
+    if (::inet_pton(AF_INET, endpoint.address.c_str(), bytes.data() + 12) != 1 &&
+        (!ipv6 || ::inet_pton(AF_INET6, endpoint.address.c_str(), bytes.data()) != 1)) {
+        return {};
+    }
+    std::string text;
+    std::array<char, 16> part;
+    for (; begin < bytes.size(); begin += 4) {
+        std::uint32_t word = 0;
+        std::memcpy(&word, bytes.data() + begin, sizeof word);
+        std::snprintf(part.data(), part.size(), "%08X", word);
+        text += part.data();
+    }
+    std::snprintf(part.data(), part.size(), ":%04X", endpoint.port);
+    return text + part.data();
 }
 
 enum class Owner : std::uint8_t { ours, other, unknown };
 
 /// Looks the peer's socket up in a table of the system. A line has the number, the local and the remote endpoint, the state, the
-/// queues, the timer, the retransmissions, and the user.
-Owner owner_in(const char* table, const LoopbackPorts& ports) {
+/// queues, the timer, the retransmissions, and the user. Sockets in other states than "established" have no user.
+Owner owner_in(const char* table, const std::string& peer, const std::string& server) {
+    constexpr std::string_view established = "01";
     std::ifstream lines(table);
     std::string line;
     std::getline(lines, line);
-    while (std::getline(lines, line)) {
+    while (!peer.empty() && std::getline(lines, line)) {
         std::istringstream fields(line);
         std::string number, local, remote, state, queues, timer, retransmissions;
         unsigned long user = 0;
         if (!(fields >> number >> local >> remote >> state >> queues >> timer >> retransmissions >> user)) continue;
-        if (port_of(local) != ports.peer || port_of(remote) != ports.server) continue;
+        if (local != peer || remote != server || state != established) continue;
         return user == 0 || user == ::getuid() ? Owner::ours : Owner::other;
     }
     return Owner::unknown;
+}
+
+/// Returns whether the text is a numeric address.
+bool is_numeric(std::string_view host) {
+    std::string text(host);
+    if (text.starts_with('[') && text.ends_with(']')) text = text.substr(1, text.size() - 2);
+    std::array<unsigned char, 16> bytes;
+    return ::inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+           ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
 }
 
 }  // namespace
@@ -76,18 +103,17 @@ bool Access::is_own(std::string_view host) const {
     const std::string text = lower(host), suffix = ':' + port_;
     if (!text.ends_with(suffix)) return port_ == "80" && (text == host_ || text == "localhost");
     const std::string_view name = std::string_view(text).substr(0, text.size() - suffix.size());
-    const bool loopback = host_ == "127.0.0.1" || host_ == "[::1]";
-    if (name == host_ || (loopback && name == "localhost")) return true;
-    // Listening on all addresses: the token decides. Names are refused, so that no foreign name can lead here.
-    const bool all = host_ == "0.0.0.0" || host_ == "[::]";
-    return all && name.find_first_not_of("0123456789.:abcdef[]") == std::string_view::npos;
+    const bool loopback = host_ == "127.0.0.1" || host_ == "[::1]", all = host_ == "0.0.0.0" || host_ == "[::]";
+    if (name == host_ || ((loopback || all) && name == "localhost")) return true;
+    // A server on all addresses has none of its own. Other names are refused, so that no foreign name can lead to the server.
+    return all && is_numeric(name);
 }
 
 bool Access::has_token(const AccessRequest& request) const {
     if (token_.empty()) return true;
-    constexpr std::string_view bearer = "Bearer ";
+    constexpr std::string_view bearer = "bearer ";
     return equal_secrets(cookie_of(request.cookie, cookie_name_), token_) || introduces(request) ||
-           (request.authorization.starts_with(bearer) &&
+           (lower(request.authorization.substr(0, bearer.size())) == bearer &&
             equal_secrets(request.authorization.substr(bearer.size()), token_));
 }
 
@@ -107,12 +133,13 @@ bool Access::introduces(const AccessRequest& request) const {
 
 std::string Access::cookie() const { return cookie_name_ + '=' + token_ + "; Path=/; HttpOnly; SameSite=Strict"; }
 
-bool is_own_user(const LoopbackPorts& ports) {
-    for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
-        const Owner owner = owner_in(table, ports);
+bool is_own_user(const Endpoint& peer, const Endpoint& server) {
+    for (const bool ipv6 : {false, true}) {
+        const Owner owner =
+            owner_in(ipv6 ? "/proc/net/tcp6" : "/proc/net/tcp", table_text(peer, ipv6), table_text(server, ipv6));
         if (owner != Owner::unknown) return owner == Owner::ours;
     }
-    return !std::ifstream("/proc/net/tcp").is_open();
+    return false;
 }
 
 }  // namespace octopair::viewer

@@ -32,11 +32,13 @@ private:
     std::string host_, port_, token_, cookie_name_;
 };
 
-/// A connection on this machine: ports of the peer and of the server.
-struct LoopbackPorts {
-    std::uint16_t peer, server;
+/// An end of a connection: a numeric address, such as 127.0.0.1 or ::1, and a port.
+struct Endpoint {
+    std::string address;
+    std::uint16_t port;
 };
-/// Returns whether a loopback connection was opened by the user of this process or by root. True where the system does not tell.
-bool is_own_user(const LoopbackPorts& ports);
+/// Returns whether a connection on this machine was opened by the user of this process or by root. The tables of sockets in /proc/net
+/// (Linux) tell; false without them.
+bool is_own_user(const Endpoint& peer, const Endpoint& server);
 
 }  // namespace octopair::viewer

@@ -170,6 +170,7 @@ public:
 
 private:
     static constexpr std::size_t max_message = 1024, max_waiting = 16;
+    static constexpr std::uint64_t max_frame = 0xFFFFFFFF;
 
     void read() {
         socket_.async_read(received_, [self = shared_from_this()](BeastError error, std::size_t) {
@@ -190,7 +191,8 @@ private:
         const auto message = nlohmann::json::parse(text, nullptr, false);
         if (!socket_.got_text() || !message.is_object() || !message.contains("want")) return false;
         const auto& want = message["want"];
-        if (!want.is_number_integer()) return false;
+        if (!want.is_number_integer() || (want.is_number_unsigned() && want.get<std::uint64_t>() > max_frame))
+            return false;
         last_ = want.get<std::int64_t>();
         return true;
     }
@@ -237,7 +239,8 @@ public:
         parser_.emplace();
         parser_->header_limit(max_header);
         parser_->body_limit(0);
-        stream_.expires_after(30s);
+        // Connections without a request must not keep others out for long.
+        stream_.expires_after(std::exchange(first_, false) ? 5s : 30s);
         http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](BeastError error, std::size_t) {
             if (error == http::error::header_limit) return self->refuse(http::status::request_header_fields_too_large);
             if (error == http::error::body_limit) return self->refuse(http::status::payload_too_large);
@@ -272,7 +275,9 @@ private:
             return write(std::move(response));
         }
         if (host_.access().introduces(access)) return redirect(*address);
-        if (address->path().empty() || address->path().ends_with('/')) return write(respond_page(request_));
+        const std::vector<std::string_view> parts = address->parts();
+        const bool of_scene = parts.size() == 3 && parts[0] == "scene" && parts[2].empty();
+        if (address->path().empty() || of_scene) return write(respond_page(request_));
         answer(*address);
     }
 
@@ -299,7 +304,7 @@ private:
     }
 
     void answer(const Address& address) {
-        stream_.expires_never();  // the computation is not the page's fault
+        stream_.expires_never();  // a long computation must not close the connection
         host_.compute([self = shared_from_this(), address] {
             auto response = std::make_shared<Response>(respond_data(self->request_, address, self->host_.source()));
             asio::post(self->stream_.get_executor(), [self, response] { self->write(std::move(*response)); });
@@ -328,6 +333,7 @@ private:
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{max_header + 4096};
     std::optional<http::request_parser<http::empty_body>> parser_;
+    bool first_ = true;  // before the first request
     Request request_;
     Response response_;
 };

@@ -32,7 +32,7 @@ void lower_priority() { ::setpriority(PRIO_PROCESS, 0, 19); }
 Tcp::endpoint endpoint_of(const PageServerOptions& options) {
     boost::system::error_code error;
     const asio::ip::address address = asio::ip::make_address(options.host, error);
-    if (error) throw Error(ErrorCode::usage, '"' + options.host + "\" is not a numeric address, such as 127.0.0.1");
+    if (error) throw Error(ErrorCode::usage, "host '" + options.host + "': not a numeric address, such as 127.0.0.1");
     return {address, options.port};
 }
 
@@ -53,15 +53,18 @@ public:
     }
 
     void stop() {
-        std::promise<void> told;
+        std::promise<void> done;
         asio::post(io_, [&] {
             acceptor_.close();
             pause_.cancel();
             frame_timer_.cancel();
-            for (WebSocket* socket : sockets()) socket->send(closed_message());
-            told.set_value();
+            try {
+                for (WebSocket* socket : sockets()) socket->send(closed_message());
+            } catch (const std::bad_alloc&) {  // the pages see that the connection ends
+            }
+            done.set_value();
         });
-        told.get_future().wait();
+        done.get_future().wait();
         for (int i = 0; i < 20 && busy(); ++i) std::this_thread::sleep_for(10ms);
         pool_.stop();
         pool_.join();
@@ -78,10 +81,15 @@ public:
 
     void notify() {
         if (notified_.exchange(true)) return;
-        asio::post(io_, [this] {
+        try {
+            asio::post(io_, [this] {
+                notified_ = false;
+                offer_frames();
+            });
+        } catch (...) {
             notified_ = false;
-            offer_frames();
-        });
+            throw;
+        }
     }
 
     void broadcast(const std::string& path, std::string message) {
@@ -145,7 +153,7 @@ private:
             try {
                 io_.run();
                 return;
-            } catch (const std::bad_alloc&) {
+            } catch (const std::exception&) {  // a lack of memory or of threads
             }
         }
     }
@@ -159,7 +167,7 @@ private:
         if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
         if (error) {
             throw Error(ErrorCode::io_failed, "cannot listen on " + options.host + ':' + std::to_string(options.port) +
-                                                  ": " + error.message());
+                                                  ": " + error.message() + "; choose another port, or 0 for any");
         }
         port_ = acceptor_.local_endpoint().port();
         return port_;
@@ -188,7 +196,10 @@ private:
         boost::system::error_code error;
         const Tcp::endpoint peer = socket.remote_endpoint(error);
         if (error) return false;
-        return !options_.token.empty() || (peer.address().is_loopback() && is_own_user({peer.port(), port_}));
+        const Tcp::endpoint here = socket.local_endpoint(error);
+        return !options_.token.empty() ||
+               (!error && peer.address().is_loopback() &&
+                is_own_user({peer.address().to_string(), peer.port()}, {here.address().to_string(), here.port()}));
     }
 
     /// Returns the pages. The list may change while it is used, because a message may end a connection.
