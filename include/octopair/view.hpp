@@ -1,8 +1,8 @@
 // View: shows a running scene in a browser, step by step.
 //
 // Page      A server in this process serves the page at address(). The page shows boxes, pairs, events, octants and times of steps.
-// Pace      The scene never waits for a page. show() copies the boxes at most ViewOptions::frames_per_second times a second, and so
-//           seldom that copying takes at most a hundredth of the time. Pages that read slowly, or not at all, get fewer frames.
+// Pace      The scene never waits for a page. show() copies the boxes at most ViewOptions::frames_per_second times a second. Copying
+//           takes at most a hundredth of the time. Pages that read slowly, or not at all, get fewer frames.
 //           The last steps before a pause may be missing on pages, until show() is called again.
 //           The threads of the server have a low priority. Without a page, a call of show() takes well under a microsecond,
 //           except once a second.

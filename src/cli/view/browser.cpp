@@ -98,7 +98,7 @@ void open_browser(const std::string& address) {
     if (!program) return;
     const pid_t child = ::fork();
     if (child == 0) {
-        // A second child, which init adopts, so that nobody must wait for the browser.
+        // The system is the parent of this second child, so this program need not wait for it.
         sigset_t none;
         sigemptyset(&none);
         ::sigprocmask(SIG_SETMASK, &none, nullptr);

@@ -121,7 +121,7 @@ SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
 
 void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, const std::stop_token& stop) {
     using Clock = std::chrono::steady_clock;
-    auto told = Clock::now();
+    auto last_call = Clock::now();
     FramePointer before;
     for (std::uint64_t number = 0; number < frames() && !stop.stop_requested(); ++number) {
         {
@@ -138,8 +138,8 @@ void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, c
             before = std::move(now);
         }
         const bool last = number + 1 == frames();
-        if (more && (last || Clock::now() - told > std::chrono::milliseconds(200))) {
-            told = Clock::now();
+        if (more && (last || Clock::now() - last_call > std::chrono::milliseconds(200))) {
+            last_call = Clock::now();
             more(number + 1);
         }
     }
@@ -175,7 +175,6 @@ std::optional<Answer> SceneSource::get(const Address& address) {
     const auto object = whole_number(parts[2].substr(0, parts[2].rfind('.')));
     if (parts[0] != "object" || !parts[2].ends_with(".json") || !object || *object >= contents_.objects)
         return std::nullopt;
-    // An octree of many objects takes a while, and only the code needs it.
     return object_answer(shown_frame(*found), std::uint32_t(*object), &octants(*found));
 }
 

@@ -95,7 +95,7 @@ private:
     std::atomic<bool> loading_ = true;
     std::atomic<double> progress_ = 0;
     std::mutex frames_mutex_;        // guards the finder and the kept frames
-    std::deque<FramePointer> kept_;  // the latest last
+    std::deque<FramePointer> kept_;  // in the order in which they were found
     struct Counts {
         std::vector<std::uint64_t> pairs, began, ended;
     };

@@ -1,7 +1,7 @@
 // Connections of a page server: requests by HTTP, and WebSockets.
 //
-// A connection owns itself: it lives while one of its operations is pending. All run on the thread of the host's io_context,
-// except ConnectionHost::compute().
+// A connection exists until its last pending operation has ended. All of its code runs on the thread of the host's io_context, except
+// the work of ConnectionHost::compute().
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>

@@ -30,7 +30,7 @@ public:
     PageServer(Source& source, const PageServerOptions& options);
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;
-    /// Tells the pages that no more data come, and ends.
+    /// Sends a last message to all pages, and ends.
     ~PageServer();
 
     /// Returns the address for the browser, with the token if there is one.

@@ -26,7 +26,7 @@ public:
     virtual std::vector<std::string> greeting(const std::string& path) = 0;
     /// Returns a live frame newer than `last` (-1: any); null if there is none yet. Must be fast.
     virtual Message live_frame(const std::string& path, std::int64_t last) = 0;
-    /// Tells that a page has connected to the WebSocket at `path`, or that it is gone.
+    /// Called when a page has connected to the WebSocket at `path` (`here`), and when this connection has ended.
     virtual void connected(const std::string& /*path*/, bool /*here*/) {}
     /// True while the data cannot be read yet.
     virtual bool loading() const { return false; }
