@@ -77,7 +77,8 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
     EXPECT_EQ(data_of(text, "others"), json::parse("[[9,9,9,9,9,9]]"));
     EXPECT_EQ(data_of(text, "gone"), json::array());
     EXPECT_EQ(data_of(text, "words"), json::parse(R"([""])"));
-    EXPECT_EQ(data_of(text, "summary"), json::parse(R"({"title":"car.glb","join":false,"notes":["n"],"unit":"m","up":1,"first":4,
+    EXPECT_EQ(data_of(text, "summary"),
+              json::parse(R"({"title":"car.glb","join":false,"notes":["n"],"unit":"m","up":1,"first":4,
         "facts":[["collisions","2"],["clearance","1"],["penetrating","1"],["time","3 s"]]})"));
     EXPECT_TRUE(text.starts_with("<!DOCTYPE html>"));
     EXPECT_TRUE(text.ends_with("</html>\n"));

@@ -2,11 +2,13 @@
 
 #include "octopair/scene_watcher.hpp"
 
+#include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "octopair/error.hpp"
 #include "service/client/connection.hpp"
 #include "service/client/raw_stream.hpp"
 #include "service/client/received_snapshot.hpp"
@@ -91,6 +93,7 @@ std::vector<SceneStatus> SceneWatcher::list(std::stop_token stop) {
     }
 }
 
+// NOLINTNEXTLINE(readability-function-size): the stop token is the fifth, as in all calls of a client
 std::optional<SceneSnapshot> SceneWatcher::next(const std::string& id, std::uint64_t after_step,
                                                 std::chrono::duration<double> most, std::uint64_t pair_limit,
                                                 std::stop_token stop) {
