@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "octopair/error.hpp"
+#include "viewer/scene/collision_table.hpp"
 #include "viewer/scene/frame_answers.hpp"
 
 namespace {
