@@ -132,6 +132,8 @@ private:
             for (; next < rows_.size() && rows_[next].frame == number; ++next) {
                 (rows_[next].event == "begin" ? began : ended).push_back(rows_[next].pair);
             }
+            for (auto* events : {&began, &ended})
+                events->erase(std::unique(events->begin(), events->end()), events->end());
             std::set_difference(pairs.begin(), pairs.end(), ended.begin(), ended.end(), std::back_inserter(remaining));
             std::set_union(remaining.begin(), remaining.end(), began.begin(), began.end(), std::back_inserter(merged));
             pairs = merged;
