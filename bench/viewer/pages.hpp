@@ -11,7 +11,7 @@ enum class Reading : std::uint8_t {
     first  ///< reads one frame, requests a whole frame, and never reads again
 };
 
-/// What the pages of a process got.
+/// Number and sizes of the live frames that the pages of a process received.
 struct PageBytes {
     std::uint64_t frames = 0;      ///< number of all frames
     double median_difference = 0;  ///< median number of bytes of the frames that are differences

@@ -26,7 +26,7 @@ Box<Real> union_of(Box<Real> a, const Box<Real>& b) {
     return a;
 }
 
-/// What a scene should hold, by index.
+/// Expected objects of a scene, by index.
 template <typename Real>
 struct Expected {
     struct Slot {

@@ -242,7 +242,7 @@ TEST(ViewAccess, ConnectionsOfThisUser) {
         Tcp::socket served = acceptor.accept();
         const viewer::Endpoint from{host, peer.local_endpoint().port()}, to{host, acceptor.local_endpoint().port()};
         EXPECT_TRUE(is_own_user(from, to)) << host;
-        // The same ports at other addresses are another connection.
+        // A connection between other addresses is another one, even with equal ports.
         EXPECT_FALSE(is_own_user({"127.0.0.2", from.port}, to));
         EXPECT_FALSE(is_own_user(from, {"127.0.0.2", to.port}));
         EXPECT_FALSE(is_own_user(to, {host, 1}));

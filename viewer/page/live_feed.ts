@@ -16,7 +16,7 @@ export interface LiveFrame {
   pairs: number;
   listed: number;
   stepSeconds: number;
-  // Of a whole frame.
+  // Objects of the rows. Only a whole frame has them.
   shownObjects: Uint32Array | null;
   // All boxes of a whole frame, or those of `movedRows`.
   boxes: Float32Array;

@@ -16,7 +16,7 @@ struct LoadedView {
     std::unique_ptr<viewer::FrameFinder> finder;
 };
 
-/// What `octopair view` gets on the command line. `detect` has the inputs of a scene and the options of the search.
+/// Command line of `octopair view`. `detect` has the inputs of a scene and the options of the search.
 struct ViewRequest {
     DetectRequest detect;
     std::string result;  ///< a result file, or empty

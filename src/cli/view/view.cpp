@@ -42,7 +42,8 @@ LoadedView load(const ViewRequest& request, ProgressLine& progress, const std::s
     return load_scene(request, progress, stop);
 }
 
-void sleep_until(const std::stop_token& stop) {
+/// Waits until a stop is requested.
+void wait_until_stopped(const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any never;
     std::unique_lock lock(mutex);
@@ -140,7 +141,7 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     if (!loaded) finish_loading(loading, *server, stop);
     std::jthread counting;
     if (source.moving()) counting = start_counting(source, *server);
-    sleep_until(stop);
+    wait_until_stopped(stop);
 }
 
 /// Writes the page of --export and the picture of --screenshot.
