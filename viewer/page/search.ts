@@ -4,7 +4,7 @@ import type {SceneModel} from './scene_model.ts';
 import type {Source} from './source.ts';
 import type {Found} from './types.ts';
 
-// As many as a server answers.
+// Largest number of results, the same as in the answers of a server.
 const listed = 50;
 
 export class Search {
