@@ -109,6 +109,7 @@ class StaticScene {
       send({event: 'progress', what: 'reading', done: 0.2});
       setTimeout(() => send({event: 'failed', message: 'boxes.npy: object 3: the minimum of x is above the maximum'}), 200);
     }
+    if (this.isReady) send({event: 'ready'});
     if (this.kind !== 'loading') return undefined;
     let done = 0;
     const timer = setInterval(() => {
@@ -346,10 +347,6 @@ class LiveScene extends StaticScene {
     return {...super.view(), kind: 'live', has: {...super.view().has, names: false, groups: false, events: true, contacts: false}};
   }
 
-  connect() {
-    return undefined;
-  }
-
   receive(message, send) {
     const give = () => send(this.liveFrame(message.want));
     if (message.want < this.now) give();
@@ -388,8 +385,11 @@ class ServerScene {
   }
 
   connect(send) {
+    send({event: 'ready'});
+    this.send = send;
     let progress = 0.3;
     const report = () => {
+      if (this.silent) return;
       progress = Math.min(1, progress + 0.05);
       const job = {owner: 'anna', queued_before: 0, count_only: false, error: '', progress: 0, pairs: 0, objects: 1000};
       send({event: 'jobs', jobs: [{...job, id: 'job-1', state: 'running', progress}, {...job, id: 'job-2', state: 'queued', queued_before: 1, count_only: true},

@@ -3,8 +3,8 @@
 // Scenes    Those of RemoteScene objects, in any program. A scene is listed after its first call has reached the server, and until
 //           its client ends. A client sees its own scenes. With the role reader it sees those of one owner. With the role operator
 //           it lists the scenes of all owners, but next() throws Error{usage}, as reading a job's result does (docs/server.md).
-// Steps     A watcher receives some of the steps. The server copies a scene at most once in 20 ms and for at most 1% of the time of
-//           the scene, so steps of large scenes are skipped. A scene waits for none of its watchers.
+// Steps     A watcher receives some of the steps. The server copies a scene at most once in 20 ms, and for at most 1% of the scene's
+//           time, so it skips steps of large scenes. A scene waits for none of its watchers.
 // Faults    If the server becomes unreachable, a call repeats its request until the server answers or ClientOptions::patience
 //           has passed; before the first contact, ClientOptions::connect_timeout. Scenes get other ids on the next server.
 // Errors    octopair::Error, as from connect() (client.hpp). Error{bad_input} for a scene that the caller does not see, or that has

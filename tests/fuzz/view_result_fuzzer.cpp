@@ -21,8 +21,9 @@ void require(bool holds) {
 }
 
 void check(const cli::ResultFile& result) {
-    require(!result.frames.empty());
-    for (const cli::ResultFrame& frame : result.frames) {
+    require(result.frames.size() >= 1);
+    for (std::uint64_t number = 0; number < std::min<std::uint64_t>(result.frames.size(), 50); ++number) {
+        const cli::ResultFrame frame = result.frames.frame(number);
         require(frame.findings.empty() || frame.findings.size() == frame.pairs.size());
         require(std::is_sorted(frame.pairs.begin(), frame.pairs.end()));
         require(std::adjacent_find(frame.pairs.begin(), frame.pairs.end()) == frame.pairs.end());

@@ -209,6 +209,24 @@ class Answers(InFolder):
                 for number, boxes in enumerate(frames):
                     self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), scene_files.true_pairs(boxes), (name, number))
 
+    def test_results_with_repeated_events(self):
+        rows = [(0, 'begin', 1, 2), (0, 'begin', 1, 2), (1, 'end', 0, 1), (1, 'begin', 0, 1), (2, 'begin', 2, 1), (2, 'end', 2, 3),
+                (3, 'end', 1, 2), (3, 'begin', 1, 2), (4, 'end', 1, 2), (4, 'end', 1, 2), (6, 'begin', 1, 2), (7, 'end', 0, 1)]
+        expected = [{(1, 2)}, {(0, 1), (1, 2)}, {(0, 1), (1, 2)}, {(0, 1), (1, 2)}, {(0, 1)}, {(0, 1)}, {(0, 1), (1, 2)}, {(1, 2)}]
+        with open(self.path('events.csv'), 'w', encoding='utf-8') as file:
+            file.write('frame,event,a,b\n' + ''.join(f'{frame},{event},{a},{b}\n' for frame, event, a, b in reversed(rows)))
+        with self.view(self.path('events.csv')) as view:
+            for number, pairs in enumerate(expected):
+                self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), sorted(pairs), number)
+
+    def test_results_by_frame(self):
+        rows = [(2, 3, 4), (0, 5, 1), (2, 0, 9), (0, 1, 5), (2, 3, 4)]
+        with open(self.path('rows.csv'), 'w', encoding='utf-8') as file:
+            file.write('frame,a,b\n' + ''.join(f'{frame},{a},{b}\n' for frame, a, b in rows))
+        with self.view(self.path('rows.csv')) as view:
+            for number, pairs in enumerate([[(1, 5)], [], [(0, 9), (3, 4)]]):
+                self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), pairs, number)
+
 
 class Export(InFolder):
     @staticmethod

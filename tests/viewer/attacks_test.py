@@ -372,12 +372,18 @@ class BadInput(InFolder):
         self.refused(3, self.path('wrong.npy'))
         self.refused(2, self.write('one.jsonl', '{"a":0,"b":1}\n'), self.write('two.jsonl', '{"a":0,"b":1}\n'))
 
+    def test_results_with_wrong_events(self):
+        begin = '{"frame":0,"event":"begin","a":0,"b":1}\n'
+        self.assertIn('line 2', self.refused(3, self.write('word.jsonl', begin + begin.replace('begin', 'began'))))
+        self.assertIn('some have none', self.refused(3, self.write('mixed.jsonl', begin + '{"frame":1,"a":0,"b":1}\n')))
+
     def test_small_results_do_not_take_all_memory(self):
         self.refused(5, self.write('far.jsonl', '{"a":0,"b":4294967294}\n'))
         rows = ''.join(f'{{"frame":0,"event":"begin","a":{i},"b":{i + 1}}}\n' for i in range(200))
-        done = self.run_program('view', self.write('long.jsonl', rows + '{"frame":999999,"event":"end","a":0,"b":1}\n'), '--export',
-                                self.path('page.html'), '--quiet')
-        self.assertEqual(done.returncode, 5, done.stderr)
+        with self.view(self.write('long.jsonl', rows + '{"frame":999999,"event":"end","a":0,"b":1}\n')) as view:
+            self.assertEqual(len(pairs_in(view.get('pairs/999998.u32'))), 200)
+            self.assertEqual(len(pairs_in(view.get('pairs/999999.u32'))), 199)
+            self.assertLess(view.memory(), 500e6)
 
     def test_options(self):
         scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))

@@ -75,6 +75,11 @@ export class LiveFeed {
     this.connect();
   }
 
+  // Whether the WebSocket is open or opens.
+  connects(): boolean {
+    return this.socket !== null && this.socket.readyState <= WebSocket.OPEN;
+  }
+
   // Live frames are wanted from now on.
   start(): void {
     this.live = true;

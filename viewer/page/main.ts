@@ -9,7 +9,7 @@ import {readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
 import {startWithin, tellReport} from './within_report.ts';
-import {hideProgress, say, showFailure, showProgress} from './panel.ts';
+import {hideProgress, say, showBanner, showFailure, showProgress} from './panel.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
@@ -26,6 +26,7 @@ class Page {
   private app: App | null = null;
   private timeline: Timeline | null = null;
   private live: LiveScene | null = null;
+  private readable = false;
   private wake: () => void = () => undefined;
   private lastTable = 0;
   private tableTimer = 0;
@@ -33,9 +34,9 @@ class Page {
 
   async start(): Promise<void> {
     startTheme(settings);
+    if (!this.source.exported) this.connect();
     // The graphics start while the program answers.
     const view = early(this.waitForView());
-    if (!this.source.exported) this.connect();
     settings.listen(name => name === 'theme' && applyTheme(settings));
     byId('theme').addEventListener('click', () => switchTheme(settings));
     byId('open-help').addEventListener('click', openHelp);
@@ -53,19 +54,26 @@ class Page {
       lost: () => this.note('The connection to the program is lost. The page keeps what it has.')});
   }
 
+  // Asks for the scene when the server says that it can be read. Without a WebSocket, the page asks again and again.
   private async waitForView(): Promise<View> {
     for (;;) {
+      while (!this.readable && this.feed?.connects()) await this.pause();
+      if (document.documentElement.dataset.failed) return new Promise(() => undefined);
       try {
         return completeView(await this.source.json<Partial<View>>('view.json'));
       } catch (error) {
         if (!(error instanceof StillLoading)) throw error;
-        await new Promise<void>(done => {
-          this.wake = done;
-          setTimeout(done, 2000);
-        });
-        if (document.documentElement.dataset.failed) return new Promise(() => undefined);
+        await this.pause();
       }
     }
+  }
+
+  // Waits until an event of the server wakes the page, at most two seconds.
+  private pause(): Promise<void> {
+    return new Promise(done => {
+      this.wake = done;
+      setTimeout(done, 2000);
+    });
   }
 
   private startServer(view: View): void {
@@ -157,24 +165,33 @@ class Page {
 
   private receive(event: SocketEvent): void {
     if (event.event === 'progress' && !this.app) showProgress(sentence(event.what || 'loading'), event.done ?? null);
-    if (event.event === 'ready') this.wake();
+    if (event.event === 'ready') {
+      this.readable = true;
+      this.wake();
+    }
     if (event.event === 'failed') {
       showFailure(event.message ?? 'unknown error');
+      this.readable = true;
       this.wake();
     }
     if (event.event === 'timeline') this.readTimeline().catch(error => say(messageOf(error)));
     if (event.event === 'closed') this.note('The program has ended. The page keeps its last frame.');
-    if (event.event === 'jobs') showServer(event.jobs ?? [], event.scenes ?? []);
+    if (event.event === 'waiting') showBanner(event.message ?? 'The server does not answer.');
+    if (event.event === 'jobs') {
+      showBanner('');
+      showServer(event.jobs ?? [], event.scenes ?? []);
+    }
   }
 
   private note(text: string): void {
     if (this.app) this.app.note(text);
-    else say(text);
+    else showBanner(text);
   }
 
   private receiveFrame(frame: LiveFrame): void {
     const {app, live} = this;
     if (!app || !live) return;
+    showBanner('');
     const first = this.firstFrame;
     const rowsChanged = live.apply(frame);
     if (rowsChanged && !first) this.readRows(app);

@@ -22,6 +22,14 @@ export function showFailure(message: string): void {
   byId('failure').hidden = false;
   byId('failure-text').textContent = message;
   document.documentElement.dataset.failed = 'true';
+  if (byId('viewer').hidden) showBanner(message);
+}
+
+// A line above the page that stays, for scenes and servers. An empty text removes it.
+export function showBanner(text: string): void {
+  const banner = byId('banner');
+  if (banner.textContent !== text) banner.textContent = text;
+  banner.hidden = text === '';
 }
 
 let messageTimer = 0;

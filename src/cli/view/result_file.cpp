@@ -23,7 +23,6 @@ namespace octopair::cli {
 namespace {
 
 constexpr std::uint64_t max_result_frames = 1'000'000;
-constexpr std::uint64_t max_listed_pairs = 100'000'000;  ///< of all frames of a result with events: 800 MB
 constexpr std::uint32_t max_index = 0xFFFFFFFE;
 
 std::string read_text(const io::InputFile& file, std::uint64_t most, const std::stop_token& stop) {
@@ -76,83 +75,38 @@ CollisionClass class_of(std::string_view word) {
     return CollisionClass::unknown;
 }
 
-/// Collects rows, and sorts them into frames.
+ResultRow::Event event_of(std::string_view word, const std::string& place) {
+    if (word.empty()) return ResultRow::Event::none;
+    if (word == "begin") return ResultRow::Event::begin;
+    if (word == "end") return ResultRow::Event::end;
+    io::refuse(place, fmt::format("event '{}': neither begin nor end", io::shown_text(word)));
+}
+
+/// Checks rows, and collects them.
 class ResultBuilder {
 public:
     explicit ResultBuilder(std::string file) : file_(std::move(file)) {}
 
-    struct Row {
-        std::uint64_t frame = 0;
-        Pair pair = {};
-        Finding finding = {};
-        std::string event = {};  ///< "begin", "end" or empty
-    };
-
-    void add(Row row, const std::string& place) {
+    void add(ResultRow row, const std::string& place) {
         if (row.pair.a == row.pair.b) io::refuse(place, "a and b are the same object");
         if (row.pair.a > row.pair.b) std::swap(row.pair.a, row.pair.b);
         if (row.pair.b > max_index) io::refuse(place, "the index is too large");
         if (row.frame >= max_result_frames)
             io::refuse(place, fmt::format("frame {}: at most {} frames", row.frame, max_result_frames));
         result_.objects = std::max<std::uint64_t>(result_.objects, std::uint64_t(row.pair.b) + 1);
-        classes_known_ |= row.finding.collision_class != CollisionClass::unknown;
-        rows_.push_back(std::move(row));
+        result_.frames.add(std::move(row));
     }
     void name(std::uint32_t object, std::string name) { result_.names.emplace(object, std::move(name)); }
     void set_moving() { result_.moving = true; }
 
     ResultFile finish() {
-        std::stable_sort(rows_.begin(), rows_.end(), [](const Row& x, const Row& y) {
-            return x.frame != y.frame ? x.frame < y.frame : x.pair < y.pair;
-        });
-        const std::uint64_t frames = rows_.empty() ? 1 : rows_.back().frame + 1;
-        result_.frames.resize(std::size_t(frames));
-        const bool events = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return !row.event.empty(); });
-        events ? add_up_events() : move_rows();
+        if (!result_.frames.finish()) io::refuse(file_, "some rows have events, and some have none");
         return std::move(result_);
     }
 
 private:
-    void move_rows() {
-        for (Row& row : rows_) {
-            ResultFrame& frame = result_.frames[std::size_t(row.frame)];
-            if (!frame.pairs.empty() && frame.pairs.back() == row.pair) continue;
-            frame.pairs.push_back(row.pair);
-            if (classes_known_) frame.findings.push_back(std::move(row.finding));
-        }
-    }
-
-    /// Rows with events say what began and ended: the pairs of a frame are those of the frame before, with these changes.
-    void add_up_events() {
-        std::vector<Pair> pairs;
-        std::size_t next = 0;
-        std::uint64_t listed = 0;
-        for (std::uint64_t number = 0; number < result_.frames.size(); ++number) {
-            std::vector<Pair> began, ended, remaining, merged;
-            for (; next < rows_.size() && rows_[next].frame == number; ++next) {
-                (rows_[next].event == "begin" ? began : ended).push_back(rows_[next].pair);
-            }
-            for (auto* events : {&began, &ended})
-                events->erase(std::unique(events->begin(), events->end()), events->end());
-            std::set_difference(pairs.begin(), pairs.end(), ended.begin(), ended.end(), std::back_inserter(remaining));
-            std::set_union(remaining.begin(), remaining.end(), began.begin(), began.end(), std::back_inserter(merged));
-            pairs = merged;
-            listed += pairs.size();
-            if (listed > max_listed_pairs) {
-                throw Error(
-                    ErrorCode::resource_limit,
-                    fmt::format(
-                        "{}: frames 0 to {} have more than {} pairs together; show the scene without the result", file_,
-                        number, max_listed_pairs));
-            }
-            result_.frames[std::size_t(number)].pairs = std::move(merged);
-        }
-    }
-
     std::string file_;
-    std::vector<Row> rows_;
     ResultFile result_;
-    bool classes_known_ = false;
 };
 
 template <typename Index>
@@ -216,13 +170,13 @@ void add_json_rows(std::string_view text, const std::string& file, ResultBuilder
         const nlohmann::json value = io::parse_json(line, place, stop);
         const io::JsonFields fields(value, place);
         if (fields.find("change") != nullptr && fields.text("change") == "gone") return;
-        ResultBuilder::Row row;
+        ResultRow row;
         row.pair = {fields.whole_number("a"), fields.whole_number("b")};
         if (fields.find("frame") != nullptr) {
             row.frame = fields.whole_number("frame");
             builder.set_moving();
         }
-        if (fields.find("event") != nullptr) row.event = fields.text("event");
+        if (fields.find("event") != nullptr) row.event = event_of(fields.text("event"), place);
         row.finding = finding_of(fields);
         for (const auto& [side, object] : {std::pair("a", row.pair.a), std::pair("b", row.pair.b)}) {
             const std::string key = std::string(side) + "_name";
@@ -305,13 +259,13 @@ void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder&
         }
         const CsvRow fields(header, line, place);
         if (fields.text("change") == "gone") return;
-        ResultBuilder::Row row;
+        ResultRow row;
         row.pair = {fields.index("a"), fields.index("b")};
         if (std::find(header.begin(), header.end(), "frame") != header.end()) {
             row.frame = fields.index("frame");
             builder.set_moving();
         }
-        row.event = fields.text("event");
+        row.event = event_of(fields.text("event"), place);
         row.finding.collision_class = class_of(fields.text("class"));
         row.finding.depth = fields.number("depth");
         row.finding.distance = fields.number("distance");
@@ -323,13 +277,6 @@ void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder&
 }
 
 }  // namespace
-
-bool ResultFile::has_contacts() const {
-    return std::any_of(frames.begin(), frames.end(), [](const ResultFrame& frame) {
-        return std::any_of(frame.findings.begin(), frame.findings.end(),
-                           [](const Finding& finding) { return !finding.contacts.empty(); });
-    });
-}
 
 bool is_result(const std::string& path) {
     const std::string ending = io::ending_of(path);

@@ -5,27 +5,16 @@
 #include <map>
 #include <stop_token>
 #include <string>
-#include <vector>
 
-#include "octopair/collision.hpp"
-#include "octopair/objects.hpp"
+#include "cli/view/result_frames.hpp"
 
 namespace octopair::cli {
 
-/// Rows of one frame, ascending by pair.
-struct ResultFrame {
-    std::vector<Pair> pairs;
-    std::vector<Finding> findings;  ///< one per pair, or empty
-};
-
 struct ResultFile {
-    std::vector<ResultFrame> frames;  ///< at least one
-    bool moving = false;              ///< true if rows have frames
+    ResultFrames frames;
+    bool moving = false;  ///< true if rows have frames
     std::map<std::uint32_t, std::string> names;
     std::uint64_t objects = 0;  ///< 1 more than the largest index
-
-    /// Returns whether a collision of any frame has contacts.
-    bool has_contacts() const;
 };
 
 /// Returns whether the content of a file is a result, not a scene.

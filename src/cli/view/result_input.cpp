@@ -35,7 +35,7 @@ public:
     std::uint64_t frames() const override { return result_.frames.size(); }
 
     viewer::FrameData find(std::uint64_t number, const ProgressSink&) override {
-        const ResultFrame& frame = result_.frames[std::size_t(number)];
+        ResultFrame frame = result_.frames.frame(number);
         auto boxes = std::make_shared<std::vector<Box3d>>(std::size_t(result_.objects), empty_box());
         Box3d all = empty_box();
         for (std::size_t i = 0; i < frame.findings.size(); ++i) {
@@ -60,9 +60,9 @@ public:
         }
         data.boxes = std::span<const Box3d>(*boxes);
         data.keep = boxes;
-        data.pairs = frame.pairs;
-        data.findings = frame.findings;
         data.pair_count = frame.pairs.size();
+        data.pairs = std::move(frame.pairs);
+        data.findings = std::move(frame.findings);
         return data;
     }
 
@@ -88,7 +88,7 @@ LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) 
         view.contents.names.resize(std::size_t(result.objects));
         for (const auto& [object, name] : result.names) view.contents.names[object] = name;
     }
-    view.contents.contacts = result.has_contacts();
+    view.contents.contacts = result.frames.has_contacts();
     view.contents.notices.push_back(
         "A result has no boxes: objects are drawn around their contacts. Name the scene, too, to see its objects.");
     view.finder = std::make_unique<PlacesFinder>(std::move(result));

@@ -117,8 +117,9 @@ public:
         data.boxes = objects.boxes;
         data.padding = objects.padding;
         if (frame >= result_.frames.size()) return data;
-        data.pairs = result_.frames[std::size_t(frame)].pairs;
-        data.findings = result_.frames[std::size_t(frame)].findings;
+        ResultFrame found = result_.frames.frame(frame);
+        data.pairs = std::move(found.pairs);
+        data.findings = std::move(found.findings);
         data.pair_count = data.pairs.size();
         return data;
     }
@@ -180,7 +181,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
     }
     ResultFile result = read_result(request.result, stop);
     check_result(result, inputs->set, request.result);
-    view.contents.contacts = result.has_contacts();
+    view.contents.contacts = result.frames.has_contacts();
     view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));
     return view;
 }

@@ -1,5 +1,7 @@
 #include "cli/view/server_view.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -7,6 +9,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -58,6 +61,36 @@ viewer::LiveState state_of(SceneSnapshot&& snapshot) {
     return state;
 }
 
+/// Waits until a stop request, at most `most`.
+void pause(const std::stop_token& stop, std::chrono::milliseconds most) {
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    wake.wait_for(lock, stop, most, [] { return false; });
+}
+
+/// Returns what `call` returns. If the server does not answer, tells it to the pages at `path`, pauses, and returns nothing.
+/// Throws: what `call` throws for other reasons.
+template <typename Call>
+std::invoke_result_t<Call> unless_unreachable(viewer::PageServer& server, const std::string& path,
+                                              const std::stop_token& stop, const Call& call) {
+    try {
+        return call();
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::engine_failed || stop.stop_requested()) throw;
+        server.broadcast(path, viewer::waiting_message(error.what()));
+        pause(stop, 500ms);
+        return {};
+    }
+}
+
+/// Returns the client options of the command, with a short patience: the pages are told soon, and the calls repeated.
+ClientOptions watching_options(const ServerChoice& choice) {
+    ClientOptions options = client_options(choice);
+    options.patience = std::min<std::chrono::milliseconds>(options.patience, 2s);
+    return options;
+}
+
 /// A scene of the server, which is watched while pages show it.
 class WatchedScene {
 public:
@@ -81,7 +114,8 @@ private:
         try {
             std::uint64_t step = 0;
             while (!ends(stop)) {
-                auto snapshot = watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop);
+                const auto next = [&] { return watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop); };
+                auto snapshot = unless_unreachable(server, path(), stop, next);
                 if (!snapshot) continue;
                 step = snapshot->step;
                 source_.feed().put(state_of(std::move(*snapshot)));
@@ -113,19 +147,18 @@ private:
 class ServerSource final : public viewer::Source {
 public:
     explicit ServerSource(const ServerChoice& choice)
-        : address_(choice.address), jobs_(address_, client_options(choice)), scenes_(address_, client_options(choice)) {
+        : address_(choice.address),
+          jobs_(address_, watching_options(choice)),
+          scenes_(address_, watching_options(choice)) {
         message_ = list({});  // a server that cannot be reached is an error of the command
     }
 
     /// Sends the state of the server to the pages twice a second, until a stop request.
     void run(viewer::PageServer& server, const std::stop_token& stop) {
         server_ = &server;
-        std::mutex mutex;
-        std::condition_variable_any pause;
         unsigned rounds = 0;
         while (!stop.stop_requested()) {
-            std::unique_lock lock(mutex);
-            pause.wait_for(lock, stop, 500ms, [] { return false; });
+            pause(stop, 500ms);
             if (pages_ > 0 && !stop.stop_requested()) update(server, stop);
             if (++rounds % 20 == 0) free_scenes();
         }
@@ -214,7 +247,8 @@ private:
 
     void update(viewer::PageServer& server, const std::stop_token& stop) {
         try {
-            std::string message = list(stop);
+            std::string message = unless_unreachable(server, "", stop, [&] { return list(stop); });
+            if (message.empty()) return;
             {
                 const std::lock_guard lock(mutex_);
                 message_ = message;

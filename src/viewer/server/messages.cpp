@@ -17,6 +17,7 @@ std::string progress_message(std::string_view what, double done) {
 }
 std::string ready_message() { return message({{"event", "ready"}}); }
 std::string failed_message(std::string_view why) { return message({{"event", "failed"}, {"message", why}}); }
+std::string waiting_message(std::string_view why) { return message({{"event", "waiting"}, {"message", why}}); }
 std::string timeline_message(std::uint64_t done) { return message({{"event", "timeline"}, {"done", done}}); }
 std::string closed_message() { return message({{"event", "closed"}}); }
 

@@ -11,6 +11,8 @@ namespace octopair::viewer {
 std::string progress_message(std::string_view what, double done);
 std::string ready_message();
 std::string failed_message(std::string_view why);
+/// The watched server does not answer, and is asked again.
+std::string waiting_message(std::string_view why);
 /// `done`: number of frames that timeline.json has.
 std::string timeline_message(std::uint64_t done);
 std::string closed_message();

@@ -39,7 +39,7 @@ const plain = {
 
 const generated = {
   '10.npy': ['uniform', '10', '--seed', '3'], '10k.npy': ['uniform', '10000'], '100k.npy': ['uniform', '100000'], '1m.npy': ['uniform', '1000000'],
-  'moving.npy': ['brownian', '300', '--frames', '25'], 'same6k.npy': ['coincident', '6000'],
+  'moving.npy': ['brownian', '300', '--frames', '25'],
 };
 
 export class Inputs {

@@ -1,4 +1,4 @@
-"""Scenes of Python for the tests of pages: scenes.py record FILE | live | remote ADDRESS. Reads commands from standard input."""
+"""Scenes of Python for the tests of pages: scenes.py record FILE | live | remote ADDRESS | job ADDRESS. Reads commands from standard input."""
 
 import json
 import select
@@ -82,5 +82,15 @@ def remote(address):
     run(dust, lambda step: None)
 
 
+def job(address):
+    """Runs a job of 1,000 boxes, and releases it at a command."""
+    client = op.remote.JobClient(address)
+    job_id = client.submit(boxes_at(np.random.default_rng(6).random((1000, 3))))
+    client.wait(job_id)
+    tell(id=job_id)
+    command(60)
+    client.release(job_id)
+
+
 if __name__ == "__main__":
-    {"record": record, "live": live, "remote": remote}[sys.argv[1]](*sys.argv[2:])
+    {"record": record, "live": live, "remote": remote, "job": job}[sys.argv[1]](*sys.argv[2:])
