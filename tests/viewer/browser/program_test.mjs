@@ -482,6 +482,33 @@ test('a server: jobs, scenes and the page of a scene', async () => {
   await server.stop();
 });
 
+test('a server that ends and starts again', async () => {
+  const address = `unix:${inputs.path('again.socket')}`;
+  const serve = () => keep(new Child(options.program, ['serve', '--listen', address, '--log-level', 'warn']));
+  let server = serve();
+  while (!existsSync(inputs.path('again.socket'))) await new Promise(done => setTimeout(done, 50));
+  const simulation = python('remote', address);
+  await simulation.line();
+  const program = keep(await view(options.program, [address]));
+  const check = async page => {
+    await waitForData(page, 'scenes', '1');
+    const scene = await open(browser, new URL(await page.locator('#scene-rows a').getAttribute('href'), program.address).href);
+    await complete(scene.page);
+    await server.stop('SIGKILL');
+    await simulation.stop('SIGKILL');
+    await waitForText(page, '#banner', /no server answers/);
+    await waitForText(scene.page, '#banner', /no server answers/);
+    server = serve();
+    await page.locator('#banner').waitFor({state: 'hidden'});
+    await waitForData(page, 'scenes', '0');
+    await waitForText(scene.page, '#failure', /scene/);
+    await scene.close();
+  };
+  await withPage(program.address, check, {wait: ready});
+  await program.stop();
+  await server.stop();
+});
+
 test('the program ends, and the page keeps its picture', () => withView([inputs.get('three.npy')], async (page, program) => {
   await program.stop();
   await waitForText(page, '#notices', /The program has ended/);
