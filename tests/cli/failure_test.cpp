@@ -26,6 +26,11 @@ protected:
     }
 };
 
+TEST_F(Failure, PrintsNoControlCharactersOfNames) {
+    EXPECT_EQ(run("detect \"$(printf '\\033[2Jred\\177\\r.npy')\"").err,
+              "octopair: ?[2Jred??.npy: cannot open: No such file or directory\n");
+}
+
 TEST_F(Failure, RefusesInvalidBoxes) {
     save_boxes("good.npy", {0, 1, 2});
     auto rows = rows_of({0, 1, 2});

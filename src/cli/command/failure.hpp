@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 
 #include "base/error_codes.hpp"
@@ -21,9 +22,18 @@ inline int status_of(ErrorCode code) {
     return code == ErrorCode::cancelled ? 128 + stop_signal.load() : exit_status(code);
 }
 
-/// Prints the message. Returns the exit status. Allocates no memory.
+/// Prints the message. Returns the exit status. Allocates no memory. A control character, as a file's name may have, becomes '?':
+/// a terminal would obey it.
 inline int fail(ErrorCode code, const char* message) {
-    std::fprintf(stderr, "%s: %s\n", program_name, message);
+    constexpr std::size_t max_bytes = 4000;
+    char line[max_bytes + 1];
+    std::size_t length = 0;
+    for (; message[length] != '\0' && length < max_bytes; ++length) {
+        const char c = message[length];
+        line[length] = (c >= 0 && c < ' ' && c != '\n') || c == 0x7F ? '?' : c;
+    }
+    line[length] = '\0';
+    std::fprintf(stderr, "%s: %s\n", program_name, line);
     return status_of(code);
 }
 
