@@ -358,7 +358,7 @@ class LiveScene extends StaticScene {
     const old = this.history[base];
     const head = new Uint32Array(16);
     head.set([0x4f504c56, this.now, old ? base : 0xffffffff, this.n, this.n]);
-    head.set([pairs.length, 0, pairs.length, 1234], 8);
+    head.set([pairs.length, 0, pairs.length, 1234, this.n], 8);
     if (!old) return Buffer.concat([bytesOf(head), bytesOf(boxes), flat(pairs)]);
     const moved = [...Array(this.n).keys()].filter(k => [0, 1, 2, 3, 4, 5].some(c => old.boxes[6 * k + c] !== boxes[6 * k + c]));
     const [now, before] = [new Set(pairs.map(String)), new Set(old.pairs.map(String))];

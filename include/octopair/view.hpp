@@ -3,7 +3,7 @@
 // Page      A server in this process serves the page at address(). The page shows boxes, pairs, events, octants and times of steps.
 // Pace      The scene never waits for a page. show() copies the boxes at most ViewOptions::frames_per_second times a second. Copying
 //           takes at most a hundredth of the time. Pages that read slowly, or not at all, get fewer frames.
-//           The last steps before a pause may be missing on pages, until show() is called again.
+//           So the last steps before a pause may be missing on pages, unless show() is told to copy at once.
 //           The threads of the server have a low priority. Without a page, a call of show() takes well under a microsecond,
 //           except once a second.
 // Large     Of more than 200,000 objects, those with the first indices are drawn. The page says so.
@@ -48,8 +48,9 @@ public:
     /// Returns the address for a browser, for example "http://127.0.0.1:40123/".
     std::string address() const;
     /// Shows the scene after a step. `step`: the result of this step. Call it after each step, because it counts the events.
+    /// `at_once`: copies the scene now, whatever the pace, and waits for an earlier copy: for the last step before a pause.
     /// Throws: std::bad_alloc.
-    void show(const StepResult& step);
+    void show(const StepResult& step, bool at_once = false);
     /// Returns the number of pages that are connected.
     unsigned pages() const;
 

@@ -80,9 +80,18 @@ class View:
         """Number of pages that are connected."""
         return self._view.pages()
 
-    def show(self, step: StepResult) -> None:
-        """Shows the scene after a step: ``view.show(scene.step())``. Call it after each step, because it counts the events."""
-        self._view.show(step.began, step.ended, step.persisting, step.seconds)
+    def show(self, step: StepResult, at_once: bool = False) -> None:
+        """Shows the scene after a step: ``view.show(scene.step())``. Call it after each step, because it counts the events.
+
+        Parameters
+        ----------
+        step : StepResult
+            Result of the step.
+        at_once : bool
+            True: shows this step for certain, for example the last one before a pause. Otherwise steps are left out if they come faster
+            than the view copies them.
+        """
+        self._view.show((step.began, step.ended), step.persisting, step.seconds, bool(at_once))
 
     def close(self) -> None:
         """Ends the server. Pages keep their last frame."""

@@ -45,14 +45,14 @@ public:
     unsigned pages() const { return view_ == nullptr ? 0 : view_->pages(); }
 
     /// Shows the scene after a step: the pairs that began and ended, how many persist, and the seconds.
-    void show(const py::array& began, const py::array& ended, std::uint64_t persisting, double seconds) {
+    void show(const std::pair<py::array, py::array>& events, std::uint64_t persisting, double seconds, bool at_once) {
         StepResult step;
-        step.began = rows_of<Pair, std::uint32_t>(began);
-        step.ended = rows_of<Pair, std::uint32_t>(ended);
+        step.began = rows_of<Pair, std::uint32_t>(events.first);
+        step.ended = rows_of<Pair, std::uint32_t>(events.second);
         step.persisting = persisting;
         step.seconds = seconds;
         View& shown = view();
-        scene_.use([&](Scene&) { shown.show(step); });
+        scene_.use([&](Scene&) { shown.show(step, at_once); });
     }
     void close() { view_.reset(); }
 
@@ -81,6 +81,7 @@ PYBIND11_MODULE(_view, module) {
              py::keep_alive<1, 2>())
         .def("address", &PythonView::address)
         .def("pages", &PythonView::pages)
-        .def("show", &PythonView::show, py::arg("began"), py::arg("ended"), py::arg("persisting"), py::arg("seconds"))
+        .def("show", &PythonView::show, py::arg("events"), py::arg("persisting"), py::arg("seconds"),
+             py::arg("at_once"))
         .def("close", &PythonView::close);
 }

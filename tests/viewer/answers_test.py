@@ -209,6 +209,54 @@ class Answers(InFolder):
                 for number, boxes in enumerate(frames):
                     self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), scene_files.true_pairs(boxes), (name, number))
 
+    def test_results_whose_last_events_are_early(self):
+        first = [[0, 0, 0, 1, 1, 1], [0.5, 0, 0, 1.5, 1, 1], [5, 0, 0, 6, 1, 1]]
+        moved = [[0, 0, 0, 1, 1, 1], [4.5, 0, 0, 5.5, 1, 1], [5, 0, 0, 6, 1, 1]]
+        scene_files.save_moving(self.path('scene.npy'), [first, moved, moved, moved])
+        self.assertEqual(self.run_program('detect', self.path('scene.npy'), '--events', '--quiet', '--output', self.path('events.csv')).returncode, 0)
+        with self.view(self.path('scene.npy'), self.path('events.csv')) as view:
+            for number, pairs in enumerate([[(0, 1)], [(1, 2)], [(1, 2)], [(1, 2)]]):
+                self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), pairs, number)
+
+    def test_a_result_of_one_frame(self):
+        frames = scene_files.moving_boxes(4, 3, 40)
+        scene_files.save_moving(self.path('scene.npy'), frames)
+        self.assertEqual(self.run_program('detect', self.path('scene.npy'), '--quiet', '--output', self.path('pairs.npy')).returncode, 0)
+        with self.view(self.path('scene.npy'), self.path('pairs.000002.npy')) as view:
+            for number, boxes in enumerate([[], [], frames[2]]):
+                self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), scene_files.true_pairs(boxes), number)
+        with self.view(self.path('pairs.000002.npy')) as view:
+            self.assertEqual(view.get('view.json')['frames'], 1)
+            self.assertEqual(pairs_in(view.get('pairs/0.u32')), scene_files.true_pairs(frames[2]))
+
+    def test_results_of_other_programs(self):
+        with open(self.path('table.csv'), 'w', encoding='utf-8-sig') as file:
+            file.write('a,b,a_name,points\r\n2,1,"a ""wide""\nname, with comma",1 2 3;4 5 6\r\n')
+        with self.view(self.path('table.csv')) as view:
+            row = view.get('collisions/0.json')['rows'][0]
+            self.assertEqual((row['a'], row['b'], row['name_b']), (1, 2, 'a "wide"\nname, with comma'))
+
+    def test_contacts_without_normals(self):
+        with open(self.path('table.csv'), 'w', encoding='utf-8') as file:
+            file.write('a,b,class,depth,points\n0,1,penetrating,0.5,1 2 3;4 5 6\n')
+        with self.view(self.path('table.csv'), '--up', 'y') as view:
+            self.assertEqual(view.get('view.json')['up'], 'y')
+            row = view.get('collisions/0.json')['rows'][0]
+            self.assertEqual((row['depth'], row['contacts']), (0.5, [{'point': [1, 2, 3]}, {'point': [4, 5, 6]}]))
+
+    def test_a_later_frame_that_is_wrong(self):
+        frames = scene_files.moving_boxes(3, 6, 10)
+        frames[4][2] = (math.nan, *frames[4][2][1:])
+        scene_files.save_moving(self.path('scene.npy'), frames)
+        with self.view(self.path('scene.npy')) as view:
+            end = time.monotonic() + 20
+            while 'failed' not in (timeline := view.get('timeline.json')) and time.monotonic() < end:
+                time.sleep(0.02)
+            self.assertEqual(timeline['done'], 4)
+            self.assertIn('frame 4', timeline['failed'])
+            self.assertEqual(pairs_in(view.get('pairs/3.u32')), scene_files.true_pairs(frames[3]))
+        self.assertIn(timeline['failed'], view.errors)
+
     def test_results_with_repeated_events(self):
         rows = [(0, 'begin', 1, 2), (0, 'begin', 1, 2), (1, 'end', 0, 1), (1, 'begin', 0, 1), (2, 'begin', 2, 1), (2, 'end', 2, 3),
                 (3, 'end', 1, 2), (3, 'begin', 1, 2), (4, 'end', 1, 2), (4, 'end', 1, 2), (6, 'begin', 1, 2), (7, 'end', 0, 1)]

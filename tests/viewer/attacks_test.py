@@ -349,6 +349,7 @@ class BadInput(InFolder):
         for options in (('--margin', '1'), ('--stage', 'pairs'), ('--objects', 'triangle')):
             self.assertIn(options[0], self.refused(2, good, pairs, *options))
         self.assertIn('alone', self.refused(2, good, 'unix:none.socket'))
+        self.assertIn('--up', self.refused(2, 'unix:none.socket', '--up', 'y'))
         self.assertIn('--port', self.refused(2, good, '--export', self.path('x.html'), '--port', '7'))
         for address in ('foo:1', ':8080', '8080'):
             self.refused(2, good, '--listen', address)
@@ -358,6 +359,8 @@ class BadInput(InFolder):
         good = self.path('good.npy')
         self.assertIn('10', self.refused(3, good, self.write('beyond.jsonl', '{"a":0,"b":10}\n')))
         self.refused(3, good, self.write('frame.jsonl', '{"frame":1,"a":0,"b":1}\n'))
+        scene_files.save_moving(self.path('moving.npy'), scene_files.moving_boxes(1, 3, 10))
+        self.assertIn('which of the 3 frames', self.refused(3, self.path('moving.npy'), self.write('pairs.csv', 'a,b\n0,1\n')))
         self.refused(3, self.write('same.jsonl', '{"a":5,"b":5}\n'))
         for row in ('{', '[]', '{"a":0}', '{"a":0,"b":-1}', '{"a":0,"b":1.5}', '{"a":0,"b":4294967295}', '{"a":0,"b":4294967296}', '{"a":0,"b":1,"contacts":3}',
                     '{"a":0,"b":1,"contacts":[{"point":[1,2]}]}', '{"a":0,"b":1,"depth":"x"}', '{"a":0,"b":1,"frame":1000000}',

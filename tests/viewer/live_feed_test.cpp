@@ -166,7 +166,7 @@ TEST(LiveFeed, BeforeTheFirstFrame) {
     LiveFeed feed;
     EXPECT_EQ(feed.frame_after(-1), nullptr);
     EXPECT_EQ(feed.frame_after(5), nullptr);
-    EXPECT_TRUE(feed.latest().pairs.empty());
+    EXPECT_TRUE(feed.latest().data.pairs.empty());
     EXPECT_EQ(feed.origin(), Point3d{});
 }
 
@@ -334,7 +334,7 @@ TEST(LiveFeed, ReadersOnOtherThreads) {
         readers.emplace_back([&feed, &done, &page] {
             while (!done) {
                 refresh(page, feed);
-                (void)feed.latest().pairs.size();
+                (void)feed.latest().data.pairs.size();
             }
         });
     }

@@ -28,7 +28,9 @@ public:
         const std::uint32_t number = word(), base = word(), all = word(), shown = word(), moved = word(),
                             began = word(), ended = word(), low = word(), high = word(), listed = word();
         microseconds = word();
-        for (int i = 0; i < 4; ++i) require(word() == 0, "unused words");
+        existing = word();
+        require(existing <= all, "number of existing objects");
+        for (int i = 0; i < 3; ++i) require(word() == 0, "unused words");
         is_whole = base == 0xFFFFFFFF;
         if (is_whole) {
             read_whole(all, shown, listed);
@@ -48,7 +50,7 @@ public:
     }
 
     std::int64_t frame = -1;
-    std::uint32_t objects = 0, microseconds = 0, changed_rows = 0, changed_pairs = 0;
+    std::uint32_t objects = 0, existing = 0, microseconds = 0, changed_rows = 0, changed_pairs = 0;
     std::vector<std::uint32_t> shown_objects;  ///< by row; empty: all
     std::vector<Row> rows;
     std::set<Pair> pairs;

@@ -176,6 +176,50 @@ TEST(View, AnswersAboutTheLatestFrame) {
     }
 }
 
+TEST(View, ShowsAStepAtOnce) {
+    MovingScene scene(50);
+    View view(scene.scene(), {.frames_per_second = 0.001});  // all other steps are left out
+    view.show(scene.step());
+    for (int i = 0; i < 20; ++i) {
+        view.show(scene.step());
+        view.show(scene.remove_last(), true);
+    }
+    const auto latest = [&] { return Json::parse(get_page(view.address(), "/collisions/0.json?count=1000").body); };
+    ASSERT_TRUE(wait_until([&] { return latest()["total"] == scene.pairs().size(); }));
+    PageClient client(view.address());
+    LivePage page;
+    client.want(-1);
+    std::optional<PageClient::Message> message = client.read();
+    while (message && message->text) message = client.read();
+    ASSERT_TRUE(message.has_value());
+    page.apply(message->body);
+    EXPECT_EQ(page.existing, 30u);
+    EXPECT_EQ(page.objects, 50u);
+    EXPECT_EQ(page.pairs, scene.pairs());
+}
+
+TEST(View, TheTableBeginsWithPairsThatBegan) {
+    MovingScene scene(100);
+    View view(scene.scene());
+    PageClient client(view.address());
+    ASSERT_TRUE(wait_until([&] { return view.pages() == 1; }));
+    view.show(scene.step(), true);
+    const std::set<Pair> before = scene.pairs();
+    view.show(scene.step(), true);
+    std::set<Pair> began;
+    std::ranges::set_difference(scene.pairs(), before, std::inserter(began, began.end()));
+    ASSERT_FALSE(began.empty());
+    const auto first = [&] {
+        std::set<Pair> marked;
+        const Json rows =
+            Json::parse(get_page(view.address(), "/collisions/0.json?sort=began&count=1000").body)["rows"];
+        for (std::size_t i = 0; i < rows.size() && rows[i].contains("change"); ++i)
+            marked.insert({rows[i]["a"], rows[i]["b"]});
+        return marked;
+    };
+    EXPECT_TRUE(wait_until([&] { return first() == began; }));
+}
+
 TEST(View, WithoutPagesNothingIsCounted) {
     MovingScene scene(1000);
     View view(scene.scene());

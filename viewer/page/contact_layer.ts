@@ -4,7 +4,7 @@ import type {SharedUniforms} from './box_material.ts';
 import type {Colour} from './colours.ts';
 import {LineLayer, VertexList} from './line_layer.ts';
 import type {SceneModel} from './scene_model.ts';
-import type {Collision, Contact} from './types.ts';
+import type {Collision, Point} from './types.ts';
 
 export interface DepthLabel {
   at: THREE.Vector3;
@@ -33,7 +33,8 @@ export class ContactLayer {
     for (const contact of contacts) {
       const at = model.toRelative(contact.point);
       points.add(...at, colour);
-      addArrow(arrows, contact, new THREE.Vector3(...at), colour, least);
+      if (contact.normal === undefined || contact.depth === undefined) continue;
+      addArrow(arrows, contact.normal, contact.depth, new THREE.Vector3(...at), colour, least);
       if (this.labels.length < labelLimit) this.labels.push({at: new THREE.Vector3(...at), depth: contact.depth});
     }
     this.count = contacts.length;
@@ -42,9 +43,9 @@ export class ContactLayer {
   }
 }
 
-function addArrow(list: VertexList, contact: Contact, from: THREE.Vector3, colour: Colour, least: number): void {
-  const normal = new THREE.Vector3(...contact.normal).normalize();
-  const length = Math.max(Math.abs(contact.depth), least);
+function addArrow(list: VertexList, along: Point, depth: number, from: THREE.Vector3, colour: Colour, least: number): void {
+  const normal = new THREE.Vector3(...along).normalize();
+  const length = Math.max(Math.abs(depth), least);
   const tip = from.clone().addScaledVector(normal, length);
   const right = new THREE.Vector3(Math.abs(normal.z) < 0.9 ? 0 : 1, 0, Math.abs(normal.z) < 0.9 ? 1 : 0).cross(normal).normalize();
   const sides = [right, right.clone().cross(normal)];

@@ -15,6 +15,7 @@ export interface LiveFrame {
   ended: number;
   pairs: number;
   listed: number;
+  existing: number;
   stepSeconds: number;
   // Objects of the rows. Only a whole frame has them.
   shownObjects: Uint32Array | null;
@@ -35,7 +36,7 @@ export interface FeedActions {
 export function parseFrame(bytes: ArrayBuffer): LiveFrame {
   const words = new Uint32Array(bytes, 0, headerWords);
   if (words[0] !== magic) throw new Error('a live frame has a wrong header');
-  const [, frame, base, objects, shown, moved, began, ended, low, high, listed, micros] = words as unknown as number[];
+  const [, frame, base, objects, shown, moved, began, ended, low, high, listed, micros, existing] = words as unknown as number[];
   let at = 4 * headerWords;
   const take = (count: number): number => {
     const from = at;
@@ -48,7 +49,7 @@ export function parseFrame(bytes: ArrayBuffer): LiveFrame {
   const empty = new Uint32Array(0);
   const head = {
     frame: frame!, base: base!, whole: base === none, objects: objects!, shown: shown!, began: began!, ended: ended!,
-    pairs: high! * 4294967296 + low!, listed: listed!, stepSeconds: micros! / 1e6,
+    pairs: high! * 4294967296 + low!, listed: listed!, existing: existing!, stepSeconds: micros! / 1e6,
   };
   if (head.whole) {
     const shownObjects = shown! < objects! ? integers(shown!) : null;

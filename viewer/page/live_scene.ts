@@ -22,7 +22,7 @@ export class LiveScene {
     else this.replace(live);
     this.whole = true;
     frame.info = {
-      frame: live.frame, pairs: live.pairs, pairs_listed: this.pairs.size, began, ended, seconds: {step: live.stepSeconds},
+      frame: live.frame, objects: live.existing, pairs: live.pairs, pairs_listed: this.pairs.size, began, ended, seconds: {step: live.stepSeconds},
     };
     frame.pairs = this.list();
     this.countPartners();

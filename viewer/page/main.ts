@@ -39,6 +39,8 @@ class Page {
     const view = early(this.waitForView());
     settings.listen(name => name === 'theme' && applyTheme(settings));
     byId('theme').addEventListener('click', () => switchTheme(settings));
+    // A link that is pasted over another one.
+    window.addEventListener('hashchange', () => location.reload());
     byId('open-help').addEventListener('click', openHelp);
     const stage = early(startStage());
     return this.show(await view, stage);
@@ -51,7 +53,7 @@ class Page {
 
   private connect(): void {
     this.feed = new LiveFeed({event: event => this.receive(event), frame: frame => this.receiveFrame(frame),
-      lost: () => this.note('The connection to the program is lost. The page keeps what it has.')});
+      lost: () => this.noteEnd('The connection to the program is lost. The page keeps what it has.')});
   }
 
   // Asks for the scene when the server says that it can be read. Without a WebSocket, the page asks again and again.
@@ -104,7 +106,8 @@ class Page {
     await firstPicture(app);
     const rest = this.readRest(app, link.selected);
     if (this.source.exported) startWithin(app);
-    return rest;
+    // The picture stays if the rest cannot be read.
+    return rest.catch((error: unknown) => app.fail(error));
   }
 
   private prepare(app: App, keepCamera: boolean): void {
@@ -129,7 +132,8 @@ class Page {
     const live = view.kind === 'live';
     if (!live && view.frames < 2 && !view.has.events) return;
     this.timeline = new Timeline(live, live ? 0 : view.frames, {
-      go: frame => live ? Promise.resolve() : this.app!.showFrame(frame).catch(error => this.app!.fail(error)),
+      go: frame => live ? Promise.resolve() : this.app!.showFrame(frame),
+      failed: error => this.app?.fail(error),
       pause: paused => this.feed?.pause(paused),
     });
   }
@@ -155,6 +159,7 @@ class Page {
       throw error;
     });
     this.timeline?.setNumbers(numbers);
+    if (numbers.failed) this.app?.note(`Later frames are missing. ${sentence(numbers.failed)}`);
   }
 
   private async readShapes(app: App): Promise<void> {
@@ -166,6 +171,7 @@ class Page {
   private receive(event: SocketEvent): void {
     if (event.event === 'progress' && !this.app) showProgress(sentence(event.what || 'loading'), event.done ?? null);
     if (event.event === 'ready') {
+      showBanner('');
       this.readable = true;
       this.wake();
     }
@@ -175,7 +181,7 @@ class Page {
       this.wake();
     }
     if (event.event === 'timeline') this.readTimeline().catch(error => say(messageOf(error)));
-    if (event.event === 'closed') this.note('The program has ended. The page keeps its last frame.');
+    if (event.event === 'closed') this.noteEnd(`The ${this.live ? 'simulation' : 'program'} has ended. The page keeps its last frame.`);
     if (event.event === 'waiting') showBanner(event.message ?? 'The server does not answer.');
     if (event.event === 'jobs') {
       showBanner('');
@@ -183,9 +189,10 @@ class Page {
     }
   }
 
-  private note(text: string): void {
-    if (this.app) this.app.note(text);
-    else showBanner(text);
+  // Nothing comes any more.
+  private noteEnd(text: string): void {
+    showBanner(this.app ? '' : text);
+    this.app?.note(text);
   }
 
   private receiveFrame(frame: LiveFrame): void {
@@ -208,7 +215,7 @@ class Page {
 
   // The origin is known when the first objects are there, which may be after the page was opened.
   private readPlace(app: App): void {
-    this.source.json<View>('view.json').then(({origin, bounds}) => Object.assign(app.model.view, {origin, bounds})).catch(error => app.fail(error));
+    this.source.json<View>('view.json').then(({origin, bounds, notices}) => Object.assign(app.model.view, {origin, bounds, notices})).catch(error => app.fail(error));
   }
 
   // Other objects may be shown: their names and groups are read again.

@@ -5,6 +5,7 @@ import {css} from './colours.ts';
 import type {SceneModel} from './scene_model.ts';
 
 export function showProgress(text: string, done: number | null): void {
+  if (document.documentElement.dataset.failed) return;
   byId('loading').hidden = false;
   byId('loading-text').textContent = text;
   const bar = byId<HTMLProgressElement>('loading-bar');
@@ -18,6 +19,7 @@ export function hideProgress(): void {
 
 export function showFailure(message: string): void {
   hideProgress();
+  showBanner('');
   document.documentElement.dataset.side = 'closed';
   byId('failure').hidden = false;
   byId('failure-text').textContent = message;
@@ -52,7 +54,7 @@ export function showTitle(model: SceneModel): void {
   document.title = view.title ? `${view.title} – octopair` : 'octopair';
   const {pairs, began = 0, ended = 0} = frame.info;
   const events = view.has.events || view.kind === 'live' ? `, ${count(began)} began, ${count(ended)} ended` : '';
-  byId('counts').textContent = `${counted(view.objects, 'object', 'objects')}, ${counted(pairs, 'pair', 'pairs')}${events}`;
+  byId('counts').textContent = `${counted(frame.info.objects ?? view.objects, 'object', 'objects')}, ${counted(pairs, 'pair', 'pairs')}${events}`;
 }
 
 export function showSummary(model: SceneModel): void {

@@ -35,6 +35,12 @@ export const choices = {
   camera: ['orbit', 'fly'],
 } as const;
 
+export const ranges = {
+  others: {low: 0, high: 1, whole: false},
+  cut: {low: 0, high: 1, whole: false},
+  level: {low: -1, high: 21, whole: true},
+} as const;
+
 export type Name = keyof Values;
 
 export class Settings {
@@ -68,12 +74,18 @@ export class Settings {
     this.set(name, allowed[(at + 1) % allowed.length] as never);
   }
 
-  // Sets a value from the text of a link; a text that is no valid value is ignored.
+  // Sets a value from the text of a link. Ignores other texts, and numbers outside of their range.
   read(name: Name, text: string): void {
     const known = (choices as Record<string, readonly string[] | undefined>)[name];
     const old = this.values[name];
     if (known ? known.includes(text) : false) this.set(name, text as never);
-    else if (typeof old === 'boolean') this.set(name, (text === '1') as never);
-    else if (typeof old === 'number' && text !== '' && Number.isFinite(Number(text))) this.set(name, Number(text) as never);
+    else if (typeof old === 'boolean' && (text === '1' || text === '0')) this.set(name, (text === '1') as never);
+    else if (name === 'others' || name === 'cut' || name === 'level') this.readNumber(name, text);
+  }
+
+  private readNumber(name: keyof typeof ranges, text: string): void {
+    const {low, high, whole} = ranges[name];
+    const value = Number(text);
+    if (text.trim() !== '' && value >= low && value <= high && (!whole || Number.isInteger(value))) this.set(name, value);
   }
 }

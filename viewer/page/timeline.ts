@@ -6,6 +6,7 @@ import type {Timeline as Numbers} from './types.ts';
 export interface TimelineActions {
   go(frame: number): Promise<void>;
   pause(paused: boolean): void;
+  failed(error: unknown): void;
 }
 
 const livePoints = 5000;
@@ -21,6 +22,7 @@ export class Timeline {
   private plot: uPlot | null = null;
   private data: [number[], number[], number[], number[]] = [[], [], [], []];
   private busy = false;
+  private runs = 0;
   private readonly slider = byId<HTMLInputElement>('frame-slider');
   private readonly play = byId<HTMLButtonElement>('play');
 
@@ -95,6 +97,10 @@ export class Timeline {
     this.busy = true;
     try {
       await this.actions.go(wanted);
+    } catch (error) {
+      this.playing = false;
+      this.label();
+      this.actions.failed(error);
     } finally {
       this.busy = false;
     }
@@ -104,7 +110,8 @@ export class Timeline {
   }
 
   private async run(): Promise<void> {
-    while (this.playing) {
+    const run = ++this.runs;
+    while (this.playing && run === this.runs) {
       const began = performance.now();
       const next = this.frame + 1 >= this.done ? 0 : this.frame + 1;
       if (next === 0 && this.done < this.frames) await pause(300);

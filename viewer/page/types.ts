@@ -38,6 +38,8 @@ export interface View {
 
 export interface FrameInfo {
   frame: number;
+  // Those that exist.
+  objects?: number;
   pairs: number;
   pairs_listed?: number;
   began?: number;
@@ -47,8 +49,9 @@ export interface FrameInfo {
 
 export interface Contact {
   point: Point;
-  normal: Point;
-  depth: number;
+  // Unknown if only the point is known.
+  normal?: Point;
+  depth?: number;
 }
 
 export interface Collision {
@@ -106,6 +109,8 @@ export interface Timeline {
   pairs: number[];
   began: number[];
   ended: number[];
+  // Why later frames are missing.
+  failed?: string;
 }
 
 export interface Job {

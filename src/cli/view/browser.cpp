@@ -83,7 +83,9 @@ void wait_for_picture(BrowserPipe& browser, const std::string& session) {
 
 TemporaryFolder::TemporaryFolder() {
     std::error_code error;
-    path_ = (std::filesystem::temp_directory_path(error) / "octopair-view-XXXXXX").string();
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    if (error) fail_io("the folder for temporary files (TMPDIR): " + error.message());
+    path_ = (folder / "octopair-view-XXXXXX").string();
     if (::mkdtemp(path_.data()) == nullptr) fail_io("cannot make a folder for temporary files: " + path_);
 }
 

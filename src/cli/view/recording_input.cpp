@@ -3,6 +3,7 @@
 
 #include "cli/command/option_values.hpp"
 #include "cli/view/loaded_view.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "io/files/input_file.hpp"
 #include "scene/recording/replay.hpp"
 
@@ -101,6 +102,7 @@ LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, co
     view.contents.objects = objects;
     view.contents.moving = true;
     view.contents.margin = reader.options().margin;
+    view.contents.up = axis_word(request.detect.pipeline.space.up);
     if (left_out > 0) {
         view.contents.notices.push_back(fmt::format("Only the first {} of {} steps are shown, because of their size.",
                                                     grouped(steps.size()), grouped(steps.size() + left_out)));

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <optional>
 
 #include "base/memory.hpp"
 #include "base/stop.hpp"
@@ -98,6 +98,10 @@ public:
     }
     void name(std::uint32_t object, std::string name) { result_.names.emplace(object, std::move(name)); }
     void set_moving() { result_.moving = true; }
+    void set_first_frame(std::uint32_t frame) {
+        result_.moving = true;
+        result_.first_frame = frame;
+    }
 
     ResultFile finish() {
         if (!result_.frames.finish()) io::refuse(file_, "some rows have events, and some have none");
@@ -122,17 +126,49 @@ void add_npy_rows(const io::InputFile& file, const io::NpyHeader& header, Result
     }
 }
 
-/// Calls use(line, place) for each line that is not blank.
+/// Returns the frame in the name of a file that has one, as pairs.000003.npy does.
+std::optional<std::uint32_t> frame_in(std::string_view path) {
+    constexpr std::size_t least_digits = 6;
+    path.remove_suffix(std::min(path.size(), std::string_view(".npy").size()));
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string_view::npos || path.size() - dot - 1 < least_digits) return std::nullopt;
+    const std::string_view digits = path.substr(dot + 1);
+    std::uint32_t frame = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    return frame;
+}
+
+/// Returns the text without the mark of UTF-8 that some programs write first.
+std::string_view without_mark(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    return text;
+}
+
+/// Returns the end of the first line. A line break between quotes ends no line of a table.
+std::size_t end_of_line(std::string_view text, bool table) {
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (table && text[i] == '"') quoted = !quoted;
+        if (text[i] == '\n' && !quoted) return i;
+    }
+    return text.size();
+}
+
+/// Calls use(line, place) for each line that is not blank. `table`: lines of CSV.
 template <typename Use>
-void for_each_line(std::string_view text, const std::string& file, const std::stop_token& stop, const Use& use) {
-    for (std::uint64_t number = 1; !text.empty(); ++number) {
+void for_each_line(std::string_view text, bool table, const std::string& file, const std::stop_token& stop,
+                   const Use& use) {
+    text = without_mark(text);
+    for (std::uint64_t number = 1; !text.empty();) {
         throw_if_stopped(stop);
-        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::size_t end = end_of_line(text, table);
         std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.find_first_not_of(" \t") != std::string_view::npos)
             use(line, fmt::format("{}: line {}", file, number));
+        number += 1 + std::uint64_t(std::count(line.begin(), line.end(), '\n'));
     }
 }
 
@@ -166,7 +202,7 @@ Finding finding_of(const io::JsonFields& row) {
 
 void add_json_rows(std::string_view text, const std::string& file, ResultBuilder& builder,
                    const std::stop_token& stop) {
-    for_each_line(text, file, stop, [&](std::string_view line, const std::string& place) {
+    for_each_line(text, false, file, stop, [&](std::string_view line, const std::string& place) {
         const nlohmann::json value = io::parse_json(line, place, stop);
         const io::JsonFields fields(value, place);
         if (fields.find("change") != nullptr && fields.text("change") == "gone") return;
@@ -252,7 +288,7 @@ std::vector<Contact> CsvRow::contacts() const {
 
 void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder& builder, const std::stop_token& stop) {
     std::vector<std::string> header;
-    for_each_line(text, file, stop, [&](std::string_view line, const std::string& place) {
+    for_each_line(text, true, file, stop, [&](std::string_view line, const std::string& place) {
         if (header.empty()) {
             header = csv_fields(line);
             return;
@@ -283,7 +319,7 @@ bool is_result(const std::string& path) {
     if (ending == ".jsonl") return true;
     if (ending == ".csv") {
         const std::string head = read_text(io::InputFile(path), 4096, {});
-        return is_result_header(std::string_view(head).substr(0, head.find_first_of("\r\n")));
+        return is_result_header(without_mark(std::string_view(head).substr(0, head.find_first_of("\r\n"))));
     }
     if (ending != ".npy") return false;
     return holds_pairs(header_of(io::InputFile(path)));
@@ -296,6 +332,7 @@ ResultFile read_result(const std::string& path, const std::stop_token& stop) {
     if (ending == ".npy") {
         const io::NpyHeader header = header_of(file);
         if (!holds_pairs(header)) io::refuse(path, "not an array of pairs");
+        if (const auto frame = frame_in(path)) builder.set_first_frame(*frame);
         header.type == io::NpyType::uint32 ? add_npy_rows<std::uint32_t>(file, header, builder, stop)
                                            : add_npy_rows<std::uint64_t>(file, header, builder, stop);
         return builder.finish();

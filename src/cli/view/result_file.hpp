@@ -12,7 +12,8 @@ namespace octopair::cli {
 
 struct ResultFile {
     ResultFrames frames;
-    bool moving = false;  ///< true if rows have frames
+    bool moving = false;            ///< true if rows have frames, or the name of the file has one
+    std::uint64_t first_frame = 0;  ///< that of the name, as in pairs.000003.npy; frame 0 of `frames` is this frame
     std::map<std::uint32_t, std::string> names;
     std::uint64_t objects = 0;  ///< 1 more than the largest index
 };

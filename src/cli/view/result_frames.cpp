@@ -37,7 +37,7 @@ void ResultFrames::pair_up_events() {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Entry& row = rows_[i];
         if (row.event == ResultRow::Event::begin && !open) {
-            lifetimes_.push_back({row.pair, row.frame, frames_, row.finding});
+            lifetimes_.push_back({row.pair, row.frame, no_end, row.finding});
             open = true;
         } else if (row.event == ResultRow::Event::end && open) {
             lifetimes_.back().end = row.frame;

@@ -33,13 +33,14 @@ public:
     bool finish();
 
     /// The functions below require that finish() returned true.
-    /// Returns the number of frames, at least 1.
+    /// Returns the number of frames up to the last row, at least 1.
     std::uint64_t size() const { return frames_; }
+    /// Returns the collisions of any frame. After the last event, they remain as they are.
     ResultFrame frame(std::uint64_t number) const;
     bool has_contacts() const;
 
 private:
-    static constexpr std::uint32_t no_finding = 0xFFFFFFFF;
+    static constexpr std::uint32_t no_finding = 0xFFFFFFFF, no_end = 0xFFFFFFFF;
     struct Entry {
         Pair pair;
         std::uint32_t frame;

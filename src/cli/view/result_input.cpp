@@ -7,6 +7,7 @@
 
 #include "cli/view/loaded_view.hpp"
 #include "cli/view/result_file.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -82,15 +83,19 @@ LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) 
     LoadedView view;
     view.contents.title = request.result.substr(request.result.rfind('/') + 1);
     view.contents.objects = result.objects;
-    view.contents.moving = result.moving;
+    view.contents.moving = result.moving && result.frames.size() > 1;
+    view.contents.up = axis_word(request.detect.pipeline.space.up);
     view.contents.has_boxes = false;
     if (!result.names.empty()) {
         view.contents.names.resize(std::size_t(result.objects));
         for (const auto& [object, name] : result.names) view.contents.names[object] = name;
     }
     view.contents.contacts = result.frames.has_contacts();
-    view.contents.notices.push_back(
-        "A result has no boxes: objects are drawn around their contacts. Name the scene, too, to see its objects.");
+    view.contents.notices.push_back(view.contents.contacts
+                                        ? "A result has no boxes: objects are drawn around their contacts. Name the "
+                                          "scene, too, to see its objects."
+                                        : "This result has neither boxes nor contacts, so nothing is drawn. Name the "
+                                          "scene, too, to see its objects.");
     view.finder = std::make_unique<PlacesFinder>(std::move(result));
     return view;
 }

@@ -116,8 +116,8 @@ public:
         const Objects objects = inputs_->set.frame(frame);
         data.boxes = objects.boxes;
         data.padding = objects.padding;
-        if (frame >= result_.frames.size()) return data;
-        ResultFrame found = result_.frames.frame(frame);
+        if (frame < result_.first_frame) return data;
+        ResultFrame found = result_.frames.frame(frame - result_.first_frame);
         data.pairs = std::move(found.pairs);
         data.findings = std::move(found.findings);
         data.pair_count = data.pairs.size();
@@ -144,9 +144,13 @@ void check_result(const ResultFile& result, const InputSet& set, const std::stri
         io::refuse(path, fmt::format("object {}: the scene has only {} objects; is it the scene of this result?",
                                      result.objects - 1, set.scene.objects));
     }
-    if (result.frames.size() > set.scene.frames) {
-        io::refuse(path, fmt::format("frame {}: the last frame of the scene is {}", result.frames.size() - 1,
-                                     set.scene.frames - 1));
+    const std::uint64_t last = result.first_frame + result.frames.size() - 1;
+    if (last >= set.scene.frames)
+        io::refuse(path, fmt::format("frame {}: the last frame of the scene is {}", last, set.scene.frames - 1));
+    if (!result.moving && set.scene.frames > 1) {
+        io::refuse(path, fmt::format("which of the {} frames of the scene is this? The rows have no frames, and the "
+                                     "file's name does not end with the number of one, as pairs.000003.npy does",
+                                     set.scene.frames));
     }
 }
 

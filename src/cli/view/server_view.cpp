@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "cli/server/server_choice.hpp"
 #include "cli/view/browser.hpp"
 #include "cli/view/presentation.hpp"
+#include "cli/view/server_contact.hpp"
 #include "cli/view/view_options.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"
@@ -61,29 +60,6 @@ viewer::LiveState state_of(SceneSnapshot&& snapshot) {
     return state;
 }
 
-/// Waits until a stop request, at most `most`.
-void pause(const std::stop_token& stop, std::chrono::milliseconds most) {
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    wake.wait_for(lock, stop, most, [] { return false; });
-}
-
-/// Returns what `call` returns. If the server does not answer, tells it to the pages at `path`, pauses, and returns nothing.
-/// Throws: what `call` throws for other reasons.
-template <typename Call>
-std::invoke_result_t<Call> unless_unreachable(viewer::PageServer& server, const std::string& path,
-                                              const std::stop_token& stop, const Call& call) {
-    try {
-        return call();
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::engine_failed || stop.stop_requested()) throw;
-        server.broadcast(path, viewer::waiting_message(error.what()));
-        pause(stop, 500ms);
-        return {};
-    }
-}
-
 /// Returns the client options of the command, with a short patience: the pages are told soon, and the calls repeated.
 ClientOptions watching_options(const ServerChoice& choice) {
     ClientOptions options = client_options(choice);
@@ -111,18 +87,24 @@ private:
     std::string path() const { return "scene/" + id_; }
 
     void run(SceneWatcher& watcher, viewer::PageServer& server, const std::stop_token& stop) {
+        ServerContact contact(path());
+        std::uint64_t step = 0;
         try {
-            std::uint64_t step = 0;
             while (!ends(stop)) {
-                const auto next = [&] { return watcher.next(id_, step, 2s, viewer::max_listed_pairs, stop); };
-                auto snapshot = unless_unreachable(server, path(), stop, next);
+                auto snapshot = contact.ask(server, stop, [&](const std::stop_token& end) {
+                    return watcher.next(id_, step, 2s, viewer::max_listed_pairs, end);
+                });
                 if (!snapshot) continue;
                 step = snapshot->step;
                 source_.feed().put(state_of(std::move(*snapshot)));
                 server.notify();
             }
         } catch (const std::exception& error) {
-            if (!stop.stop_requested()) server.broadcast(path(), viewer::failed_message(error.what()));
+            // A scene that was there has ended.
+            const auto* const known = dynamic_cast<const Error*>(&error);
+            const bool ended = step > 0 && known != nullptr && known->code() == ErrorCode::bad_input;
+            if (!stop.stop_requested())
+                server.broadcast(path(), ended ? viewer::closed_message() : viewer::failed_message(error.what()));
             const std::lock_guard lock(mutex_);
             watched_ = false;
         }
@@ -247,7 +229,7 @@ private:
 
     void update(viewer::PageServer& server, const std::stop_token& stop) {
         try {
-            std::string message = unless_unreachable(server, "", stop, [&] { return list(stop); });
+            std::string message = contact_.ask(server, stop, [&](const std::stop_token& end) { return list(end); });
             if (message.empty()) return;
             {
                 const std::lock_guard lock(mutex_);
@@ -302,6 +284,7 @@ private:
     JobClient jobs_;
     SceneWatcher scenes_;
     bool has_scenes_ = true;
+    ServerContact contact_{""};
     std::atomic<unsigned> pages_ = 0;
     std::atomic<viewer::PageServer*> server_ = nullptr;
     std::mutex mutex_;

@@ -14,11 +14,6 @@ namespace octopair::cli {
 
 namespace {
 
-std::string axis_word(io::UpAxis up) {
-    if (up == io::UpAxis::unknown) return {};
-    return up == io::UpAxis::y ? "y" : "z";
-}
-
 std::vector<std::string> shown_names(const InputSet& set) {
     if (!set.scene.triangles) return set.scene.names;
     std::vector<std::string> names;
@@ -62,6 +57,11 @@ std::vector<std::pair<std::string, std::string>> shown_details(const InputSet& s
         if (!text.empty()) details.emplace_back(io::word_of(detail), text);
     }
     return details;
+}
+
+std::string axis_word(io::UpAxis up) {
+    if (up == io::UpAxis::unknown) return {};
+    return up == io::UpAxis::y ? "y" : "z";
 }
 
 viewer::SceneContents shown_scene(const DetectRequest& request, const InputSet& set) {

@@ -11,6 +11,9 @@
 
 namespace octopair::cli {
 
+/// Returns the axis as pages get it: "y", "z" or empty.
+std::string axis_word(io::UpAxis up);
+
 /// Returns names, groups, shapes, axes and warnings of a set. The members `title` and `details` stay empty.
 viewer::SceneContents shown_scene(const DetectRequest& request, const InputSet& set);
 

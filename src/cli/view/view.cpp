@@ -10,6 +10,7 @@
 
 #include "base/stop.hpp"
 #include "cli/command/command.hpp"
+#include "cli/command/failure.hpp"
 #include "cli/command/file_options.hpp"
 #include "cli/command/interrupt.hpp"
 #include "cli/command/option_values.hpp"
@@ -122,8 +123,10 @@ std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& ser
         try {
             source.count_frames([&](std::uint64_t done) { server.broadcast("", viewer::timeline_message(done)); },
                                 stop);
-        } catch (const std::exception& error) {
-            server.broadcast("", viewer::failed_message(error.what()));
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::cancelled) return;
+            static_cast<void>(fail(error));  // the frames before can be shown, so the command goes on
+            server.broadcast("", viewer::timeline_message(source.counted()));
         }
     });
 }

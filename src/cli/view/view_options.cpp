@@ -78,6 +78,7 @@ void check_server_view(ViewRequest& request) {
     check_no_search(detect, "a server");
     if (!request.export_page.empty() || !request.screenshot.empty())
         refuse_view("--export and --screenshot: not with a server");
+    if (detect.pipeline.space.up != io::UpAxis::unknown) refuse_view("--up: not with a server");
 #ifdef OCTOPAIR_WITH_SERVICE
     detect.engine.kind = EngineKind::server;
     detect.engine.server.address = detect.inputs.front();

@@ -32,7 +32,8 @@ struct LiveFeed::Head {
     std::uint32_t magic = 0x4F504C56, frame = 0, base = 0xFFFFFFFF, objects = 0;
     std::uint32_t shown = 0, moved = 0, began = 0, ended = 0;
     std::uint32_t pairs_low = 0, pairs_high = 0, listed = 0, step_microseconds = 0;
-    std::uint32_t unused[4] = {};
+    std::uint32_t existing = 0;
+    std::uint32_t unused[3] = {};
 };
 
 std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_shown_); }
@@ -54,6 +55,8 @@ void LiveFeed::put(LiveState&& next) {
     ++frame_;
     const bool listed_before = pairs_.size() <= max_listed_pairs;
     Difference difference = update_pairs(next);
+    began_ = difference.began;
+    ended_ = difference.ended;
     // Pages do not have all pairs if there were too many. When there are fewer, they get all.
     whole |= !listed_before && pairs_.size() <= max_listed_pairs;
     state_ = std::make_shared<const LiveState>(std::move(next));
@@ -132,6 +135,8 @@ LiveFeed::Head LiveFeed::head() const {
     Head head;
     head.frame = std::uint32_t(frame_);
     head.objects = std::uint32_t(size_of(*state_));
+    const auto& exists = state_->exists;
+    head.existing = head.objects - std::uint32_t(std::count(exists.begin(), exists.end(), 0));
     head.shown = std::uint32_t(shown());
     const std::uint64_t pairs = std::max<std::uint64_t>(state_->pair_count, pairs_.size());
     head.pairs_low = std::uint32_t(pairs);
@@ -207,15 +212,16 @@ Message LiveFeed::frame_after(std::int64_t last) {
     return made;
 }
 
-FrameData LiveFeed::latest() const {
+LiveFeed::Frame LiveFeed::latest() const {
     const std::lock_guard lock(mutex_);
-    FrameData data;
+    Frame frame{{}, began_, ended_};
+    FrameData& data = frame.data;
     data.boxes = boxes_of(*state_);
     data.keep = state_;
     data.exists = state_->exists;
     data.pairs = pairs_;
     data.pair_count = std::max<std::uint64_t>(state_->pair_count, pairs_.size());
-    return data;
+    return frame;
 }
 
 Point3d LiveFeed::origin() const {

@@ -49,8 +49,13 @@ public:
     /// Returns the frame for a page that has frame `last` (-1: none); null if there is none newer.
     Message frame_after(std::int64_t last);
 
+    /// A frame, and the pairs that began and ended in it.
+    struct Frame {
+        FrameData data;
+        std::vector<Pair> began, ended;
+    };
     /// Returns the latest frame; one without objects before the first.
-    FrameData latest() const;
+    Frame latest() const;
     /// Returns the origin of all frames: the centre of the first one with objects.
     Point3d origin() const;
     std::size_t most_shown() const { return most_shown_; }
@@ -80,6 +85,7 @@ private:
     std::int64_t oldest_base_ = 0;  // pages with an older frame need a whole one
     std::shared_ptr<const LiveState> state_ = std::make_shared<LiveState>();
     std::vector<Pair> pairs_;
+    std::vector<Pair> began_, ended_;  // of the latest frame
     Point3d origin_ = {};
     bool has_origin_ = false;  // some frame had objects
     bool incomplete_ = false;  // true while put() runs, and after it has failed

@@ -52,12 +52,13 @@ const Octants& LiveSource::octants(const ShownFrame& frame) {
 }
 
 std::optional<Answer> LiveSource::get(const Address& address) {
-    const FrameData data = feed_.latest();
+    const LiveFeed::Frame latest = feed_.latest();
+    const FrameData& data = latest.data;
     if (address.path() == "view.json") return view_answer(data);
     const std::size_t objects = std::visit([](auto span) { return span.size(); }, data.boxes);
     const ShownObjects shown = ShownObjects::first(std::min(objects, feed_.most_shown()));
     const Point3d origin = feed_.origin();
-    const ShownFrame frame{contents_, objects, shown, origin, data};
+    const ShownFrame frame{contents_, objects, shown, origin, data, latest.began, latest.ended};
     if (address.path() == "names.json" && !contents_.names.empty()) {
         std::vector<std::string> names = contents_.names;
         names.resize(shown.size());

@@ -67,9 +67,15 @@ public:
     std::string address() const { return server_.address(); }
     unsigned pages() const { return source_.pages(); }
 
-    void show(const StepResult& step) {
+    void show(const StepResult& step, bool at_once) {
         ++steps_;
         keep_events(step);
+        if (at_once) {
+            std::unique_lock lock(mutex_);
+            passed_on_.wait(lock, [this] { return !busy_; });
+            lock.unlock();
+            return copy(step, Clock::now());
+        }
         if (source_.pages() == 0 && Clock::now() < unwatched_) return;
         if (const auto now = Clock::now(); now >= next_ && !busy_) copy(step, now);
     }
@@ -142,6 +148,7 @@ private:
             }
             lock.lock();
             busy_ = false;
+            passed_on_.notify_all();
         }
     }
 
@@ -154,7 +161,7 @@ private:
     Clock::time_point next_ = {}, unwatched_ = {};
 
     std::mutex mutex_;
-    std::condition_variable_any ready_;
+    std::condition_variable_any ready_, passed_on_;
     LiveState waiting_;                     // guarded by mutex_
     std::atomic<bool> incomplete_ = false;  // a state was lost
     std::atomic<bool> busy_ = false;        // true from the copy until the state is passed on
@@ -170,7 +177,7 @@ View::View(Scene& scene, const ViewOptions& options) {
 View::~View() = default;
 
 std::string View::address() const { return state_->address(); }
-void View::show(const StepResult& step) { state_->show(step); }
+void View::show(const StepResult& step, bool at_once) { state_->show(step, at_once); }
 unsigned View::pages() const { return state_->pages(); }
 
 }  // namespace octopair

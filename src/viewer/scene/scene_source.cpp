@@ -119,30 +119,44 @@ SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
     return found;
 }
 
+SceneSource::FramePointer SceneSource::count_frame(std::uint64_t number, const FramePointer& before) {
+    const std::lock_guard lock(frames_mutex_);
+    FramePointer now;
+    try {
+        now = find(number, before);
+    } catch (const Error& error) {
+        const std::lock_guard counts_lock(counts_mutex_);
+        if (error.code() != ErrorCode::cancelled) counts_.fault = error.what();
+        throw;
+    }
+    const std::lock_guard counts_lock(counts_mutex_);
+    if (const auto bounds = bounds_of(now->data)) {
+        bounds_ = has_bounds_ ? joined(bounds_, *bounds) : *bounds;
+        has_bounds_ = true;
+    }
+    counts_.pairs.push_back(now->data.pair_count);
+    counts_.began.push_back(now->began.size());
+    counts_.ended.push_back(now->ended.size());
+    return now;
+}
+
 void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, const std::stop_token& stop) {
     using Clock = std::chrono::steady_clock;
     auto last_call = Clock::now();
     FramePointer before;
     for (std::uint64_t number = 0; number < frames() && !stop.stop_requested(); ++number) {
-        {
-            const std::lock_guard lock(frames_mutex_);
-            FramePointer now = find(number, before);
-            const std::lock_guard counts_lock(counts_mutex_);
-            if (const auto bounds = bounds_of(now->data)) {
-                bounds_ = has_bounds_ ? joined(bounds_, *bounds) : *bounds;
-                has_bounds_ = true;
-            }
-            counts_.pairs.push_back(now->data.pair_count);
-            counts_.began.push_back(now->began.size());
-            counts_.ended.push_back(now->ended.size());
-            before = std::move(now);
-        }
+        before = count_frame(number, before);
         const bool last = number + 1 == frames();
         if (more && (last || Clock::now() - last_call > std::chrono::milliseconds(200))) {
             last_call = Clock::now();
             more(number + 1);
         }
     }
+}
+
+std::uint64_t SceneSource::counted() const {
+    const std::lock_guard lock(counts_mutex_);
+    return counts_.pairs.size();
 }
 
 const Octants& SceneSource::octants(Frame& frame) {
@@ -247,7 +261,10 @@ Answer SceneSource::view_answer() const {
 }
 
 Answer SceneSource::frame_answer(const Frame& frame) const {
+    const std::vector<std::uint8_t>& exists = frame.data.exists;
     Json json = {{"frame", frame.number},
+                 {"objects", exists.empty() ? contents_.objects
+                                            : exists.size() - std::size_t(std::count(exists.begin(), exists.end(), 0))},
                  {"pairs", frame.data.pair_count},
                  {"pairs_listed", std::min(frame.data.pairs.size(), max_listed_pairs)},
                  {"began", frame.began.size()},
@@ -263,11 +280,13 @@ Answer SceneSource::timeline_answer() const {
         return std::vector<std::uint64_t>(counts.begin(),
                                           counts.begin() + std::ptrdiff_t(std::min<std::uint64_t>(all, counts.size())));
     };
-    return json_answer({{"frames", all},
-                        {"done", std::min<std::uint64_t>(all, counts_.pairs.size())},
-                        {"pairs", first(counts_.pairs)},
-                        {"began", first(counts_.began)},
-                        {"ended", first(counts_.ended)}});
+    Json json = {{"frames", all},
+                 {"done", std::min<std::uint64_t>(all, counts_.pairs.size())},
+                 {"pairs", first(counts_.pairs)},
+                 {"began", first(counts_.began)},
+                 {"ended", first(counts_.ended)}};
+    if (!counts_.fault.empty()) json["failed"] = counts_.fault;
+    return json_answer(json);
 }
 
 Answer SceneSource::shapes_answer() const {

@@ -27,8 +27,10 @@ public:
     /// Finds the first frame. `progress` may be empty. Throws: what the finder throws.
     void load(const ProgressSink& progress);
     /// Finds all frames, and calls `more` with the number of frames that are counted, at most five times a second.
-    /// Throws: what the finder throws.
+    /// Throws: what the finder throws. From then on, timeline.json says that this frame has failed.
     void count_frames(const std::function<void(std::uint64_t done)>& more, const std::stop_token& stop);
+    /// Returns the number of frames that are counted.
+    std::uint64_t counted() const;
     std::uint64_t frames() const { return finder_.frames(); }
     bool moving() const { return contents_.moving; }
     /// Returns the number of pairs of the first frame. Requires: load().
@@ -77,6 +79,7 @@ private:
 
     FramePointer frame(std::uint64_t number);
     FramePointer find(std::uint64_t number, const FramePointer& before);
+    FramePointer count_frame(std::uint64_t number, const FramePointer& before);
     const Octants& octants(Frame& frame);
     ShownFrame shown_frame(const Frame& frame) const;
 
@@ -98,6 +101,7 @@ private:
     std::deque<FramePointer> kept_;  // in the order in which they were found
     struct Counts {
         std::vector<std::uint64_t> pairs, began, ended;
+        std::string fault;  // why no more frames are counted; empty: nothing has failed
     };
     mutable std::mutex counts_mutex_;
     Counts counts_;

@@ -501,10 +501,37 @@ test('a server that ends and starts again', async () => {
     server = serve();
     await page.locator('#banner').waitFor({state: 'hidden'});
     await waitForData(page, 'scenes', '0');
-    await waitForText(scene.page, '#failure', /scene/);
+    await waitForText(scene.page, '#notices', /simulation has ended/);
+    assert.ok(await scene.page.locator('#banner').isHidden());
     await scene.close();
   };
   await withPage(program.address, check, {wait: ready});
+  await program.stop();
+  await server.stop();
+});
+
+test('a server that stops for a while, with a scene at rest', async () => {
+  const address = `unix:${inputs.path('rest.socket')}`;
+  const server = keep(new Child(options.program, ['serve', '--listen', address, '--log-level', 'warn']));
+  while (!existsSync(inputs.path('rest.socket'))) await new Promise(done => setTimeout(done, 50));
+  const simulation = python('remote', address);
+  await simulation.line();
+  simulation.write('pairs\n');
+  await simulation.line();
+  const program = keep(await view(options.program, [address]));
+  await withPage(program.address, async page => {
+    await waitForData(page, 'scenes', '1');
+    const scene = await open(browser, new URL(await page.locator('#scene-rows a').getAttribute('href'), program.address).href);
+    await complete(scene.page);
+    server.process.kill('SIGSTOP');
+    await waitForText(page, '#banner', /not answered/);
+    await waitForText(scene.page, '#banner', /not answered/);
+    server.process.kill('SIGCONT');
+    for (const each of [page, scene.page]) await each.locator('#banner').waitFor({state: 'hidden'});
+    simulation.write('stop\n');
+    await waitForText(scene.page, '#notices', /simulation has ended/);
+    await scene.close();
+  }, {wait: ready});
   await program.stop();
   await server.stop();
 });

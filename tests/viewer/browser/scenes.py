@@ -3,7 +3,6 @@
 import json
 import select
 import sys
-import time
 
 import numpy as np
 
@@ -57,14 +56,12 @@ def run(dust, show):
     while (word := command(0.02 if running else 60)) != "stop":
         if word == "pairs":
             running = False
-            # A view copies boxes for at most a hundredth of the time, so the page may lack the last steps.
-            time.sleep(1)
-            show(dust.step())
+            show(dust.step(), at_once=True)
             tell(steps=dust.steps, pairs=np.asarray(dust.scene.pairs()).tolist())
         elif word == "go":
             running = True
         elif word is None and running:
-            show(dust.step())
+            show(dust.step(), at_once=False)
         elif word == "steps":
             tell(steps=dust.steps)
 
@@ -79,7 +76,7 @@ def live():
 def remote(address):
     dust = Dust(op.remote.RemoteScene(address))
     tell(connected=True)
-    run(dust, lambda step: None)
+    run(dust, lambda step, at_once: None)
 
 
 def job(address):

@@ -226,6 +226,23 @@ test('frames step and play', 'moving', 100, async ({page, scene}) => {
   assert.ok(await page.locator('#plot canvas').count() === 1);
 });
 
+test('frames play once at a time', 'moving', 50, async ({page}) => {
+  await page.selectOption('#speed', '1');
+  for (let k = 0; k < 9; ++k) await page.click('#play');
+  await page.waitForTimeout(2300);
+  // Each of the five clicks on Play shows the next frame. Then the last one goes on.
+  const frame = Number(await data(page, 'frame'));
+  assert.ok(frame >= 6 && frame <= 8, `frame ${frame}`);
+});
+
+test('the end of the program stops play', 'moving', 50, async ({page, stop}) => {
+  await page.selectOption('#speed', '30');
+  await page.click('#play');
+  await waitForData(page, 'frame', '2');
+  stop();
+  await page.waitForFunction(() => document.getElementById('play').textContent === 'Play');
+}, {expected: /WebSocket|Failed to load|Failed to fetch/});
+
 test('octants by level', 'static', 200, async ({page}) => {
   await page.keyboard.press('o');
   await waitForData(page, 'octants', '512');
@@ -333,6 +350,11 @@ test('a link holds the view', 'moving', 100, async ({page, address, browser}) =>
   await waitForData(other.page, 'frame', '1');
   assert.equal(await other.page.evaluate(() => window.octopairView.camera()), camera);
   assert.equal((await settings(other.page)).colour, 'group');
+  // A link that is pasted over another one, with values that are not allowed.
+  await other.page.evaluate(() => location.hash = '#others=1e9&edges=yes&cut=7&level=2.5&flip=1&selected=6');
+  await waitForData(other.page, 'selected', '6');
+  const {others, edges, cut, level, flip} = await settings(other.page);
+  assert.deepEqual({others, edges, cut, level, flip}, {others: 1, edges: true, cut: 0.5, level: -1, flip: true});
   await other.close();
 });
 
