@@ -7,9 +7,12 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
-# Paths in messages and in debug information begin at the root.
+# Paths in messages begin at the root, and in packages also those in debug information. So checkouts in other folders give the same
+# code, and a compiler cache serves them all.
 if(OCTOPAIR_PACKAGE_BUILD)
     add_compile_options(-ffile-prefix-map=${PROJECT_BINARY_DIR}=build -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
+elseif(PROJECT_IS_TOP_LEVEL)
+    add_compile_options(-fmacro-prefix-map=${PROJECT_SOURCE_DIR}=.)
 endif()
 
 function(octopair_target target)
