@@ -346,7 +346,7 @@ export class App {
 
   // A notice that stays, such as the end of the program.
   note(text: string): void {
-    this.notes.push(text);
+    if (!this.notes.includes(text)) this.notes.push(text);
     this.showNotices();
   }
 
