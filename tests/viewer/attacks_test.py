@@ -303,10 +303,11 @@ class Endurance(InFolder):
         with self.view(self.path('boxes.npy')) as view:
             connections = [view.connect() for _ in range(10)]
             with WebSocket(view) as web_socket:
+                while json.loads(web_socket.read()[1])['event'] != 'ready':
+                    pass
                 view.process.terminate()
-                view.process.wait(10)
-                self.assertEqual(web_socket.read()[0], 1)
                 self.assertEqual(json.loads(web_socket.read()[1]), {'event': 'closed'})
+                view.process.wait(10)
             for connection in connections:
                 connection.close()
 

@@ -65,7 +65,7 @@ public:
             done.set_value();
         });
         done.get_future().wait();
-        for (int i = 0; i < 20 && busy(); ++i) std::this_thread::sleep_for(10ms);
+        for (int i = 0; i < 50 && busy(); ++i) std::this_thread::sleep_for(10ms);
         pool_.stop();
         pool_.join();
         io_.stop();

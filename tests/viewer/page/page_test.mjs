@@ -238,7 +238,7 @@ test('frames play once at a time', 'moving', 50, async ({page}) => {
 test('the end of the program stops play', 'moving', 50, async ({page, stop}) => {
   await page.selectOption('#speed', '30');
   await page.click('#play');
-  await waitForData(page, 'frame', '2');
+  await page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 1);
   stop();
   await page.waitForFunction(() => document.getElementById('play').textContent === 'Play');
 }, {expected: /WebSocket|Failed to load|Failed to fetch/});
