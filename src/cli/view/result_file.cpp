@@ -155,11 +155,16 @@ std::size_t end_of_line(std::string_view text, bool table) {
     return text.size();
 }
 
+/// The text of a result. Borrowed.
+struct ResultText {
+    std::string_view text;
+    const std::string& file;
+};
+
 /// Calls use(line, place) for each line that is not blank. `table`: lines of CSV.
 template <typename Use>
-void for_each_line(std::string_view text, bool table, const std::string& file, const std::stop_token& stop,
-                   const Use& use) {
-    text = without_mark(text);
+void for_each_line(const ResultText& result, bool table, const std::stop_token& stop, const Use& use) {
+    std::string_view text = without_mark(result.text);
     for (std::uint64_t number = 1; !text.empty();) {
         throw_if_stopped(stop);
         const std::size_t end = end_of_line(text, table);
@@ -167,7 +172,7 @@ void for_each_line(std::string_view text, bool table, const std::string& file, c
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.find_first_not_of(" \t") != std::string_view::npos)
-            use(line, fmt::format("{}: line {}", file, number));
+            use(line, fmt::format("{}: line {}", result.file, number));
         number += 1 + std::uint64_t(std::count(line.begin(), line.end(), '\n'));
     }
 }
@@ -200,9 +205,8 @@ Finding finding_of(const io::JsonFields& row) {
     return finding;
 }
 
-void add_json_rows(std::string_view text, const std::string& file, ResultBuilder& builder,
-                   const std::stop_token& stop) {
-    for_each_line(text, false, file, stop, [&](std::string_view line, const std::string& place) {
+void add_json_rows(const ResultText& text, ResultBuilder& builder, const std::stop_token& stop) {
+    for_each_line(text, false, stop, [&](std::string_view line, const std::string& place) {
         const nlohmann::json value = io::parse_json(line, place, stop);
         const io::JsonFields fields(value, place);
         if (fields.find("change") != nullptr && fields.text("change") == "gone") return;
@@ -286,9 +290,9 @@ std::vector<Contact> CsvRow::contacts() const {
     return contacts;
 }
 
-void add_csv_rows(std::string_view text, const std::string& file, ResultBuilder& builder, const std::stop_token& stop) {
+void add_csv_rows(const ResultText& text, ResultBuilder& builder, const std::stop_token& stop) {
     std::vector<std::string> header;
-    for_each_line(text, true, file, stop, [&](std::string_view line, const std::string& place) {
+    for_each_line(text, true, stop, [&](std::string_view line, const std::string& place) {
         if (header.empty()) {
             header = csv_fields(line);
             return;
@@ -338,7 +342,7 @@ ResultFile read_result(const std::string& path, const std::stop_token& stop) {
         return builder.finish();
     }
     const std::string text = read_text(file, file.size(), stop);
-    ending == ".jsonl" ? add_json_rows(text, path, builder, stop) : add_csv_rows(text, path, builder, stop);
+    ending == ".jsonl" ? add_json_rows({text, path}, builder, stop) : add_csv_rows({text, path}, builder, stop);
     return builder.finish();
 }
 
