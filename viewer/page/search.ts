@@ -11,15 +11,22 @@ export class Search {
   private readonly text = byId<HTMLInputElement>('search-text');
   private readonly box = byId('found');
   private abort = new AbortController();
+  // The text whose first object opens.
+  private opening: string | null = null;
 
   constructor(private readonly source: Source, private readonly model: SceneModel, private readonly open: (object: number) => void,
     private readonly failed: (error: unknown) => void) {
     byId('search').hidden = false;
     byId('search').addEventListener('submit', event => {
       event.preventDefault();
+      this.opening = this.text.value;
       void this.find(true);
     });
-    this.text.addEventListener('input', later(() => void this.find(false), 180));
+    this.text.addEventListener('input', () => this.opening = null);
+    // A list that comes later must not end the search that opens an object.
+    this.text.addEventListener('input', later(() => {
+      if (this.text.value !== this.opening) void this.find(false);
+    }, 180));
     byId('search').addEventListener('keydown', event => this.press(event));
     document.addEventListener('pointerdown', event => {
       if (!byId('search').contains(event.target as Node)) this.close();

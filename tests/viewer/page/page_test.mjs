@@ -130,6 +130,19 @@ test('search by name and index', 'static', 100, async ({page}) => {
   assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), false);
 });
 
+test('a slow search opens its first object', 'shapes', 60, async ({page}) => {
+  await page.route('**/search.json*', async route => {
+    await new Promise(done => setTimeout(done, 500));
+    await route.continue();
+  });
+  await page.fill('#search-text', '42');
+  await page.waitForTimeout(100);
+  await page.press('#search-text', 'Enter');
+  await waitForData(page, 'selected', '42');
+  await page.waitForTimeout(700);
+  assert.ok(await page.locator('#found').isHidden());
+});
+
 test('names are texts', 'static', 20, async ({page}) => {
   await page.evaluate(() => window.octopairView.select(1));
   await page.locator('#selection h2').waitFor();
