@@ -2,8 +2,8 @@
 //
 // Page      A server in this process serves the page at address(). The page shows boxes, pairs, events, octants and times of steps.
 // Pace      The scene never waits for a page. show() copies the boxes at most ViewOptions::frames_per_second times a second. Copying
-//           takes at most a hundredth of the time. Pages that read slowly, or not at all, get fewer frames.
-//           So the last steps before a pause may be missing on pages, unless show() is told to copy at once.
+//           takes at most a hundredth of the time. So the last steps before a pause may be missing on pages, unless show() is told
+//           to copy at once. Pages that read slowly, or not at all, get fewer frames.
 //           The threads of the server have a low priority. Without a page, a call of show() takes well under a microsecond,
 //           except once a second.
 // Large     Of more than 200,000 objects, those with the first indices are drawn. The page says so.

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import shutil
 import time
 
 import scene_files
@@ -197,6 +198,7 @@ class Answers(InFolder):
                 self.assertEqual(pairs_in(view.get('pairs/0.u32')), pairs, name)
             with self.view(self.path(name)) as view:
                 self.assertEqual(pairs_in(view.get('pairs/0.u32')), pairs, name)
+                self.assertIn('nothing is drawn', view.get('view.json')['notices'][0])
                 self.assertEqual(view.get('octants/0.json')['entries'], 0)
 
     def test_results_with_events(self):
@@ -222,6 +224,11 @@ class Answers(InFolder):
         frames = scene_files.moving_boxes(4, 3, 40)
         scene_files.save_moving(self.path('scene.npy'), frames)
         self.assertEqual(self.run_program('detect', self.path('scene.npy'), '--quiet', '--output', self.path('pairs.npy')).returncode, 0)
+        # The number in the name of another result is no frame.
+        scene_files.save_boxes(self.path('boxes.npy'), frames[2])
+        shutil.copy(self.path('pairs.000002.npy'), self.path('pairs.20261127.npy'))
+        with self.view(self.path('boxes.npy'), self.path('pairs.20261127.npy')) as view:
+            self.assertEqual(pairs_in(view.get('pairs/0.u32')), scene_files.true_pairs(frames[2]))
         with self.view(self.path('scene.npy'), self.path('pairs.000002.npy')) as view:
             for number, boxes in enumerate([[], [], frames[2]]):
                 self.assertEqual(pairs_in(view.get(f'pairs/{number}.u32')), scene_files.true_pairs(boxes), number)

@@ -398,6 +398,9 @@ class BadInput(InFolder):
                           ['--export', good], ['--stage', 'x'], ['--listen', ':0']):
             done = self.run_program('view', good, *arguments, '--no-browser', '--quiet')
             self.assertEqual(done.returncode, 2, (arguments, done.stderr))
+        done = self.run_program('view', good, '--screenshot', self.path('picture.png'), '--quiet', environment={'TMPDIR': '/missing'})
+        self.assertEqual((done.returncode, os.path.exists(self.path('picture.png'))), (4, False))
+        self.assertIn('TMPDIR', done.stderr)
         self.assertEqual(self.run_program('view', good, '--listen', '192.0.2.1:0', '--no-browser', '--quiet').returncode, 4)
         with self.view(good) as view:
             self.refused(4, good, '--port', str(view.port))

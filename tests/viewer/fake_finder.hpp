@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <iterator>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -42,10 +43,12 @@ public:
         std::this_thread::sleep_for(pause);
         if (frame == broken_frame) {
             busy_ = false;
+            if (lacks_memory) throw std::bad_alloc();
             throw Error(ErrorCode::bad_input, "frame is broken");
         }
         viewer::FrameData data;
         data.boxes = std::span<const Box3d>(boxes_[frame]);
+        data.exists = exists;
         data.pairs = pairs_[frame];
         data.pair_count = data.pairs.size();
         data.facts.push_back({"seconds.detect", 0.5});
@@ -62,6 +65,8 @@ public:
 
     std::chrono::milliseconds pause{0};
     std::uint64_t broken_frame = ~std::uint64_t(0);
+    bool lacks_memory = false;  ///< the broken frame does not fit into memory
+    std::vector<std::uint8_t> exists;
     std::atomic<int> finds = 0;
 
 private:

@@ -177,6 +177,29 @@ TEST(SceneSource, AFrameThatCannotBeRead) {
     EXPECT_NE(body_of(source, "frame/4.json"), "none");
     EXPECT_THROW(source.count_frames({}, {}), Error);
     EXPECT_EQ(json_of(source, "timeline.json")["done"], 2);
+    EXPECT_EQ(json_of(source, "timeline.json")["failed"], "frame is broken");
+    EXPECT_EQ(source.counted(), 2u);
+}
+
+TEST(SceneSource, AFrameThatDoesNotFitIntoMemory) {
+    FakeFinder finder(8, 5, 20);
+    finder.broken_frame = 2;
+    finder.lacks_memory = true;
+    SceneSource source(contents_of(20, true), finder);
+    source.load({});
+    EXPECT_EQ(json_of(source, "timeline.json").count("failed"), 0u);
+    EXPECT_THROW(source.count_frames({}, {}), Error);
+    EXPECT_EQ(json_of(source, "timeline.json")["failed"], "out of memory");
+}
+
+TEST(SceneSource, CountsTheObjectsThatExist) {
+    FakeFinder finder(9, 2, 20);
+    finder.exists.assign(20, 1);
+    finder.exists[3] = finder.exists[7] = 0;
+    SceneSource source(contents_of(20, true), finder);
+    source.load({});
+    EXPECT_EQ(json_of(source, "frame/1.json")["objects"], 18);
+    EXPECT_EQ(json_of(source, "view.json")["objects"], 20);
 }
 
 TEST(SceneSource, OfALargeScene) {

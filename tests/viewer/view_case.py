@@ -39,8 +39,9 @@ class InFolder(unittest.TestCase):
     def view(self, *arguments, **options):
         return ViewProcess(self.program, arguments, **options)
 
-    def run_program(self, *arguments):
-        return subprocess.run([self.program, *arguments], capture_output=True, text=True, timeout=20, check=False)
+    def run_program(self, *arguments, environment=None):
+        return subprocess.run([self.program, *arguments], capture_output=True, text=True, timeout=20, check=False,
+                              env={**os.environ, **(environment or {})})
 
     def detected(self, path, *arguments):
         done = self.run_program('detect', path, '--quiet', *arguments)

@@ -22,8 +22,8 @@ inline int status_of(ErrorCode code) {
     return code == ErrorCode::cancelled ? 128 + stop_signal.load() : exit_status(code);
 }
 
-/// Prints the message. Returns the exit status. Allocates no memory. A control character, as a file's name may have, becomes '?':
-/// a terminal would obey it.
+/// Prints the message, at most 4,000 bytes. Returns the exit status. Allocates no memory. Control characters become '?', because a
+/// terminal would obey them. Names of files may have some.
 inline int fail(ErrorCode code, const char* message) {
     constexpr std::size_t max_bytes = 4000;
     char line[max_bytes + 1];

@@ -139,7 +139,7 @@ std::optional<std::uint32_t> frame_in(std::string_view path) {
     return frame;
 }
 
-/// Returns the text without the mark of UTF-8 that some programs write first.
+/// Returns the text without the byte order mark of UTF-8, which some programs write first.
 std::string_view without_mark(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     return text;

@@ -30,7 +30,7 @@ bool ResultFrames::finish() {
 }
 
 void ResultFrames::pair_up_events() {
-    // Of two events in one frame, the end comes first: the pair collides in this frame.
+    // The order puts an end before a begin of the same frame. So a pair with both events collides in this frame.
     const auto key = [](const Entry& row) { return std::tuple(row.pair, row.frame, row.event, row.finding); };
     std::sort(rows_.begin(), rows_.end(), [&](const Entry& x, const Entry& y) { return key(x) < key(y); });
     bool open = false;

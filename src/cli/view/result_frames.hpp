@@ -35,7 +35,7 @@ public:
     /// The functions below require that finish() returned true.
     /// Returns the number of frames up to the last row, at least 1.
     std::uint64_t size() const { return frames_; }
-    /// Returns the collisions of any frame. After the last event, they remain as they are.
+    /// Returns the collisions of any frame. They do not change after the last event.
     ResultFrame frame(std::uint64_t number) const;
     bool has_contacts() const;
 

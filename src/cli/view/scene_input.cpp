@@ -184,6 +184,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         return view;
     }
     ResultFile result = read_result(request.result, stop);
+    if (!inputs->set.scene.moving) result.first_frame = 0;  // a number in the name is no frame, then
     check_result(result, inputs->set, request.result);
     view.contents.contacts = result.frames.has_contacts();
     view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));

@@ -26,8 +26,8 @@ inline bool pause(const std::stop_token& stop, std::chrono::milliseconds most) {
     return stop.stop_requested();
 }
 
-/// Returns what `call` returns, which gets a stop token. Throws: what `call` throws; Error{engine_failed} after a time in which each
-/// call ends if its server runs.
+/// Returns what `call` returns. `call` gets a stop token. Throws: what `call` throws; Error{engine_failed} if it takes more than
+/// 10 seconds.
 template <typename Call>
 auto within_time(const std::stop_token& stop, const Call& call) {
     constexpr std::chrono::seconds most(10);
@@ -47,12 +47,13 @@ auto within_time(const std::stop_token& stop, const Call& call) {
     }
 }
 
-/// Tells the pages at a path whether a server answers.
+/// Tells the pages of a path (page_server.hpp) whether a server answers.
 class ServerContact {
 public:
     explicit ServerContact(std::string path) : path_(std::move(path)) {}
 
-    /// Returns what `call` returns, which gets a stop token. If the server does not answer, tells it, pauses, and returns nothing.
+    /// Returns what `call` returns. `call` gets a stop token. If the server does not answer, tells the pages, pauses, and returns
+    /// nothing.
     /// Throws: what `call` throws for other reasons.
     template <typename Call>
     std::invoke_result_t<Call, std::stop_token> ask(viewer::PageServer& server, const std::stop_token& stop,
@@ -72,7 +73,7 @@ public:
 
 private:
     std::string path_;
-    bool lost_ = false;
+    bool lost_ = false;  // the last call had no answer
 };
 
 }  // namespace octopair::cli

@@ -123,9 +123,10 @@ std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& ser
         try {
             source.count_frames([&](std::uint64_t done) { server.broadcast("", viewer::timeline_message(done)); },
                                 stop);
-        } catch (const Error& error) {
-            if (error.code() == ErrorCode::cancelled) return;
-            static_cast<void>(fail(error));  // the frames before can be shown, so the command goes on
+        } catch (const std::exception& error) {
+            if (stop.stop_requested()) return;
+            // The frames before can be shown, so the command goes on, and the status of this failure has no use.
+            static_cast<void>(fail(ErrorCode::bad_input, error.what()));
             server.broadcast("", viewer::timeline_message(source.counted()));
         }
     });

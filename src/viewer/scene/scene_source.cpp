@@ -1,17 +1,17 @@
 #include "viewer/scene/scene_source.hpp"
 
-#include "viewer/scene/collision_table.hpp"
-#include "viewer/scene/object_answers.hpp"
-#include "viewer/scene/octant_answers.hpp"
-#include "viewer/server/messages.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <new>
 
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
+#include "viewer/scene/collision_table.hpp"
+#include "viewer/scene/object_answers.hpp"
+#include "viewer/scene/octant_answers.hpp"
+#include "viewer/server/messages.hpp"
 
 namespace octopair::viewer {
 
@@ -122,11 +122,17 @@ SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
 SceneSource::FramePointer SceneSource::count_frame(std::uint64_t number, const FramePointer& before) {
     const std::lock_guard lock(frames_mutex_);
     FramePointer now;
+    const auto fail = [this](const char* why) {
+        const std::lock_guard counts_lock(counts_mutex_);
+        counts_.fault = why;
+    };
     try {
         now = find(number, before);
-    } catch (const Error& error) {
-        const std::lock_guard counts_lock(counts_mutex_);
-        if (error.code() != ErrorCode::cancelled) counts_.fault = error.what();
+    } catch (const std::bad_alloc&) {
+        fail("out of memory");
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    } catch (const std::exception& error) {
+        fail(error.what());
         throw;
     }
     const std::lock_guard counts_lock(counts_mutex_);

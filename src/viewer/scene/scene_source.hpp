@@ -27,9 +27,10 @@ public:
     /// Finds the first frame. `progress` may be empty. Throws: what the finder throws.
     void load(const ProgressSink& progress);
     /// Finds all frames, and calls `more` with the number of frames that are counted, at most five times a second.
-    /// Throws: what the finder throws. From then on, timeline.json says that this frame has failed.
+    /// Throws: what the finder throws; Error{resource_limit} if the memory does not suffice. From then on, timeline.json has the
+    /// reason.
     void count_frames(const std::function<void(std::uint64_t done)>& more, const std::stop_token& stop);
-    /// Returns the number of frames that are counted.
+    /// Returns the number of frames that are counted so far.
     std::uint64_t counted() const;
     std::uint64_t frames() const { return finder_.frames(); }
     bool moving() const { return contents_.moving; }

@@ -385,7 +385,8 @@ test('a recording', async () => {
   const recorder = python('record', path);
   const {counts} = JSON.parse(await recorder.line());
   await recorder.ended;
-  await withView([path], async page => {
+  await withView([path, '--up', 'y'], async page => {
+    assert.equal((await settings(page)).up, 'y');
     await waitForText(page, '#frame-text', new RegExp(`of ${counts.length}$`));
     for (const f of [0, 3, counts.length - 1]) {
       await page.locator('#frame-slider').fill(String(f));
