@@ -230,6 +230,7 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     }
     history_.apply(found_);
     octree_matches_last_step_ = true;
+    linear_matches_last_step_ = false;  // it still has the objects of the step before
     constexpr std::size_t enough = 64;  // minimum number of changes for a measurement of the cost of one
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
     return true;

@@ -86,6 +86,40 @@ def test_handlers_that_return_do_not_end_a_call():
     assert (output, code) == ("True\n", 0)
 
 
+def test_a_scene_is_right_after_interrupted_steps():
+    output, _, _ = run("""
+        class Interrupted(Exception):
+            pass
+        def interrupt(*_):
+            raise Interrupted
+        signal.signal(signal.SIGALRM, interrupt)
+        random = np.random.default_rng(1)
+        boxes = np.repeat(random.random((20_000, 2, 3), np.float32)[:, :1] * 100, 2, axis=1).reshape(-1, 6)
+        boxes[:, 3:] += 0.5
+        scene = op.Scene(threads=1)
+        ids = scene.add(boxes)
+        scene.step()
+        interrupted = 0
+        for i in range(200):
+            moved = random.integers(4)
+            boxes[moved] = [90, 90, 90, 90.5, 90.5, 90.5] if random.random() < 0.5 else [10, 10, 10, 10.5, 10.5, 10.5]
+            scene.move(ids[[moved]], boxes[[moved]])
+            if i % 3 == 0:
+                scene.overlaps(boxes[:1])
+            try:
+                signal.setitimer(signal.ITIMER_REAL, random.integers(1, 60) * 1e-6)
+                scene.step()
+                signal.setitimer(signal.ITIMER_REAL, 0)
+            except Interrupted:
+                interrupted += 1
+            if i % 2 == 0:
+                scene.step()
+                assert np.array_equal(scene.pairs(), op.find_pairs(boxes)), i
+        print("right", interrupted > 0)
+        """)
+    assert output == "right True\n"
+
+
 def test_event_loops_receive_signals_that_arrive_in_a_call():
     output, _, code = run("""
         import asyncio

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <stop_token>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -106,6 +107,8 @@ public:
         const std::uint64_t least = std::min<std::uint64_t>(20, size_.objects / 2);
         add(least + random_() % (size_.objects - least));
         for (int i = 0; i < size_.steps; ++i) {
+            if (chance(0.2)) cancel_step();
+            if (::testing::Test::HasFatalFailure()) return;
             model_.check(scene_);
             if (::testing::Test::HasFatalFailure()) return;
             // Reads the lists at some steps only, so that the list merges the changes of several steps at once.
@@ -133,6 +136,19 @@ private:
         if (chance(0.2)) move(random_() % most, true);
         if (chance(0.3)) move(random_() % most, false);
         if (with_traits_ && chance(0.3)) set_traits(random_() % most);
+    }
+
+    /// Cancels a step at its begin. Later calls of the scene must not show a difference.
+    void cancel_step() {
+        std::stop_source stop;
+        stop.request_stop();
+        try {
+            (void)scene_.step(stop.get_token());
+            FAIL() << "a step ignored a stop request";
+        } catch (const Error& error) {
+            ASSERT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+        }
+        check_queries();
     }
 
     /// Checks queries in some histories and at some steps only: queries may build an octree, which the next step does

@@ -67,6 +67,12 @@ public:
         return found;
     }
 
+    /// Makes a step that was told to stop before it began.
+    const StepResult& step(const std::stop_token& stop) {
+        EXPECT_THROW((void)local_->step(stop), Error);
+        return remote_->step(stop);
+    }
+
     const PairList& pairs() { return remote_->pairs(); }
     const PairList& persisting() { return remote_->persisting(); }
     std::uint64_t size() const { return remote_->size(); }
