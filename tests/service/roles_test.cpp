@@ -153,6 +153,56 @@ TEST_F(Roles, InvalidLinesAreRefusedAndChangeNothing) {
     EXPECT_EQ(error_of(ErrorCode::usage, [&] { submit("oleg"); }), not_permitted("operator"));
 }
 
+/// A line that is skipped, or understood in part, would leave its client with all rights.
+TEST_F(Roles, LinesThatAreNotWhollyUnderstoodAreRefused) {
+    const std::vector<std::pair<std::string, std::string>> lines = {
+        {"\"token:anna none", "a quote is not closed"},
+        {"\"token:anna\\\" none", "a quote is not closed"},
+        {"\"token:anna\\", "a quote is not closed"},
+        {"\"", "a quote is not closed"},
+        {"token:anna reader \"token:bert", "a quote is not closed"},
+        {"\"\" none", "a name in quotes is empty"},
+        {"token:anna \"\"", "a name in quotes is empty"},
+        {"\"token:anna\"none", "a blank must follow a closing quote"},
+        {"\"token:anna\"# none", "a blank must follow a closing quote"},
+        {"token:anna\" none", "a name that contains a quote must be in quotes, with \\\" for the quote"},
+        {"token:\"anna\" none", "a name that contains a quote must be in quotes, with \\\" for the quote"},
+        {std::string("token:anna none\0", 16), "it contains a control character"},
+        {"token:anna\fnone", "it contains a control character"},
+        {"\"#token:anna\" none", "a client's name begins with token: or certificate:, as in the server's log"},
+        {"token: none", "a client's name begins with token: or certificate:, as in the server's log"},
+        {"Token:anna none", "a client's name begins with token: or certificate:, as in the server's log"},
+        {"token:anna reader token:", "the owner's name begins with token: or certificate:"},
+        {"token:anna None", "a line must be CLIENT ROLE; roles are owner, reader OWNER, operator and none"},
+        {"token:anna none # left", "the role reader needs the name of one owner; other roles have none"},
+    };
+    const std::string file = folder_.file("roles");
+    for (const auto& [line, why] : lines) {
+        EXPECT_EQ(refusal_of("\ntoken:bert none\n" + line), file + ": line 3: " + why) << line;
+        EXPECT_EQ(refusal_of(line + "\ntoken:bert none\n"), file + ": line 1: " + why) << line;
+        EXPECT_NO_THROW((void)client("bert")->list()) << "the roles read before stay in use";
+        EXPECT_EQ(error_of(ErrorCode::usage, [&] { submit("oleg"); }), not_permitted("operator"));
+    }
+    options_.listen = service::parse_address("unix:" + folder_.file("other"));
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { const service::Server server(options_, silent()); }),
+              file + ": line 1: " + lines.back().second);
+}
+
+TEST_F(Roles, NamesAndBlanksHaveSeveralSpellings) {
+    for (const std::string line :
+         {"token:anna none", "\t token:anna\t none \r", "\"token:anna\" none", "\"token:\\anna\"  \"none\""}) {
+        write_secret(folder_.file("roles"), "\r\n  \n # all\n" + line + "\n\ntoken:oleg operator");
+        server_->reload();
+        EXPECT_EQ(error_of(ErrorCode::usage, [&] { (void)client("anna")->list(); }),
+                  server_->address().text() + ": the client has no access any more")
+            << line;
+        EXPECT_EQ(error_of(ErrorCode::usage, [&] { submit("oleg"); }), not_permitted("operator"));
+        write_secret(folder_.file("roles"), "");
+        server_->reload();
+        EXPECT_NO_THROW((void)client("anna")->list());
+    }
+}
+
 class SceneRoles : public Roles {
 protected:
     ClientOptions options_of(const std::string& name) const {

@@ -13,11 +13,12 @@ protected:
         write_file(file("tokens"), "anna 0123456789abcdef\n");
         write_file(file("token"), "0123456789abcdef\n");
         write_file(file("wrong"), "0123456789abcdeg\n");
+        write_file(file("roles"), "");
     }
     /// Runs commands with a server at unix:socket that requires a token.
     Outcome with_server(const std::string& lines) const {
-        return shell(R"(chmod 600 tokens token wrong
-            "$P" serve --listen unix:socket --threads 1 --tokens tokens 2>log & child=$!
+        return shell(R"(chmod 600 tokens token wrong roles
+            "$P" serve --listen unix:socket --threads 1 --tokens tokens --roles roles 2>log & child=$!
             for i in $(seq 1200); do grep -qs started log && break; sleep 0.05; done
             D='detect a.npy --engine unix:socket'
             )" + lines +
@@ -57,6 +58,21 @@ TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
     EXPECT_EQ(outcome.out, refused + "1\n" + refused + "1\n");
     EXPECT_NE(content("log").find(
                   "tokens, roles and certificates: cannot read them again: tokens: line 1: a line must be NAME TOKEN"),
+              std::string::npos)
+        << content("log");
+}
+
+TEST_F(ServerChoice, AHangUpKeepsTheRolesIfTheFileIsNotUnderstood) {
+    const Outcome outcome = with_server(
+        "reads() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"
+        "echo 'token:anna none' >roles; kill -HUP $child; reads 'info read tokens, roles'\n"
+        "\"$P\" $D --quiet --count-only --token-file token 2>&1\n"
+        "echo '\"token:anna owner' >roles; kill -HUP $child; reads 'cannot read them again'\n"
+        "\"$P\" $D --quiet --count-only --token-file token 2>&1");
+    const std::string refused = "octopair: unix:socket: the client has no access any more\n";
+    EXPECT_EQ(outcome.out, refused + refused);
+    EXPECT_NE(content("log").find("tokens, roles and certificates: cannot read them again: roles: line 1: a quote is "
+                                  "not closed; those read before stay in use"),
               std::string::npos)
         << content("log");
 }

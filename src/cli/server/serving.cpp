@@ -105,7 +105,8 @@ void reload(service::Server& server, spdlog::logger& log) {
         log_text(log, service::LogLevel::info, "read tokens, roles and certificates again");
     } catch (const std::exception& error) {
         log_text(log, service::LogLevel::error,
-                 "tokens, roles and certificates: cannot read them again: " + std::string(error.what()));
+                 "tokens, roles and certificates: cannot read them again: " + std::string(error.what()) +
+                     "; those read before stay in use");
     }
 }
 

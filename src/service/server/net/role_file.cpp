@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -22,13 +21,75 @@ std::optional<Role> role_from(const std::string& name) {
     return {};
 }
 
-/// Returns whether `name` has the form of a name that access.hpp gives.
-bool is_client(const std::string& name) {
+/// Thrown for a line that is not wholly understood.
+struct WrongLine {
+    const char* why;
+};
+
+/// Throws: WrongLine{why} unless `name` has the form of a name that access.hpp gives.
+void check_client(std::string_view name, const char* why) {
     constexpr std::array<std::string_view, 5> kinds = {
         "token:", "certificate:", "certificate-uri:", "certificate-email:", "certificate-dns:"};
-    return name == "local" ||
-           std::any_of(kinds.begin(), kinds.end(), [&](std::string_view kind) { return name.starts_with(kind); });
+    const bool good = name == "local" || std::ranges::any_of(kinds, [&](std::string_view kind) {
+                          return name.starts_with(kind) && name.size() > kind.size();
+                      });
+    if (!good) throw WrongLine{why};
 }
+
+/// Divides a line into words (role_file.hpp). Its members throw WrongLine.
+class LineReader {
+public:
+    explicit LineReader(std::string_view line) : rest_(line) {
+        if (rest_.ends_with('\r')) rest_.remove_suffix(1);
+        const auto is_control = [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7F'; };
+        if (std::ranges::any_of(rest_, is_control)) throw WrongLine{"it contains a control character"};
+        skip_blanks();
+    }
+
+    bool is_empty_or_comment() const { return rest_.empty() || rest_.front() == '#'; }
+
+    /// Returns the next word, without its quotes; empty at the end of the line.
+    std::string word() {
+        const std::string word = rest_.starts_with('"') ? quoted_word() : plain_word();
+        if (!rest_.empty() && !is_blank(rest_.front())) throw WrongLine{"a blank must follow a closing quote"};
+        skip_blanks();
+        return word;
+    }
+
+private:
+    static bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+    void skip_blanks() {
+        while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
+    }
+    char next() {
+        if (rest_.empty()) throw WrongLine{"a quote is not closed"};
+        const char c = rest_.front();
+        rest_.remove_prefix(1);
+        return c;
+    }
+
+    std::string quoted_word() {
+        std::string word;
+        (void)next();
+        for (char c = next(); c != '"'; c = next()) {
+            if (c == '\\') c = next();
+            word += c;
+        }
+        if (word.empty()) throw WrongLine{"a name in quotes is empty"};
+        return word;
+    }
+
+    std::string plain_word() {
+        std::string word;
+        for (; !rest_.empty() && !is_blank(rest_.front()); rest_.remove_prefix(1)) word += rest_.front();
+        if (word.find('"') != std::string::npos)
+            throw WrongLine{"a name that contains a quote must be in quotes, with \\\" for the quote"};
+        return word;
+    }
+
+    std::string_view rest_;
+};
 
 }  // namespace
 
@@ -37,22 +98,27 @@ Roles::Roles(const std::string& path) {
     std::size_t number = 0;
     for (std::string text; std::getline(in, text);) {
         ++number;
-        const auto refuse = [&](const std::string& why) {
-            throw Error(ErrorCode::bad_input, path + ": line " + std::to_string(number) + ": " + why);
-        };
-        std::istringstream words(text);
-        std::string name, role_name, reads, rest;
-        if (!(words >> std::quoted(name)) || name.starts_with('#')) continue;
-        words >> role_name >> std::quoted(reads) >> rest;
-        if (!is_client(name)) refuse("a client's name begins with token: or certificate:, as in the server's log");
-        const std::optional<Role> role = role_from(role_name);
-        if (!role) refuse("a line must be CLIENT ROLE; roles are owner, reader OWNER, operator and none");
-        if ((*role == Role::reader) == reads.empty() || !rest.empty())
-            refuse("the role reader needs the name of one owner; other roles have none");
-        if (!reads.empty() && !is_client(reads)) refuse("the owner's name begins with token: or certificate:");
-        if (!callers_.try_emplace(name, Caller{name, *role, reads}).second)
-            refuse("an earlier line has the same client");
+        try {
+            add_line(text);
+        } catch (const WrongLine& wrong) {
+            throw Error(ErrorCode::bad_input, path + ": line " + std::to_string(number) + ": " + wrong.why);
+        }
     }
+}
+
+void Roles::add_line(std::string_view text) {
+    LineReader line(text);
+    if (line.is_empty_or_comment()) return;
+    const std::string name = line.word();
+    check_client(name, "a client's name begins with token: or certificate:, as in the server's log");
+    const std::optional<Role> role = role_from(line.word());
+    if (!role) throw WrongLine{"a line must be CLIENT ROLE; roles are owner, reader OWNER, operator and none"};
+    const std::string reads = line.word();
+    if ((*role == Role::reader) == reads.empty() || !line.word().empty())
+        throw WrongLine{"the role reader needs the name of one owner; other roles have none"};
+    if (!reads.empty()) check_client(reads, "the owner's name begins with token: or certificate:");
+    if (!callers_.try_emplace(name, Caller{name, *role, reads}).second)
+        throw WrongLine{"an earlier line has the same client"};
 }
 
 Caller Roles::caller(const std::string& name) const {

@@ -1,15 +1,17 @@
 // Role file: the roles of clients that are not owners (caller.hpp).
 //
-// Each line is CLIENT ROLE. CLIENT is a client's name as in the log (access.hpp), in quotes if it contains spaces. ROLE is one of
+// Each line is CLIENT ROLE. CLIENT is a client's name as in the log (access.hpp). ROLE is one of
 //   owner            the role of all clients that the file does not name
 //   reader OWNER     sees the jobs of this owner, and reads their results
 //   operator         sees and cancels the jobs of all owners, and drains the server
 //   none             has no access
-// Lines that begin with # are comments.
+// A name that contains blanks or quotes is in quotes, in which \" and \\ stand for " and \.
+// Lines that begin with # are comments, and empty lines are skipped. A file with any other line is refused.
 #pragma once
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "service/server/net/caller.hpp"
 
@@ -26,6 +28,8 @@ public:
     Caller caller(const std::string& name) const;
 
 private:
+    void add_line(std::string_view text);
+
     std::map<std::string, Caller> callers_;
 };
 
