@@ -263,7 +263,9 @@ void BoxSource::refuse(std::size_t begin, const SetBegins& begins) const {
     for (std::size_t i = begin; i < size(); ++i) {
         if (const auto found = fault(i, begins)) throw Error(ErrorCode::bad_input, *found);
     }
-    throw Error(ErrorCode::bad_input, "an object changed while it was read");
+    throw_object_changed();
 }
+
+void throw_object_changed() { throw Error(ErrorCode::bad_input, "an object changed while it was read"); }
 
 }  // namespace octopair

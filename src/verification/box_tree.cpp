@@ -163,9 +163,9 @@ BoxTree<Real>::BoxTree(std::span<const Box<Real>> boxes, std::span<const double>
     if (boxes.empty()) return;
     items_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        check_valid(is_valid(boxes[i]), i, "box");
+        items_[i] = {boxes[i], std::uint32_t(i)};  // copied first, because the caller's boxes may change meanwhile
+        check_valid(is_valid(items_[i].box), i, "box");
         check_valid(padding_of(i) >= 0 && std::isfinite(padding_of(i)), i, "padding");
-        items_[i] = {boxes[i], std::uint32_t(i)};
     }
     nodes_.resize(2 * ((boxes.size() + leaf_boxes - 1) / leaf_boxes) - 1);
     Builder(*this, stop).build(team);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "baselines/baselines.hpp"
+#include "octopair/error.hpp"
 #include "octree/given_rule.hpp"
 #include "octree/scan_memory.hpp"
 #include "octree/sweep/sweep_order.hpp"
@@ -128,6 +129,54 @@ TEST_P(SweepsOf, RecursiveSweepFindsAllPairs) {
     for (const std::size_t count : {1u, 2u, 3u, 50u, 700u, 6'000u}) {
         if (GetParam() == Shape::coincident && count > 700) continue;
         expect_all_pairs(count, recursive_sweep);
+    }
+}
+
+/// Boxes that move up each time that they are read again, so that no split divides the columns of a recursive sweep: when they are
+/// read to be divided, all are above the value that was chosen when they were read before.
+class RisingRule final : public PairRule {
+public:
+    static constexpr std::uint32_t rows = 600, columns = 600;
+
+    bool join() const override { return true; }
+    std::uint32_t second_begin() const override { return rows; }
+    bool exact() const override { return true; }
+    RoundingSlack slack() const override { return {}; }
+    bool is_pair(std::uint32_t, std::uint32_t) const override { return true; }
+    std::size_t refused(const DoubtfulPairs&, std::uint32_t*) const override { return 0; }
+    void load_bounds(std::span<Entry> entries) const override {
+        if (!entries.empty() && entries[0].object % rows == 0) height_ += 10;
+        for (Entry& entry : entries) {
+            const std::uint32_t object = entry.object;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                // Each column is below all rows on one axis, so a row and a column overlap on two axes only, and no sweep is cheap.
+                const bool below = object >= rows && (object + 1) % 3 == axis;
+                entry.min[axis] = object < rows ? height_ - 9 : below ? -1 : height_ + float(object % 2);
+                entry.max[axis] = below ? 0 : 1e9f;
+            }
+        }
+    }
+
+private:
+    mutable float height_ = 0;
+};
+
+TEST(RecursiveSweep, EndsIfBoxesChange) {
+    const RisingRule rule;
+    std::vector<EntryId> row_ids, column_ids;
+    for (std::uint32_t i = 0; i < rule.rows; ++i) row_ids.push_back({i, 0});
+    for (std::uint32_t i = 0; i < rule.columns; ++i) column_ids.push_back({rule.rows + i, 0});
+    ScanMemoryPool memory;
+    const ScanContext context{rule, {}, memory};
+    CollectingWriter writer;
+    SerialExecutor executor(writer);
+    const SweepInput join{EntryList(rule, row_ids), EntryList(rule, column_ids), false, {}};
+    try {
+        recursive_sweep(context, join, executor);
+        FAIL() << "the sweep did not notice the change";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::bad_input);
+        EXPECT_STREQ(error.what(), "an object changed while it was read");
     }
 }
 

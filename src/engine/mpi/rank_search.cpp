@@ -247,7 +247,7 @@ void RankSearch::build(Task& task, Call& call) {
         passes_.build(call, built);
     } catch (const LinearOctree::Invalid& invalid) {
         if (comm_.size() == 1) task.joint.refuse(call.source, invalid.begin);
-        throw Error(ErrorCode::bad_input, "an object changed while it was read");
+        throw_object_changed();
     }
 }
 

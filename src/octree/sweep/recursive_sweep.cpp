@@ -9,6 +9,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "boxes/box_source.hpp"
 #include "octree/sweep/sweep_order.hpp"
 
 namespace octopair {
@@ -116,6 +117,7 @@ struct OwnedJoin {
     std::shared_ptr<const std::vector<std::uint32_t>> rows;
     std::shared_ptr<const std::vector<std::uint32_t>> columns;
     Orientation orientation = {};
+    unsigned depth = 0;                 // number of splits that made it
     unsigned settled = 0;               // number of settled axes: their orientation is given, they need no more splits
     std::array<unsigned, 3> axes = {};  // in the order in which they are settled
 
@@ -147,15 +149,21 @@ float split_value(const OwnedJoin& join, unsigned axis, std::array<float, 2> ran
     lows.reserve(join.columns->size());
     join.column_list().for_each([&](std::uint32_t, const Entry& column) { lows.push_back(column.min[axis]); });
     const auto median = lows.begin() + std::ptrdiff_t(lows.size() / 2);
-    std::nth_element(lows.begin(), median, lows.end());
+    std::nth_element(lows.begin(), median, lows.end(), NanLast());
     if (*median > range[0]) return *median;
     float next = range[1];
     for (const float low : lows) next = low > range[0] ? std::min(next, low) : next;
     return next;
 }
 
+/// Maximum number of splits that lead to a join. Every second split of an axis halves the columns, which are fewer than 2^32. Only boxes
+/// that change during the search are split more often.
+constexpr unsigned max_depth = 3 * 2 * 33;
+
 /// Returns smaller joins that together find the pairs of `join`.
+/// Throws: Error{bad_input} beyond max_depth.
 std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
+    if (join.depth == max_depth) throw_object_changed();
     std::vector<OwnedJoin> made;
     const unsigned axis = join.axes[join.settled];
     std::array<float, 2> range = {FLT_MAX, -FLT_MAX};
@@ -204,6 +212,7 @@ std::vector<OwnedJoin> split_join(const OwnedJoin& join) {
         made.push_back(half);
     }
     std::erase_if(made, [](const OwnedJoin& part) { return part.rows->empty() || part.columns->empty(); });
+    for (OwnedJoin& part : made) part.depth = join.depth + 1;
     return made;
 }
 

@@ -27,6 +27,12 @@ inline float low_of(SortKey key) {
     return std::bit_cast<float>(bits ^ (bits >> 31 != 0 ? 0x80000000u : ~0u));
 }
 
+/// Order of numbers in which NaN comes last. Boxes that change during a search may be NaN. With NaN, `<` is not a strict weak order,
+/// which sorting requires.
+struct NanLast {
+    bool operator()(float a, float b) const { return a < b || (b != b && a == a); }
+};
+
 /// Sorts keys with an LSD radix sort by low end, in shares of `executor`.
 /// Requires: the keys ascend by position.
 /// Throws: Error{cancelled}.

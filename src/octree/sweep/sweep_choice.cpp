@@ -53,11 +53,11 @@ void SweepChooser::Measured::measure(const EntryList& list) {
 std::uint64_t SweepChooser::tests(const Measured& rows, const Measured& columns, unsigned axis) {
     lows_.clear();
     for (const Entry& column : columns.entries) lows_.push_back(column.min[axis]);
-    std::ranges::sort(lows_);
+    std::ranges::sort(lows_, NanLast());
     std::uint64_t sum = 0;
     for (const Entry& row : rows.entries) {
-        const auto first = std::lower_bound(lows_.begin(), lows_.end(), row.min[axis]);
-        sum += std::uint64_t(std::upper_bound(first, lows_.end(), row.max[axis]) - first);
+        const auto first = std::lower_bound(lows_.begin(), lows_.end(), row.min[axis], NanLast());
+        sum += std::uint64_t(std::upper_bound(first, lows_.end(), row.max[axis], NanLast()) - first);
     }
     return sum * columns.stride * rows.stride;
 }
