@@ -36,7 +36,7 @@ struct LoadedScene {
         return objects > 0 && std::visit([](const auto& buffer) { return buffer.size() == 0; }, boxes);
     }
 
-    /// Throws: Error{bad_input} if the boxes are mapped (FileMapping) and the file was shortened.
+    /// Throws: Error{bad_input} if the boxes are mapped (FileMapping) and the file was changed since it was opened.
     void check_mapped() const {
         std::visit([](const auto& buffer) { check_mapping(std::as_bytes(buffer.span())); }, boxes);
     }

@@ -2,9 +2,12 @@
 #include "io/boxes/npy.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <limits>
 
 #include "io/temporary.hpp"
@@ -14,6 +17,9 @@ namespace {
 
 using io::LoadedScene;
 using io::NpyType;
+
+constexpr const char* truncated = ": the file was truncated while it was read";
+constexpr const char* changed = ": the file changed while it was read; run again when no program writes to it";
 
 class Npy : public ::testing::Test {
 protected:
@@ -94,12 +100,93 @@ TEST_F(Npy, RefusesAMappedFileThatBecomesShorter) {
     std::filesystem::resize_file(path, 1'000'000);
     const auto boxes = boxes_of<float>(scene);
     EXPECT_EQ(boxes[30'000].min[0], 1);
-    EXPECT_NO_THROW(scene.check_mapped());
     EXPECT_TRUE(std::isnan(boxes[objects - 1].min[0]));
     EXPECT_TRUE(std::isnan(boxes[50'000].max[2]));
-    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { scene.check_mapped(); }),
-              path + ": the file was truncated while it was read");
-    EXPECT_NO_THROW(other.check_mapped());
+    for (const LoadedScene* mapped : {&scene, &other})
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { mapped->check_mapped(); }), path + truncated);
+}
+
+/// A file, and the ways in which other programs may change it while it is mapped.
+class MappedNpy : public Npy {
+protected:
+    static constexpr std::uint64_t objects = 1000, bytes = 128 + objects * sizeof(Box3f);
+
+    MappedNpy() { write_file(path_, content_); }
+    /// Waits until the system's clock gives a change another time than the creation of the file.
+    void wait_for_another_time() const {
+        struct stat before {
+        }, now{};
+        ASSERT_EQ(::stat(path_.c_str(), &before), 0);
+        const std::string other = directory_.file("clock");
+        do {
+            write_file(other, "tick");
+            ASSERT_EQ(::stat(other.c_str(), &now), 0);
+        } while (now.st_ctim.tv_sec == before.st_ctim.tv_sec && now.st_ctim.tv_nsec == before.st_ctim.tv_nsec);
+    }
+    /// Returns what check_mapped() says after a change; empty for nothing.
+    std::string said_after(const std::function<void()>& change) const {
+        const LoadedScene scene = map_rows(path_, {0, objects});
+        EXPECT_NO_THROW(scene.check_mapped());
+        wait_for_another_time();
+        change();
+        try {
+            scene.check_mapped();
+            return {};
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::bad_input);
+            return std::string(error.what()).substr(path_.size());
+        }
+    }
+    /// Writes to the file in place.
+    void overwrite(std::size_t offset, const std::string& text) const {
+        std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(std::streamoff(offset));
+        file << text;
+        ASSERT_TRUE(file.flush());
+    }
+
+    std::string path_ = directory_.file("a.npy");
+    std::string content_ = npy_of(NpyType::float32, {objects, 6}, std::vector<float>(6 * objects, 1));
+};
+
+TEST_F(MappedNpy, IsRefusedAfterItsContentChanged) {
+    EXPECT_EQ(said_after([&] { std::filesystem::resize_file(path_, bytes - 3); }), truncated);
+    write_file(path_, content_);
+    EXPECT_EQ(said_after([&] { overwrite(bytes, "x"); }), changed) << "longer";
+    write_file(path_, content_);
+    EXPECT_EQ(said_after([&] { overwrite(bytes - 4, "xxxx"); }), changed);
+    EXPECT_EQ(said_after([&] { overwrite(0, content_); }), changed) << "the same bytes again";
+    EXPECT_EQ(said_after([&] {
+                  std::filesystem::resize_file(path_, bytes - 3);
+                  std::filesystem::resize_file(path_, bytes);
+              }),
+              changed);
+    const auto time = std::filesystem::last_write_time(path_);
+    EXPECT_EQ(said_after([&] {
+                  overwrite(bytes - 4, "yyyy");
+                  std::filesystem::last_write_time(path_, time);
+              }),
+              changed)
+        << "with its old time";
+}
+
+TEST_F(MappedNpy, IsReadToItsEndAfterItWasReplaced) {
+    const std::string other = directory_.file("b.npy");
+    EXPECT_EQ(said_after([&] { std::filesystem::create_hard_link(path_, directory_.file("c.npy")); }), "");
+    EXPECT_EQ(said_after([&] {
+                  write_file(other, "another one");
+                  std::filesystem::rename(other, path_);
+              }),
+              "");
+    write_file(path_, content_);
+    EXPECT_EQ(said_after([&] { std::filesystem::remove(path_); }), "");
+}
+
+TEST_F(MappedNpy, IsRefusedIfItChangesBetweenReads) {
+    const io::NpyScene scene(path_);
+    wait_for_another_time();
+    overwrite(bytes - 4, "xxxx");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)scene.read({0, objects}, {}); }), path_ + changed);
 }
 
 TEST_F(Npy, ReadsFrames) {
@@ -146,8 +233,9 @@ TEST_F(Npy, FramesAreOfMovingScenesAlone) {
     const auto frames = io::NpyFrames::open(save(npy_of(NpyType::float32, {2, 1, 6}, std::vector<float>(12))));
     std::filesystem::resize_file(directory_.file("a.npy"), 128 + 30);
     std::vector<Box3f> box(1);
-    frames->read(0, box, {});
-    error_of(ErrorCode::bad_input, [&] { frames->read(1, box, {}); });
+    for (const std::uint64_t frame : {0, 1})
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { frames->read(frame, box, {}); }),
+                  directory_.file("a.npy") + truncated);
 }
 
 TEST_F(Npy, ReadsEmptyArrays) {

@@ -47,6 +47,8 @@ public:
                 search_frames();
             } catch (const Error& error) {
                 if (error.code() == ErrorCode::bad_input) refuse_faults();
+                // Boxes that change may contradict what the engine or a check found before.
+                if (error.code() == ErrorCode::engine_failed && !request_.engine.has_ranks()) run_.check_inputs();
                 throw;
             }
         }

@@ -23,7 +23,7 @@ struct DetectRun {
     bool join() const { return !request.against.empty(); }
     /// Returns the other set of a join, or the only set.
     const InputSet& second_or_first() const { return join() ? inputs.second : inputs.first; }
-    /// Throws: Error{bad_input} if an input file was shortened. Call before the results of a frame are completed.
+    /// Throws: Error{bad_input} if an input file was changed. Call before the results of a frame are completed.
     void check_inputs() const {
         for (const InputSet* set : {&inputs.first, &inputs.second}) set->scene.check_mapped();
     }

@@ -51,7 +51,7 @@ struct InputSet {
     /// Returns the smallest box that contains all boxes. For an empty set, its minima are infinite, and its maxima -infinite.
     Box3d bounds() const;
     /// Returns a message about the first invalid box, with the file and the object; or nothing if all boxes are valid.
-    /// Throws: Error{bad_input} if the file of mapped boxes was shortened.
+    /// Throws: Error{bad_input} if the file of mapped boxes was changed.
     std::optional<std::string> find_fault() const;
     /// Returns the position of the first invalid box: frame * total + object; or nothing if all boxes are valid.
     std::optional<std::uint64_t> fault_position() const;

@@ -121,6 +121,7 @@ public:
         data.pairs = std::move(found.pairs);
         data.findings = std::move(found.findings);
         data.pair_count = data.pairs.size();
+        inputs_->set.scene.check_mapped();
         return data;
     }
 

@@ -1,5 +1,6 @@
 #include "io/files/file_mapping.hpp"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <mutex>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "io/files/failure.hpp"
 
@@ -21,12 +23,14 @@ namespace {
 /// A mapping. The signal handler reads its atomic members.
 struct Mapping {
     std::atomic<std::byte*> begin = nullptr, end = nullptr;  // begins with a page; null if the slot is free
-    std::atomic<bool> shortened = false;
+    std::atomic<bool> lost_page = false;                     // the file was shortened, or the disk failed
+    Descriptor file;
+    FileState state;  // when the file was opened
     std::string path;
 };
 
 std::array<Mapping, 64> mappings;
-std::mutex mappings_mutex;  // protects the paths, and the choice of a slot
+std::mutex mappings_mutex;  // protects the members that are not atomic, and the choice of a slot
 
 std::uintptr_t page_bytes() {
     static const auto bytes = std::uintptr_t(::sysconf(_SC_PAGESIZE));
@@ -42,14 +46,14 @@ Mapping* mapping_of(const std::byte* address) {
 
 struct sigaction previous_action;  // of SIGBUS, before install_handler()
 
-/// Replaces the page that a shortened file has lost. For any other address, restores the previous action, which handles the signal
+/// Replaces a page that cannot be read. For any other address, restores the previous action, which handles the signal
 /// when the access is repeated.
 void handle_lost_page(int, siginfo_t* info, void*) {
     const int error = errno;
     auto* const address = static_cast<std::byte*>(info->si_addr);
     Mapping* const mapping = mapping_of(address);
     std::byte* const page = address - reinterpret_cast<std::uintptr_t>(address) % page_bytes();
-    if (mapping != nullptr) mapping->shortened = true;  // before another thread can read the new page
+    if (mapping != nullptr) mapping->lost_page = true;  // before another thread can read the new page
     const bool replaced = mapping != nullptr && ::mmap(page, page_bytes(), PROT_READ | PROT_WRITE,
                                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
     if (replaced) {
@@ -78,10 +82,12 @@ public:
     void free(void* memory, std::size_t) noexcept override {
         const std::lock_guard lock(mappings_mutex);
         Mapping* const mapping = mapping_of(static_cast<const std::byte*>(memory));
+        if (mapping == nullptr) return;
         std::byte* const begin = mapping->begin;
         (void)::munmap(begin, std::size_t(mapping->end - begin));
         mapping->end = nullptr;
         mapping->begin = nullptr;
+        mapping->file = Descriptor();
     }
 };
 
@@ -92,12 +98,16 @@ void* map_file(const InputFile& file, std::uint64_t offset, std::size_t bytes) {
     const std::lock_guard lock(mappings_mutex);
     for (Mapping& mapping : mappings) {
         if (mapping.begin != nullptr) continue;
+        Descriptor descriptor(::fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0));
+        if (!descriptor.open()) return nullptr;
         const std::uint64_t in_page = offset % page_bytes();
         void* const memory = ::mmap(nullptr, std::size_t(in_page) + bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE,
                                     file.descriptor(), off_t(offset - in_page));
         if (memory == MAP_FAILED) return nullptr;
         mapping.path = file.path();
-        mapping.shortened = false;
+        mapping.lost_page = false;
+        mapping.file = std::move(descriptor);
+        mapping.state = file.state();
         auto* const begin = static_cast<std::byte*>(memory);
         mapping.begin = begin;
         mapping.end = begin + in_page + bytes;
@@ -114,7 +124,9 @@ PageSource& mapped_pages() {
 void check_mapping(std::span<const std::byte> memory) {
     const std::lock_guard lock(mappings_mutex);
     const Mapping* const mapping = mapping_of(memory.data());
-    if (mapping != nullptr && mapping->shortened) refuse(mapping->path, "the file was truncated while it was read");
+    if (mapping == nullptr) return;
+    mapping->state.check_same_content(FileState::of(mapping->file, mapping->path), mapping->path);
+    if (mapping->lost_page) fail_io(mapping->path, "cannot read", EIO);
 }
 
 }  // namespace octopair::io

@@ -1,4 +1,7 @@
 // InputFile: a regular file, or the copy of a stream (stream_input.hpp), that is open for reading.
+//
+// A file that other programs write meanwhile is refused, because its content may be partly old and partly new. It may be deleted, and
+// another file may be renamed over it: the open file keeps its content.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +15,50 @@
 
 namespace octopair::io {
 
+/// Attributes of an open file that show whether its content has changed.
+struct FileState {
+    std::uint64_t size = 0;
+    std::uint64_t links = 0;          ///< number of names in directories
+    std::int64_t content_time = 0;    ///< nanoseconds since 1970: last change of the content
+    std::int64_t attribute_time = 0;  ///< last change of the content or of attributes. Programs cannot set it
+
+    /// Throws: Error{io_failed} that begins with `path`.
+    static FileState of(const Descriptor& file, const std::string& path);
+    /// Throws: Error{bad_input} that begins with `path` if the content may have changed between this state and `now`. A change within
+    /// the same tick of the system's clock (4 ms) that keeps the size is not seen.
+    void check_same_content(const FileState& now, const std::string& path) const;
+};
+
 class InputFile {
 public:
+    /// What other programs do with the file while it is open.
+    enum class Writers : std::uint8_t { none, appending };
+
     /// Throws: Error{io_failed} if the file cannot be opened; Error{bad_input} if it is neither a regular file nor a stream.
-    explicit InputFile(std::string path);
+    explicit InputFile(std::string path, Writers writers = Writers::none);
 
     const std::string& path() const { return path_; }
     /// Returns the size in bytes at the time of opening.
-    std::uint64_t size() const { return size_; }
+    std::uint64_t size() const { return state_.size; }
+    /// Returns the state at the time of opening.
+    const FileState& state() const { return state_; }
     /// Returns the file descriptor, which stays open as long as this object.
     int descriptor() const { return descriptor_.number(); }
 
     /// Fills `out` with the bytes from `offset` on.
-    /// Throws: Error{bad_input} if the file is too short; Error{io_failed}; Error{cancelled} soon after a stop request.
+    /// Throws: Error{bad_input} if the file is too short, or as check_unchanged(); Error{io_failed}; Error{cancelled} soon after a stop
+    /// request.
     void read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop = {}) const;
+
+    /// Throws: Error{bad_input} if another program has changed the content since the file was opened. With Writers::appending, does
+    /// nothing.
+    void check_unchanged() const;
 
 private:
     std::string path_;
+    Writers writers_;
     Descriptor descriptor_;
-    std::uint64_t size_ = 0;
+    FileState state_;
 };
 
 }  // namespace octopair::io

@@ -144,6 +144,7 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 const aiScene& MeshFile::import(const std::string& path, bool triangles) {
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
     const aiScene* scene = importer_.ReadFile(path, triangles ? unsigned(aiProcess_Triangulate) : 0u);
+    readable.check_unchanged();
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
     rethrow_bad_alloc(importer_);
     std::string words = importer_.GetErrorString();
