@@ -62,6 +62,16 @@ TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
         << content("log");
 }
 
+TEST_F(ServerChoice, TheLogWarnsOfClientsWithoutAToken) {
+    const Outcome outcome = with_server(
+        "warns() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"
+        "printf 'token:anna owner\\ntoken:ana none\\n' >roles; kill -HUP $child; warns 'client token:ana$'");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(content("log").find("warning roles: no token has the name of the client token:ana"), std::string::npos)
+        << content("log");
+    EXPECT_EQ(content("log").find("client token:anna"), std::string::npos) << content("log");
+}
+
 TEST_F(ServerChoice, AHangUpKeepsTheRolesIfTheFileIsNotUnderstood) {
     const Outcome outcome = with_server(
         "reads() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"

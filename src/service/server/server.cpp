@@ -90,6 +90,7 @@ public:
         };
         context_.on_unknown = [this](const std::string& peer) { listener_.note_refused(peer); };
         start_listening(options);
+        warn_of_clients_without_token();
     }
 
     ~State() {
@@ -107,8 +108,10 @@ public:
     std::uint64_t beats() const { return context_.watchdog.beats(); }
 
     void reload() {
-        context_.access.reload();
+        auto files = context_.access.read();
         credentials_.reload();
+        context_.access.use(std::move(files));  // last, so that a failure before has changed nothing
+        warn_of_clients_without_token();
     }
 
     void drain(std::optional<std::chrono::milliseconds> grace) {
@@ -146,6 +149,12 @@ private:
             new_connections_.close();  // the threads end; otherwise their destructors would wait for them without end
             throw;
         }
+    }
+
+    /// Warns of lines of the role file that have no effect, perhaps because of a misspelt name.
+    void warn_of_clients_without_token() const {
+        for (const std::string& client : context_.access.clients_without_token())
+            log_text(*context_.log, LogLevel::warning, "roles: no token has the name of the client " + client);
     }
 
     /// Throws: LimitError if the client has too many connections.

@@ -16,6 +16,7 @@ namespace octopair::service {
 namespace {
 
 constexpr std::string_view bearer = "bearer ";
+const std::string token_client = "token:";  // begin of the name of a client with a token
 
 /// Returns whether credentials have the scheme Bearer, in any case (RFC 9110).
 bool is_bearer(std::string_view credentials) {
@@ -57,23 +58,36 @@ grpc::Status check_token(const grpc::ServerContextBase& context, const std::vect
         return {grpc::StatusCode::UNAUTHENTICATED, "the server does not accept this token"};
     if (token->until && std::chrono::system_clock::now() >= *token->until)
         return {grpc::StatusCode::UNAUTHENTICATED, "the token has expired"};
-    name = "token:" + token->name;
+    name = token_client + token->name;
     return grpc::Status::OK;
 }
 
 }  // namespace
 
 Access::Access(std::string token_file, std::string role_file)
-    : token_file_(std::move(token_file)), role_file_(std::move(role_file)) {
-    reload();
-}
+    : token_file_(std::move(token_file)), role_file_(std::move(role_file)), files_(read()) {}
 
-void Access::reload() {
+std::shared_ptr<const Access::Files> Access::read() const {
     auto files = std::make_shared<Files>();
     if (!token_file_.empty()) files->tokens = read_token_file(token_file_);
     if (!role_file_.empty()) files->roles = Roles(role_file_);
+    return files;
+}
+
+void Access::use(std::shared_ptr<const Files> files) {
     const std::lock_guard lock(mutex_);
     files_ = std::move(files);
+}
+
+std::vector<std::string> Access::clients_without_token() const {
+    const std::shared_ptr<const Files> files = this->files();
+    std::vector<std::string> without;
+    for (const std::string& client : files->roles.clients()) {
+        const auto has_name = [&](const Token& token) { return client == token_client + token.name; };
+        if (client.starts_with(token_client) && std::ranges::none_of(files->tokens, has_name))
+            without.push_back(client);
+    }
+    return without;
 }
 
 std::shared_ptr<const Access::Files> Access::files() const {

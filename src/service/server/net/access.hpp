@@ -29,20 +29,22 @@ public:
     /// Paths of a token file and a role file (token_file.hpp, role_file.hpp); empty: none. Throws: as reading them.
     Access(std::string token_file, std::string role_file);
 
-    /// Reads the files again. They hold for calls that are admitted later. Throws: as the constructor; then nothing changes.
-    /// Thread safety: safe.
-    void reload();
+    struct Files {
+        std::vector<Token> tokens;
+        Roles roles;
+    };
+    /// Reads the files again. Throws: as the constructor.
+    std::shared_ptr<const Files> read() const;
+    /// Uses files that read() returned for calls that are admitted later. Thread safety: safe.
+    void use(std::shared_ptr<const Files> files);
+    /// Returns the clients "token:NAME" of the role file for which no token has this name. Thread safety: safe.
+    std::vector<std::string> clients_without_token() const;
     bool has_tokens() const { return !token_file_.empty(); }
     /// Sets `caller` to the authenticated caller, or returns why the caller is refused. Takes the same time for every wrong token.
     /// Thread safety: safe.
     grpc::Status identify(const grpc::ServerContextBase& context, Caller& caller) const;
 
 private:
-    struct Files {
-        std::vector<Token> tokens;
-        Roles roles;
-    };
-
     std::shared_ptr<const Files> files() const;
 
     const std::string token_file_, role_file_;

@@ -26,14 +26,19 @@ struct WrongLine {
     const char* why;
 };
 
-/// Throws: WrongLine{why} unless `name` has the form of a name that access.hpp gives.
-void check_client(std::string_view name, const char* why) {
+/// Throws: WrongLine unless `name` has the form of a name that access.hpp gives.
+void check_client(std::string_view name) {
     constexpr std::array<std::string_view, 5> kinds = {
         "token:", "certificate:", "certificate-uri:", "certificate-email:", "certificate-dns:"};
-    const bool good = name == "local" || std::ranges::any_of(kinds, [&](std::string_view kind) {
-                          return name.starts_with(kind) && name.size() > kind.size();
-                      });
-    if (!good) throw WrongLine{why};
+    if (name == "local") return;
+    const auto kind = std::ranges::find_if(kinds, [&](std::string_view one) { return name.starts_with(one); });
+    if (kind == kinds.end()) {
+        throw WrongLine{
+            "a client is token:NAME, certificate:NAME, certificate-uri:NAME, certificate-email:NAME, "
+            "certificate-dns:NAME or local, "
+            "as in the server's log"};
+    }
+    if (name == *kind) throw WrongLine{"a name must follow the colon, without a blank between them"};
 }
 
 /// Divides a line into words (role_file.hpp). Its members throw WrongLine.
@@ -73,11 +78,17 @@ private:
         std::string word;
         (void)next();
         for (char c = next(); c != '"'; c = next()) {
-            if (c == '\\') c = next();
+            if (c == '\\') c = escaped();
             word += c;
         }
         if (word.empty()) throw WrongLine{"a name in quotes is empty"};
         return word;
+    }
+
+    char escaped() {
+        const char c = next();
+        if (c != '"' && c != '\\') throw WrongLine{"in quotes, a backslash must be written as \\\\"};
+        return c;
     }
 
     std::string plain_word() {
@@ -94,7 +105,11 @@ private:
 }  // namespace
 
 Roles::Roles(const std::string& path) {
-    std::istringstream in(read_private_file(path));
+    const std::string content = read_private_file(path);
+    if (content.starts_with("\xEF\xBB\xBF"))
+        throw Error(ErrorCode::bad_input,
+                    path + ": line 1: it begins with a byte order mark; save the file without one");
+    std::istringstream in(content);
     std::size_t number = 0;
     for (std::string text; std::getline(in, text);) {
         ++number;
@@ -110,15 +125,21 @@ void Roles::add_line(std::string_view text) {
     LineReader line(text);
     if (line.is_empty_or_comment()) return;
     const std::string name = line.word();
-    check_client(name, "a client's name begins with token: or certificate:, as in the server's log");
+    check_client(name);
     const std::optional<Role> role = role_from(line.word());
     if (!role) throw WrongLine{"a line must be CLIENT ROLE; roles are owner, reader OWNER, operator and none"};
     const std::string reads = line.word();
     if ((*role == Role::reader) == reads.empty() || !line.word().empty())
         throw WrongLine{"the role reader needs the name of one owner; other roles have none"};
-    if (!reads.empty()) check_client(reads, "the owner's name begins with token: or certificate:");
+    if (!reads.empty()) check_client(reads);
     if (!callers_.try_emplace(name, Caller{name, *role, reads}).second)
         throw WrongLine{"an earlier line has the same client"};
+}
+
+std::vector<std::string> Roles::clients() const {
+    std::vector<std::string> names;
+    for (const auto& [name, caller] : callers_) names.push_back(name);
+    return names;
 }
 
 Caller Roles::caller(const std::string& name) const {

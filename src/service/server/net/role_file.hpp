@@ -12,6 +12,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "service/server/net/caller.hpp"
 
@@ -24,6 +25,8 @@ public:
     /// Throws: as read_private_file; Error{bad_input} for an invalid line or a client with two lines.
     explicit Roles(const std::string& path);
 
+    /// Returns the names of the clients that the file has lines for.
+    std::vector<std::string> clients() const;
     /// Returns the caller with this name and its role.
     Caller caller(const std::string& name) const;
 
