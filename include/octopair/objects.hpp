@@ -7,7 +7,7 @@
 // State     The caller's floating-point state (rounding mode, flushing of subnormal numbers, traps) changes no result. A call
 //           sets the default state and restores the caller's state at its end. Sinks, progress functions and filters run in
 //           the default state.
-// Ownership Boxes and padding are borrowed and never modified. If they change during a call, its result is arbitrary, but memory is safe.
+// Ownership Boxes and padding are borrowed and never modified. If they change meanwhile, a result is arbitrary, or an error.
 #pragma once
 
 #include <compare>

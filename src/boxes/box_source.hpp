@@ -5,8 +5,8 @@
 //   All other boxes are moved to an origin near the bulk, widened by margin / 2 + padding, and rounded outward to float32.
 //   Each of these operations is monotone, or has a bounded error that is added. So no pair is lost.
 //   If boxes overlap by no more than rounding could cause, is_pair() decides with the caller's own numbers.
-//   The caller's numbers may change during a call, such as those of a mapped file. Then the result is arbitrary, but no memory is damaged:
-//   no size of memory follows from a number that is read twice, and a number that is read again may be NaN.
+//   The caller's numbers may change during a call, such as those of a mapped file. Then the result is arbitrary, but no memory is damaged.
+//   A number that decides the size of an array is read only once. Code that reads a number again accepts any value, also NaN.
 #pragma once
 
 #include <array>

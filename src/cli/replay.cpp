@@ -57,7 +57,7 @@ std::string summary_text(const ReplayReport& report, bool checked) {
 
 int run_replay(const ReplayRequest& request) {
     const Interrupt interrupt;
-    const io::InputFile file(request.file, io::InputFile::Writers::appending);
+    const io::InputFile file(request.file, io::InputFile::Changes::allowed);
     const auto read = [&](std::uint64_t offset, std::span<std::byte> out) {
         file.read(offset, out, interrupt.token());
     };

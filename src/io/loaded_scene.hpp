@@ -1,9 +1,12 @@
 // LoadedScene: a scene in memory. Boxes of all frames, and the names, details and shapes that the files have.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,6 +42,20 @@ struct LoadedScene {
     /// Throws: Error{bad_input} if the boxes are mapped (FileMapping) and the file was changed since it was opened.
     void check_mapped() const {
         std::visit([](const auto& buffer) { check_mapping(std::as_bytes(buffer.span())); }, boxes);
+    }
+
+    /// Copies mapped boxes into memory, so that they no longer change with the file.
+    /// Throws: as check_mapped(); std::bad_alloc.
+    void copy_mapped() {
+        std::visit(
+            [this](auto& buffer) {
+                if (!is_mapped(std::as_bytes(buffer.span()))) return;
+                std::remove_reference_t<decltype(buffer)> copy(buffer.size());
+                std::copy(buffer.span().begin(), buffer.span().end(), copy.data());
+                check_mapped();
+                buffer = std::move(copy);
+            },
+            boxes);
     }
 
     /// Returns the boxes of frame `f`, borrowed.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t changing_box_count = 4000;
 
-/// Number of boxes that change: each may reach over the world, and then forms a pair with all others.
+/// Number of boxes that change. Each may become as large as the world, and then forms a pair with every other box.
 constexpr std::size_t overwritten = 100;
 
 /// Overwrites boxes until it is destroyed.

@@ -32,7 +32,7 @@ class ChangingObjects {
 public:
     ChangingObjects(Case a_case, std::uint64_t seed) : case_(std::move(a_case)), random_(seed, 3) {
         hostility_ = random_.below(2) == 0 ? Hostility::valid : Hostility::any;
-        changed_part_ = random_.uniform() * random_.uniform();
+        change_probability_ = random_.uniform() * random_.uniform();
         for (OwnedObjects* const set : {&case_.first, case_.second ? &*case_.second : nullptr}) {
             if (set == nullptr) continue;
             std::visit(
@@ -44,7 +44,7 @@ public:
     }
 
     void change() {
-        if (random_.uniform() > changed_part_) return;
+        if (random_.uniform() > change_probability_) return;
         for (std::uint64_t i = 1 + random_.below(4); i > 0; --i) {
             auto& one = overwriters_[random_.below(overwriters_.size())];
             std::visit([](auto& overwriter) { overwriter.overwrite_one(); }, one);
@@ -56,7 +56,7 @@ private:
     Case case_;
     samples::RandomStream random_;
     Hostility hostility_;
-    double changed_part_;  // part of the reads before which boxes change
+    double change_probability_;  // that boxes change before a read
     std::vector<std::variant<BoxOverwriter<float>, BoxOverwriter<double>>> overwriters_;
 };
 

@@ -132,8 +132,8 @@ TEST_P(SweepsOf, RecursiveSweepFindsAllPairs) {
     }
 }
 
-/// Boxes that move up each time that they are read again, so that no split divides the columns of a recursive sweep: when they are
-/// read to be divided, all are above the value that was chosen when they were read before.
+/// Boxes that move up whenever they are read again. A recursive sweep reads columns to choose a value, and again to split them at this
+/// value. At the second time all columns are above the value, so no split divides them.
 class RisingRule final : public PairRule {
 public:
     static constexpr std::uint32_t rows = 600, columns = 600;
@@ -149,7 +149,7 @@ public:
         for (Entry& entry : entries) {
             const std::uint32_t object = entry.object;
             for (unsigned axis = 0; axis < 3; ++axis) {
-                // Each column is below all rows on one axis, so a row and a column overlap on two axes only, and no sweep is cheap.
+                // Each column is below all rows on one axis. So on each axis a sweep tests many columns, but no pair overlaps.
                 const bool below = object >= rows && (object + 1) % 3 == axis;
                 entry.min[axis] = object < rows ? height_ - 9 : below ? -1 : height_ + float(object % 2);
                 entry.max[axis] = below ? 0 : 1e9f;

@@ -47,7 +47,7 @@ public:
                 search_frames();
             } catch (const Error& error) {
                 if (error.code() == ErrorCode::bad_input) refuse_faults();
-                // Boxes that change may contradict what the engine or a check found before.
+                // If boxes changed, an engine or a check may report a contradiction. The change is then the reason.
                 if (error.code() == ErrorCode::engine_failed && !request_.engine.has_ranks()) run_.check_inputs();
                 throw;
             }
@@ -126,7 +126,8 @@ private:
         group_.together([&] {
             std::uint64_t before = 0;
             for (const InputSet* set : {&inputs_.first, &inputs_.second}) {
-                if (const auto fault = set->find_fault()) group_.refuse_object(before + *set->fault_position(), *fault);
+                if (const auto fault = set->find_fault())
+                    group_.refuse_object(before + fault->position, fault->message);
                 before += set->total * set->scene.frames;
             }
         });

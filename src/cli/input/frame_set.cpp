@@ -59,7 +59,7 @@ template <typename Real>
 void FrameSet::read(std::uint64_t frame, std::span<Box<Real>> boxes, const std::stop_token& stop) const {
     if (moving_.empty()) {
         copy_boxes(still_.scene.frame(0).boxes, boxes);
-        if (const auto fault = still_.find_fault()) throw Error(ErrorCode::bad_input, *fault);
+        if (const auto fault = still_.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
         return;
     }
     for (const MovingPart& part : moving_) {

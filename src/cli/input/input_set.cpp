@@ -44,23 +44,19 @@ Box3d InputSet::bounds() const {
     return bounds;
 }
 
-std::optional<std::string> InputSet::find_fault() const {
+std::optional<InputSet::Fault> InputSet::find_fault() const {
     scene.check_mapped();
     const auto fault = io::find_fault(scene);
     if (!fault) return std::nullopt;
     const std::string frame = scene.moving ? fmt::format("frame {}: ", fault->frame) : "";
+    const std::uint64_t position = fault->frame * total + begin + fault->object;
     std::uint64_t object = begin + fault->object;
     for (const Part& part : parts) {
-        if (object < part.objects) return fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what);
+        if (object < part.objects)
+            return Fault{position, fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what)};
         object -= part.objects;
     }
     return std::nullopt;
-}
-
-std::optional<std::uint64_t> InputSet::fault_position() const {
-    const auto fault = io::find_fault(scene);
-    if (!fault) return std::nullopt;
-    return fault->frame * total + begin + fault->object;
 }
 
 namespace {

@@ -50,11 +50,14 @@ struct InputSet {
     Objects frame_slice(std::uint64_t f, const SliceNumber& number) const;
     /// Returns the smallest box that contains all boxes. For an empty set, its minima are infinite, and its maxima -infinite.
     Box3d bounds() const;
-    /// Returns a message about the first invalid box, with the file and the object; or nothing if all boxes are valid.
+    /// The first invalid box of a set.
+    struct Fault {
+        std::uint64_t position;  ///< frame * total + object
+        std::string message;     ///< with the file and the object
+    };
+    /// Returns nothing if all boxes are valid.
     /// Throws: Error{bad_input} if the file of mapped boxes was changed.
-    std::optional<std::string> find_fault() const;
-    /// Returns the position of the first invalid box: frame * total + object; or nothing if all boxes are valid.
-    std::optional<std::uint64_t> fault_position() const;
+    std::optional<Fault> find_fault() const;
 };
 
 /// Reads files as one set. Sets of JSON scenes, and of triangles read with SceneContent::shapes, have no boxes until

@@ -33,6 +33,15 @@ InputSet read_still_set(const std::vector<std::string>& paths, const DetectReque
     return set;
 }
 
+/// Removes a job if the server still answers.
+void remove_job(JobClient& client, const std::string& id) {
+    try {
+        (void)client.cancel(id);
+        client.release(id);
+    } catch (const Error&) {
+    }
+}
+
 std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     const DetectRequest& what = request.what;
     ProgressLine progress(!what.quiet);
@@ -48,7 +57,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
         against.padding = padding.against();
     }
     for (const InputSet* set : {&inputs, &against}) {
-        if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, *fault);
+        if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, fault->message);
     }
     Options options;
     options.order = what.order;
@@ -60,9 +69,11 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     const std::string id = client.submit(input, options, terms, stop);
     try {
         for (const InputSet* set : {&inputs, &against}) set->scene.check_mapped();
-    } catch (const Error&) {
-        (void)client.cancel(id);
-        client.release(id);
+    } catch (const Error& error) {
+        // A job with an id of the caller may be older than this call.
+        if (!request.id.empty())
+            throw Error(error.code(), std::string(error.what()) + "; job " + id + " may have some of the new numbers");
+        remove_job(client, id);
         throw;
     }
     return id;

@@ -71,7 +71,7 @@ private:
 }  // namespace
 
 bool is_recording(const std::string& path) {
-    const io::InputFile file(path, io::InputFile::Writers::appending);
+    const io::InputFile file(path, io::InputFile::Changes::allowed);
     std::array<char, 8> magic = {};
     if (file.size() < magic.size()) return false;
     file.read(0, std::as_writable_bytes(std::span(magic)));
@@ -80,7 +80,7 @@ bool is_recording(const std::string& path) {
 
 LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
     const std::string& path = request.detect.inputs.front();
-    const io::InputFile file(path, io::InputFile::Writers::appending);
+    const io::InputFile file(path, io::InputFile::Changes::allowed);
     RecordingReader reader(
         {path, file.size(), [&](std::uint64_t offset, std::span<std::byte> out) { file.read(offset, out, stop); }});
     std::vector<RecordedStep> steps;

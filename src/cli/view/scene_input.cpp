@@ -64,10 +64,9 @@ public:
             search(frame, options, data);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::bad_input) throw;
-            if (const auto fault = inputs_->set.find_fault()) throw Error(ErrorCode::bad_input, *fault);
+            if (const auto fault = inputs_->set.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
             throw;
         }
-        inputs_->set.scene.check_mapped();
         return data;
     }
 
@@ -121,7 +120,6 @@ public:
         data.pairs = std::move(found.pairs);
         data.findings = std::move(found.findings);
         data.pair_count = data.pairs.size();
-        inputs_->set.scene.check_mapped();
         return data;
     }
 
@@ -169,6 +167,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         content.shapes = true;
 #endif
         inputs->set = read_input_set(request.detect.inputs, content, stop);
+        inputs->set.scene.copy_mapped();  // the page reads boxes at any time
 #ifdef OCTOPAIR_WITH_PIPELINE
         make_shaped(inputs->set, {local_threads(request.detect.engine), request.detect.pipeline.weld.value_or(0)},
                     stop);

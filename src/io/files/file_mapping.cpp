@@ -121,6 +121,8 @@ PageSource& mapped_pages() {
     return pages;
 }
 
+bool is_mapped(std::span<const std::byte> memory) { return mapping_of(memory.data()) != nullptr; }
+
 void check_mapping(std::span<const std::byte> memory) {
     const std::lock_guard lock(mappings_mutex);
     const Mapping* const mapping = mapping_of(memory.data());

@@ -3,8 +3,8 @@
 //
 // Invariants
 //   Mappings are private: a write changes neither the file nor what other processes see.
-//   If a file is written or shortened while it is mapped, the numbers in memory change at any time. So numbers that were checked must be
-//   checked again when they are read again. check_mapping() then throws, as InputFile::check_unchanged() does.
+//   If a file is written or shortened while it is mapped, the numbers in memory change at any time. So code that reads a number again must
+//   accept any value. check_mapping() then throws, as InputFile::check_unchanged() does.
 //   Pages that cannot be read, such as those that a shortened file loses, get bytes of 0xFF, which are NaN as floats. Without this, the
 //   system would end the process by SIGBUS. The rest of the last page that a shortened file keeps reads as zeros.
 #pragma once
@@ -25,6 +25,9 @@ void* map_file(const InputFile& file, std::uint64_t offset, std::size_t bytes);
 
 /// Returns the source of mapped pages, for a Buffer that adopts them. It reserves no pages.
 PageSource& mapped_pages();
+
+/// Returns whether `memory` belongs to a mapping.
+bool is_mapped(std::span<const std::byte> memory);
 
 /// Throws: Error{bad_input} if `memory` belongs to a mapping whose file was changed since it was opened; Error{io_failed} if
 /// a page could not be read. Other memory is not checked.

@@ -17,41 +17,34 @@ constexpr const char* truncated = "the file was truncated while it was read";
 
 std::int64_t nanoseconds(const timespec& time) { return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec; }
 
-struct stat status_of(const Descriptor& file, const std::string& path) {
-    struct stat status {};
-    if (::fstat(file.number(), &status) != 0) fail_io(path, "cannot read", errno);
-    return status;
-}
-
-FileState state_of(const struct stat& status) {
-    return {std::uint64_t(status.st_size), std::uint64_t(status.st_nlink), nanoseconds(status.st_mtim),
-            nanoseconds(status.st_ctim)};
-}
-
 }  // namespace
 
-FileState FileState::of(const Descriptor& file, const std::string& path) { return state_of(status_of(file, path)); }
+FileState FileState::of(const Descriptor& file, const std::string& path) {
+    struct stat status {};
+    if (::fstat(file.number(), &status) != 0) fail_io(path, "cannot read", errno);
+    return {S_ISREG(status.st_mode), std::uint64_t(status.st_size), std::uint64_t(status.st_nlink),
+            nanoseconds(status.st_mtim), nanoseconds(status.st_ctim)};
+}
 
 void FileState::check_same_content(const FileState& now, const std::string& path) const {
     if (now.size < size) refuse(path, truncated);
-    // A new number of links explains a new attribute time.
+    // Adding or removing a name changes the attribute time, too. So this time counts only if the number of names is the same.
     const bool same = now.size == size && now.content_time == content_time &&
                       (now.attribute_time == attribute_time || now.links != links);
     if (!same) refuse(path, "the file changed while it was read; run again when no program writes to it");
 }
 
-InputFile::InputFile(std::string path, Writers writers) : path_(std::move(path)), writers_(writers) {
+InputFile::InputFile(std::string path, Changes changes) : path_(std::move(path)), changes_(changes) {
     // With O_NONBLOCK, opening a device does not block; the check below then refuses it. The flag has no effect on a regular file.
     descriptor_ = is_stream(path_) ? open_stream_copy(path_)
                                    : Descriptor(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!descriptor_.open()) fail_io(path_, "cannot open", errno);
-    const struct stat status = status_of(descriptor_, path_);
-    if (!S_ISREG(status.st_mode)) refuse(path_, "not a regular file");
-    state_ = state_of(status);
+    state_ = FileState::of(descriptor_, path_);
+    if (!state_.regular) refuse(path_, "not a regular file");
 }
 
 void InputFile::check_unchanged() const {
-    if (writers_ == Writers::none) state_.check_same_content(FileState::of(descriptor_, path_), path_);
+    if (changes_ == Changes::refused) state_.check_same_content(FileState::of(descriptor_, path_), path_);
 }
 
 void InputFile::read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop) const {

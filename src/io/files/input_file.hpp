@@ -17,10 +17,11 @@ namespace octopair::io {
 
 /// Attributes of an open file that show whether its content has changed.
 struct FileState {
+    bool regular = false;  ///< false: a directory, stream or device
     std::uint64_t size = 0;
     std::uint64_t links = 0;          ///< number of names in directories
     std::int64_t content_time = 0;    ///< nanoseconds since 1970: last change of the content
-    std::int64_t attribute_time = 0;  ///< last change of the content or of attributes. Programs cannot set it
+    std::int64_t attribute_time = 0;  ///< last change of the content, name or attributes. Programs cannot set it
 
     /// Throws: Error{io_failed} that begins with `path`.
     static FileState of(const Descriptor& file, const std::string& path);
@@ -31,11 +32,11 @@ struct FileState {
 
 class InputFile {
 public:
-    /// What other programs do with the file while it is open.
-    enum class Writers : std::uint8_t { none, appending };
+    /// Whether other programs may write to the file while it is open.
+    enum class Changes : std::uint8_t { refused, allowed };
 
     /// Throws: Error{io_failed} if the file cannot be opened; Error{bad_input} if it is neither a regular file nor a stream.
-    explicit InputFile(std::string path, Writers writers = Writers::none);
+    explicit InputFile(std::string path, Changes changes = Changes::refused);
 
     const std::string& path() const { return path_; }
     /// Returns the size in bytes at the time of opening.
@@ -50,13 +51,13 @@ public:
     /// request.
     void read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop = {}) const;
 
-    /// Throws: Error{bad_input} if another program has changed the content since the file was opened. With Writers::appending, does
+    /// Throws: Error{bad_input} if another program has changed the content since the file was opened. With Changes::allowed, does
     /// nothing.
     void check_unchanged() const;
 
 private:
     std::string path_;
-    Writers writers_;
+    Changes changes_;
     Descriptor descriptor_;
     FileState state_;
 };

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
 
 namespace octopair::io {
 
@@ -38,6 +39,7 @@ void write_all(const Descriptor& to, const std::string& path, const char* bytes,
 Descriptor copy_of(const std::string& path) {
     const Descriptor from = open_stream(path);
     if (!from.open()) fail_io(path, "cannot open", errno);
+    const FileState before = FileState::of(from, path);
     Descriptor copy(::memfd_create("octopair", MFD_CLOEXEC));
     if (!copy.open()) fail_io(path, "cannot copy into memory", errno);
     std::array<char, 1 << 16> piece;
@@ -47,9 +49,11 @@ Descriptor copy_of(const std::string& path) {
         const ssize_t got = ::read(from.number(), piece.data(), piece.size());
         if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (got < 0) fail_io(path, "cannot read", errno);
-        if (got == 0) return copy;
+        if (got == 0) break;
         write_all(copy, path, piece.data(), std::size_t(got));
     }
+    if (before.regular) before.check_same_content(FileState::of(from, path), path);
+    return copy;
 }
 
 }  // namespace

@@ -156,8 +156,8 @@ float split_value(const OwnedJoin& join, unsigned axis, std::array<float, 2> ran
     return next;
 }
 
-/// Maximum number of splits that lead to a join. Every second split of an axis halves the columns, which are fewer than 2^32. Only boxes
-/// that change during the search are split more often.
+/// Maximum number of splits that lead to a join. On each of three axes, two splits halve the columns at least. They are fewer than 2^32, so
+/// 33 halvings leave none. Only boxes that change during the search are split more often.
 constexpr unsigned max_depth = 3 * 2 * 33;
 
 /// Returns smaller joins that together find the pairs of `join`.
