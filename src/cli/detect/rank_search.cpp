@@ -143,7 +143,13 @@ private:
                            .stop = run_.stop});
         if (!counts_only()) cluster_.relay(piece_, [&](std::span<const Pair> pairs) { verifier.take(pairs); });
         cluster_.together([&] {
-            if (cluster_.first()) summary.verification = verifier.finish({summary.pairs, summary.truncated});
+            if (!cluster_.first()) return;
+            try {
+                summary.verification = verifier.finish({summary.pairs, summary.truncated});
+            } catch (const Error&) {
+                run_.check_inputs();  // if boxes changed, this is the reason
+                throw;
+            }
         });
     }
 
