@@ -66,7 +66,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     options.progress = [&progress](double done) { progress.show("sending", done); };
     const JobTerms terms = {request.id, what.count_only};
     const Input input(inputs.frame(0), what.against.empty() ? std::nullopt : std::optional(against.frame(0)));
-    const std::string id = client.submit(input, options, terms, stop);
+    std::string id = client.submit(input, options, terms, stop);
     try {
         for (const InputSet* set : {&inputs, &against}) set->scene.check_mapped();
     } catch (const Error& error) {

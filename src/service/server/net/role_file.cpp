@@ -55,7 +55,7 @@ public:
 
     /// Returns the next word, without its quotes; empty at the end of the line.
     std::string word() {
-        const std::string word = rest_.starts_with('"') ? quoted_word() : plain_word();
+        std::string word = rest_.starts_with('"') ? quoted_word() : plain_word();
         if (!rest_.empty() && !is_blank(rest_.front())) throw WrongLine{"a blank must follow a closing quote"};
         skip_blanks();
         return word;
