@@ -138,6 +138,7 @@ void Roles::add_line(std::string_view text) {
 
 std::vector<std::string> Roles::clients() const {
     std::vector<std::string> names;
+    names.reserve(callers_.size());
     for (const auto& [name, caller] : callers_) names.push_back(name);
     return names;
 }
