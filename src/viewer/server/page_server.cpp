@@ -53,6 +53,8 @@ public:
     }
 
     void stop() {
+        stopping_ = true;
+        const auto latest = Clock::now() + 500ms;
         std::promise<void> done;
         asio::post(io_, [&] {
             acceptor_.close();
@@ -65,7 +67,8 @@ public:
             done.set_value();
         });
         done.get_future().wait();
-        for (int i = 0; i < 50 && busy(); ++i) std::this_thread::sleep_for(10ms);
+        // Each call of busy() waits for the connections' thread, which runs seldom if it has low priority and other programs are busy.
+        while (Clock::now() < latest && busy()) std::this_thread::sleep_for(10ms);
         pool_.stop();
         pool_.join();
         io_.stop();
@@ -116,6 +119,7 @@ public:
     }
 
     bool may_send_frame() override {
+        if (stopping_) return false;  // making a frame would delay the end
         const auto now = Clock::now();
         if (!options_.low_priority || now >= next_frame_) return true;
         if (!std::exchange(frame_timer_runs_, true)) {
@@ -235,7 +239,7 @@ private:
     std::uint64_t turns_ = 0;
     std::uint16_t port_ = 0;
     Access access_;
-    std::atomic<bool> notified_ = false;
+    std::atomic<bool> notified_ = false, stopping_ = false;
     std::thread thread_;
 };
 
