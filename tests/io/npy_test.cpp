@@ -182,6 +182,19 @@ TEST_F(MappedNpy, IsReadToItsEndAfterItWasReplaced) {
     EXPECT_EQ(said_after([&] { std::filesystem::remove(path_); }), "");
 }
 
+TEST_F(MappedNpy, IsCopiedForReadersAtAnyTime) {
+    LoadedScene scene = map_rows(path_, {0, objects});
+    scene.copy_mapped();
+    wait_for_another_time();
+    overwrite(bytes - 4, "xxxx");
+    EXPECT_EQ(boxes_of<float>(scene).back().max[2], 1);
+    EXPECT_NO_THROW(scene.check_mapped());
+    LoadedScene late = map_rows(path_, {0, objects});
+    wait_for_another_time();
+    overwrite(bytes - 4, "yyyy");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { late.copy_mapped(); }), path_ + changed);
+}
+
 TEST_F(MappedNpy, IsRefusedIfItChangesBetweenReads) {
     const io::NpyScene scene(path_);
     wait_for_another_time();

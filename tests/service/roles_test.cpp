@@ -49,8 +49,7 @@ protected:
     }
     const std::string client_forms =
         "a client is token:NAME, certificate:NAME, certificate-uri:NAME, certificate-email:NAME, certificate-dns:NAME "
-        "or local, as in "
-        "the server's log";
+        "or local, as in the server's log";
     std::string not_permitted(const std::string& role) const {
         return server_->address().text() + ": the role " + role + " does not permit this call";
     }

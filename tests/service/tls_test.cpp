@@ -176,6 +176,28 @@ TEST_F(Tls, CertificatesAreReadAgain) {
     EXPECT_EQ(earlier->count_pairs({boxes}), 3u);
 }
 
+TEST_F(Tls, NewRolesAreNotUsedIfACertificateHasAFault) {
+    const TemporaryDirectory folder;
+    service::ServerOptions options = secured("server");
+    options.tls.certificate = folder.file("certificate");
+    write_file(options.tls.certificate, read_file(files().pem("server")));
+    options.token_file = folder.file("tokens");
+    write_secret(options.token_file, "anna anna-0123456789ab\n");
+    options.role_file = folder.file("roles");
+    write_secret(options.role_file, "");
+    service::Server server(options, silent());
+    ClientOptions anna = trusting();
+    anna.token = "anna-0123456789ab";
+    write_secret(options.role_file, "token:anna none\n");
+    write_file(options.tls.certificate, "broken");
+    (void)error_of(ErrorCode::bad_input, [&] { server.reload(); });
+    EXPECT_EQ(ask(server.address().text(), anna), right_answer);
+    write_file(options.tls.certificate, read_file(files().pem("server")));
+    server.reload();
+    EXPECT_EQ(error_of(ErrorCode::usage, [&] { ask(server.address().text(), anna); }),
+              server.address().text() + ": the client has no access any more");
+}
+
 TEST_F(Tls, KeysOthersMayReadAreRefused) {
     const TemporaryDirectory folder;
     service::ServerOptions options = secured("server");

@@ -55,7 +55,7 @@ struct InputSet {
         std::uint64_t position;  ///< frame * total + object
         std::string message;     ///< with the file and the object
     };
-    /// Returns nothing if all boxes are valid.
+    /// Returns the first invalid box, or nothing if all boxes are valid.
     /// Throws: Error{bad_input} if the file of mapped boxes was changed.
     std::optional<Fault> find_fault() const;
 };

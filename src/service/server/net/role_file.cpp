@@ -35,8 +35,7 @@ void check_client(std::string_view name) {
     if (kind == kinds.end()) {
         throw WrongLine{
             "a client is token:NAME, certificate:NAME, certificate-uri:NAME, certificate-email:NAME, "
-            "certificate-dns:NAME or local, "
-            "as in the server's log"};
+            "certificate-dns:NAME or local, as in the server's log"};
     }
     if (name == *kind) throw WrongLine{"a name must follow the colon, without a blank between them"};
 }
