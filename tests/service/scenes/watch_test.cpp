@@ -11,9 +11,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <future>
 #include <thread>
+#include <utility>
 
 #include "io/temporary.hpp"
+#include "octopair/client.hpp"
 #include "octopair/scene_watcher.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/scenes/scene_server.hpp"
@@ -243,6 +246,9 @@ public:
         (void)reader_->Finish();
     }
 
+    /// Waits until the server starts to send its answer.
+    void wait_for_answer() { reader_->WaitForInitialMetadata(); }
+
 private:
     grpc::ClientContext context_;
     std::unique_ptr<v1::Octopair::Stub> calls_;
@@ -324,6 +330,44 @@ TEST_F(SceneWatching, WatchersThatDoNotReadKeepNoSceneWaiting) {
     }
     watchers.clear();
     EXPECT_TRUE(watcher().next(id, 0, 60s, 0));
+}
+
+TEST_F(SceneWatching, AServerStopsDespiteAWatcherThatDoesNotRead) {
+    RemoteScene scene = server_.scene();
+    (void)add_to(scene, make_boxes("uniform", 200'000, 1));  // 4.8 MB, more than gRPC sends ahead
+    (void)scene.step();
+    UnreadWatch watch(server_.address(), only_id(), 0);
+    watch.wait_for_answer();
+
+    // The server lets this job end before it cancels calls. Until then, the watchdog ends the watch, whose write is in progress.
+    std::promise<void> arrived, go_on;
+    std::jthread client([&, released = go_on.get_future()] {
+        const std::vector<Box3f> same(3000, Box3f{{0, 0, 0}, {1, 1, 1}});
+        bool first = true;
+        (void)connect(server_.address(), {})->stream_pairs({same}, [&](std::span<const Pair>) {
+            if (std::exchange(first, false)) arrived.set_value();
+            released.wait();
+        });
+    });
+    arrived.get_future().wait();
+    SceneWatcher other(server_.address(), {.patience = 0ms});
+    const auto refuses = [&] {
+        try {
+            (void)other.list();
+            return false;
+        } catch (const Error&) {
+            return true;
+        }
+    };
+    EXPECT_FALSE(refuses());
+    std::jthread drain([&] { server_.server().drain(10min); });
+    EXPECT_TRUE(comes_true(refuses)) << "the server is going down";
+    const std::uint64_t beats = server_.server().beats();
+    EXPECT_TRUE(comes_true([&] { return server_.server().beats() >= beats + 2; }))
+        << "the watchdog has ended the watch";
+    go_on.set_value();
+    drain.join();
+    server_.go();
 }
 
 TEST_F(SceneWatching, AServerThatStopsEndsWaits) {

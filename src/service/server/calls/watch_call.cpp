@@ -88,6 +88,7 @@ private:
 /// Invariants:
 ///  - At most one write is in progress: `writing_` is true from StartWrite until OnWriteDone.
 ///  - Nothing is written after `finished_` is true.
+///  - The end of each write leads to pump(), so a call with an outcome and without a write finishes.
 ///  - No lock is held while gRPC is called, because gRPC may call back before it returns.
 class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                         public SnapshotReceiver,
@@ -156,12 +157,12 @@ private:
         if (auto snapshot = scene_->wait({self_, asked.after_step(), pair_limit_})) receive(std::move(snapshot), {});
     }
 
-    /// Ends the call with `status`, after the write in progress.
+    /// Ends the call with `status`, after the write in progress. Only the first status takes effect. A later call still pumps: if
+    /// the write in progress fails, OnWriteDone calls only end(), and the call would otherwise never finish.
     void end(const grpc::Status& status) {
         {
             const std::lock_guard lock(mutex_);
-            if (outcome_) return;
-            outcome_ = status;
+            if (!outcome_) outcome_ = status;
         }
         if (scene_) scene_->forget(*this);
         pump();
