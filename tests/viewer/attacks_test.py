@@ -11,7 +11,7 @@ import time
 
 import scene_files
 from view_case import InFolder, main, pairs_in
-from view_process import WebSocket, parsed, read_all
+from view_process import WebSocket, parsed, read_all, send_and_end
 
 
 class Access(InFolder):
@@ -103,8 +103,7 @@ class Access(InFolder):
                             b'GET / HTTP/1.1\r\nHost: a\r\n b\r\n\r\n', b'GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n',
                             b'GET / HTTP/1.1\nHost: ' + view.endpoint.encode() + b'\n\n', b'PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n'):
                 with view.connect() as connection:
-                    connection.sendall(garbage)
-                    connection.shutdown(1)
+                    send_and_end(connection, garbage)
                     read_all(connection)
                 self.assertEqual(view.get('view.json')['objects'], 20)
 
@@ -208,10 +207,11 @@ class Endurance(InFolder):
                 garbage = os.urandom(i % 300) if i % 3 else b'GET /' + os.urandom(i % 50) + b' HTTP/1.1\r\nHost: ' + view.endpoint.encode() + b'\r\n\r\n'
                 with view.connect() as connection:
                     try:
-                        connection.sendall(garbage)
                         if i % 5 == 0:
-                            connection.shutdown(1)
+                            send_and_end(connection, garbage)
                             connection.recv(4096)
+                        else:
+                            connection.sendall(garbage)
                     except ConnectionError:
                         pass
                 if i == 1000:

@@ -1,5 +1,6 @@
 """Runs `octopair view`, and reads its server by HTTP and WebSocket from raw sockets. Standard library only."""
 import base64
+import errno
 import gzip
 import json
 import os
@@ -82,6 +83,16 @@ class ViewProcess:
         if status != 200:
             raise AssertionError(f'{address}: {status} {body!r}')
         return json.loads(body) if headers['content-type'] == 'application/json' else body
+
+
+def send_and_end(connection, data):
+    """Sends data and ends this direction. The server may end the connection before it has read everything."""
+    try:
+        connection.sendall(data)
+        connection.shutdown(socket.SHUT_WR)
+    except OSError as error:
+        if error.errno not in (errno.ECONNRESET, errno.EPIPE, errno.ENOTCONN):
+            raise
 
 
 def read_all(connection):
