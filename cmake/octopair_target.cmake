@@ -7,9 +7,10 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
-# Paths in messages begin at the root, and in packages also those in debug information. So checkouts in other folders give the same
-# code, and a compiler cache serves them all.
-if(OCTOPAIR_PACKAGE_BUILD)
+# Paths in messages begin at the root. So checkouts in other folders give the same code, and a compiler cache serves them all. Debug
+# information of packages has such paths, too; release builds have the same options, so that packages can take their objects from the
+# cache.
+if(OCTOPAIR_PACKAGE_BUILD OR (PROJECT_IS_TOP_LEVEL AND CMAKE_BUILD_TYPE STREQUAL "Release"))
     add_compile_options(-ffile-prefix-map=${PROJECT_BINARY_DIR}=build -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 elseif(PROJECT_IS_TOP_LEVEL)
     add_compile_options(-fmacro-prefix-map=${PROJECT_SOURCE_DIR}=.)
@@ -24,7 +25,8 @@ function(octopair_target target)
                                              -Wno-sign-conversion)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         # g++ 12 wrongly reports overlapping copies in "text" + std::string (GCC bug 105651).
-        target_compile_options(${target} PRIVATE -Wno-restrict)
+        # -Wno-psabi: no note on an ABI that changed in GCC 4.6.
+        target_compile_options(${target} PRIVATE -Wno-restrict -Wno-psabi)
         if(CMAKE_UNITY_BUILD)
             # g++ treats the sources that a unity file includes as headers.
             target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
@@ -40,6 +42,9 @@ function(octopair_target target)
         target_compile_options(${target} PRIVATE -fsanitize=${OCTOPAIR_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
         target_link_options(${target} PUBLIC -fsanitize=${OCTOPAIR_SANITIZE})
+        # The older instruction sets run the source of the kernels with shorter vectors. Release builds test them
+        # (octopair_instruction_sets).
+        target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
     endif()
 endfunction()
 

@@ -22,8 +22,12 @@ cd "$source_dir"
 tar -xf "$work"/octopair-*.tar.gz -C "$work"
 rm "$work"/octopair-*.tar.gz
 cd "$work"/octopair-*
-# Other builds of the same distribution share the cache.
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+# The build takes the objects of the preset `release` from ccache, because its folder is as deep as those of the presets, and its
+# warnings are errors, too.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 SKBUILD_CONFIGURE_OPTIONS=-DOCTOPAIR_WARNINGS_AS_ERRORS=ON
+folder=$("$python" -c 'from skbuild.constants import CMAKE_BUILD_DIR; print(CMAKE_BUILD_DIR())')
+mkdir -p build/wheel "$(dirname "$folder")"
+ln -s "$PWD/build/wheel" "$folder"
 "$python" -m venv --system-site-packages "$work/build"
 "$work/build/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir "$work/wheel" . > "$work/log" 2>&1 || { tail -40 "$work/log"; fail "no wheel"; }
 cd "$work"

@@ -35,8 +35,8 @@ std::vector<std::string> candidate_paths(const std::string& packaged) {
     if (const fs::path library = own_file(); library.is_absolute())
         found.push_back((library.parent_path() / OCTOPAIR_WORKER_FROM_LIBRARY / "octopair-worker").lexically_normal());
     if (!packaged.empty()) found.push_back(packaged);
-    // Builds for packages leave out paths that they cannot know.
-    for (const std::string configured : {OCTOPAIR_WORKER_INSTALLED, OCTOPAIR_WORKER_BUILT}) {
+    // A build tree uses its own program, not that of an older installation. Builds for packages leave out paths that they cannot know.
+    for (const std::string configured : {OCTOPAIR_WORKER_BUILT, OCTOPAIR_WORKER_INSTALLED}) {
         if (!configured.empty()) found.push_back(configured);
     }
     return found;
