@@ -28,7 +28,9 @@ def compiled(root, build):
 
 
 def flags_of(command):
-    """Returns the compiler and its options, without the file to compile and the outputs."""
+    """Returns the compiler and its options, without the file to compile and the outputs.
+
+    Highway includes a kernel once for each instruction set of its list. One of them is enough to check the source."""
     words = shlex.split(command)
     if words[0].endswith("ccache"):
         words = words[1:]
@@ -39,7 +41,7 @@ def flags_of(command):
         if not skip:
             flags.append(words.pop(0))
         words = words[skip:]
-    return flags
+    return [*flags, "-DHWY_COMPILE_ONLY_STATIC"]
 
 
 def included(file):
