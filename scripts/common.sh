@@ -39,12 +39,18 @@ as_root() {
     fi
 }
 
-# Fetches the package lists, once per run of a script. A stale list names packages that the mirror no longer has.
+# Fetches the package lists, once per run of a script.
 update_package_lists() {
     [ -z "${OCTOPAIR_LISTS_UPDATED:-}" ] || return 0
-    say "fetching the package lists (apt-get update)"
-    as_root apt-get update -qq >&2
+    say "fetching the package lists"
+    as_root apt-get update -qq >&2 || return 1
     export OCTOPAIR_LISTS_UPDATED=1
+}
+
+# Runs a command that downloads packages: first with the package lists of this machine, so that no other package has to be upgraded;
+# then, if the mirror no longer has these versions, with new lists.
+with_package_lists() {
+    "$@" || { update_package_lists && "$@"; }
 }
 
 # Makes CMake compile through ccache, if installed. Checkouts share the cache, because paths are relative to the root. The
