@@ -188,7 +188,8 @@ class Run:
         environment = {"OCTOPAIR_TEST_SMALL_SCENES": str(small), "OCTOPAIR_TEST_LARGE_SCENES": str(large),
                        "OCTOPAIR_TEST_SHARE": str(stage.share), "OCTOPAIR_TEST_FROM_SOURCE": str(int(stage.from_source))}
         # Many tests mostly wait: more of them run at a time than there are cores.
-        self.tests[name].add(["ctest", "--test-dir", str(BUILD / stage.preset), "-j", str(3 * CORES), "--output-on-failure", "--timeout", "600",
+        at_a_time = (2 if self.several else 3) * CORES
+        self.tests[name].add(["ctest", "--test-dir", str(BUILD / stage.preset), "-j", str(at_a_time), "--output-on-failure", "--timeout", "600",
                               "--output-junit", str(test_results.file_of(name)), *stage.labels],
                              log, environment={**environment, **{key: os.environ[key] for key in environment if key in os.environ}})
         if log:
