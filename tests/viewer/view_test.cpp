@@ -105,16 +105,20 @@ bool shows(const LivePage& page, MovingScene& scene, const Point3d& origin) {
     return true;
 }
 
+/// What is subtracted from the coordinates of frames; known when the view has passed on its first step.
+Point3d origin_of(const View& view) {
+    const Json origin = Json::parse(get_page(view.address(), "/view.json").body)["origin"];
+    return {origin[0], origin[1], origin[2]};
+}
+
 /// Shows a resting scene until the page has its last state.
 bool catches_up(MovingScene& scene, View& view, PageClient& client, LivePage& page) {
-    const Json json = Json::parse(get_page(view.address(), "/view.json").body);
-    const Point3d origin = {json["origin"][0], json["origin"][1], json["origin"][2]};
     for (const auto end = Clock::now() + 20s; Clock::now() < end;) {
         auto reading = std::async(std::launch::async, [&] { return read_frame(client, page); });
         // Not all calls copy the scene, so that the page may wait for a later one.
         while (reading.wait_for(1ms) != std::future_status::ready) view.show(scene.still_step());
         if (!reading.get()) return false;
-        if (shows(page, scene, origin)) return true;
+        if (shows(page, scene, origin_of(view))) return true;
     }
     return false;
 }
