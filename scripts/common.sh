@@ -58,7 +58,7 @@ with_package_lists() {
 compile_through_ccache() {
     command -v ccache > /dev/null || return 0
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1 \
-        CCACHE_SLOPPINESS=pch_defines,time_macros
+        CCACHE_SLOPPINESS=pch_defines,time_macros,locale
 }
 
 # Prints the version of the project.

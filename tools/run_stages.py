@@ -35,6 +35,7 @@ class Stage:
     scenes: numbers of small and of large scenes for the tests of exactness.
     share: number of cases of other random tests, in per cent of the usual number.
     options: what to turn on when the build is configured.
+    compiled: options of the compiler for everything but tests and benchmarks.
     from_source: packages are compiled with their own options (tests/packaging/release_objects.sh).
     """
     preset: str
@@ -43,17 +44,20 @@ class Stage:
     scenes: tuple = (1000, 4)
     share: int = 50
     options: tuple = ()
+    compiled: str = ""
     from_source: bool = False
 
 
 EXACTNESS = ("octopair_exactness_test", "octopair_exactness_workers_test", "octopair_mpi_test")
 PYTHON = ("OCTOPAIR_WITH_PYTHON",)
+# The packages and the wheel take the objects of this build (tests/packaging/release_objects.sh), and one check reads debug information.
+DEBUG = "-g -fno-var-tracking"
 STAGES = {
     # The package tests take longest, and mostly wait for each other, so they begin first.
-    "packages": Stage("release", ("-L", "packages"), ("octopair_packaged",)),
+    "packages": Stage("release", ("-L", "packages"), ("octopair_packaged",), compiled=DEBUG),
     "release": Stage("release", ("-L", "quick"), scenes=(2000, 8), share=100),
     "slow": Stage("release", ("-L", "slow")),
-    "python": Stage("release", ("-L", "python"), options=PYTHON),
+    "python": Stage("release", ("-L", "python"), options=PYTHON, compiled=DEBUG),
     "viewer": Stage("release", ("-L", "viewer"), options=PYTHON),
     "install": Stage("release", ("-L", "install")),
     "docs": Stage("release", ("-L", "docs"), ("octopair_documented",), options=PYTHON),
@@ -146,7 +150,8 @@ class Run:
         on = {option for stage in stages for option in stage.options}
         # All builds have the viewer, so that no stage compiles the program again.
         options = ["-DOCTOPAIR_BUILD_TESTS=ON", "-DOCTOPAIR_WITH_VIEWER=ON",
-                   *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", "OCTOPAIR_WITH_PYTHON"))]
+                   *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", "OCTOPAIR_WITH_PYTHON")),
+                   f"-DCMAKE_CXX_FLAGS={max(stage.compiled for stage in stages)}"]
         targets = [] if any(not stage.targets for stage in stages) else sorted({name for stage in stages for name in stage.targets})
         log = BUILD / "results" / f"build-{preset}.log"
         log.unlink(missing_ok=True)

@@ -23,8 +23,9 @@ tar -xf "$work"/octopair-*.tar.gz -C "$work"
 rm "$work"/octopair-*.tar.gz
 cd "$work"/octopair-*
 # The build takes the objects of the preset `release` from ccache, because its folder is as deep as those of the presets, and its
-# warnings are errors, too.
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 SKBUILD_CONFIGURE_OPTIONS=-DOCTOPAIR_WARNINGS_AS_ERRORS=ON
+# options are the same (tests/packaging/release_objects.sh).
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 SKBUILD_CONFIGURE_OPTIONS=-DOCTOPAIR_WARNINGS_AS_ERRORS=ON \
+    CXXFLAGS="-g -fno-var-tracking" LDFLAGS=-s
 folder=$("$python" -c 'from skbuild.constants import CMAKE_BUILD_DIR; print(CMAKE_BUILD_DIR())')
 mkdir -p build/wheel "$(dirname "$folder")"
 ln -s "$PWD/build/wheel" "$folder"
