@@ -33,7 +33,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::string_view finding = "finding pairs";
+constexpr std::string_view finding_pairs = "finding pairs";
 
 LoadedView load(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
     if (request.detect.inputs.empty()) return load_result(request, stop);
@@ -87,11 +87,11 @@ private:
     void report(double done) {
         source_.set_progress(done);
         const std::lock_guard lock(report_mutex_);
-        if (server_ == nullptr) return line_.show(finding, done);
+        if (server_ == nullptr) return line_.show(finding_pairs, done);
         const auto now = std::chrono::steady_clock::now();
         if (now - reported_ < 100ms) return;
         reported_ = now;
-        server_->broadcast("", viewer::progress_message(finding, done));
+        server_->broadcast("", viewer::progress_message(finding_pairs, done));
     }
 
     viewer::SceneSource& source_;
@@ -151,9 +151,9 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
 /// Writes the page of --export and the picture of --screenshot.
 void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
     viewer::SceneSource source(std::move(view.contents), *view.finder);
-    source.load([&](double done) { progress.show(finding, done); });
+    source.load([&](double done) { progress.show(finding_pairs, done); });
     if (source.moving()) {
-        const auto show = [&](std::uint64_t done) { progress.show(finding, double(done) / double(source.frames())); };
+        const auto show = [&](std::uint64_t done) { progress.show(finding_pairs, double(done) / double(source.frames())); };
         source.count_frames(show, stop);
     }
     throw_if_stopped(stop);
