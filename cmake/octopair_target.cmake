@@ -44,7 +44,7 @@ function(octopair_target target)
         target_link_options(${target} PUBLIC -fsanitize=${OCTOPAIR_SANITIZE})
         # The older instruction sets run the source of the kernels with shorter vectors. Release builds test them
         # (octopair_instruction_sets).
-        target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
+        target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX2)")
     endif()
 endfunction()
 
