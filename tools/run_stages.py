@@ -73,12 +73,13 @@ STAGES = {
                    "octopair_pipeline_test", "octopair_scene_test", "octopair_viewer_test")),
     # Ranks that wait poll, and each of their messages waits for all other processes: beside other stages they would cost three times as much.
     "ranks": Stage("release", ("-L", "ranks")),
+    "clang-ranks": Stage("clang", ("-L", "ranks", "-L", "exactness"), ("octopair_mpi_test",), (20000, 60)),
     "timing": Stage("release", ("-L", "timing"), options=PYTHON),
 }
 LONG_STAGES = {f"long-{preset}": Stage(preset, ("-L", "exactness"), EXACTNESS, (1000000, 2000), 100)
                for preset in ("release", "clang")}
 LONG_STAGES["long-packages"] = dataclasses.replace(STAGES["packages"], from_source=True)
-ALONE = ("ranks", "timing")
+ALONE = ("ranks", "clang-ranks", "timing")
 
 
 class Costs:
